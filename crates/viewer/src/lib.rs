@@ -1,1 +1,4 @@
-//! stub
+//! The window on a world: what is drawn, from where, and how.
+
+pub mod camera;
+pub mod picture;
