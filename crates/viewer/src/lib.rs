@@ -1,4 +1,19 @@
-//! The window on a world: what is drawn, from where, and how.
+//! The window on a world: scenes, control panel, pictures, and the same runs without a display.
+//!
+//! [`cli`] reads the command line and calls one of [`app`] (the window), [`headless`] (runs and
+//! checks as text) and [`shot`] (one picture in a file). All of them look at a world through a
+//! [`session`], which knows neither windows nor graphics; it describes what is to be seen as a
+//! [`picture`], which [`render`] draws. [`ui`] is the control panel around it.
 
+pub mod app;
 pub mod camera;
+pub mod cli;
+pub mod gpu;
+pub mod headless;
+pub mod number;
 pub mod picture;
+pub mod render;
+pub mod session;
+pub mod shot;
+pub mod stopwatch;
+pub mod ui;

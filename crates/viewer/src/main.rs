@@ -1,2 +1,7 @@
-//! stub
-fn main() {}
+//! `cowbell`: simulates colliding triangle meshes, in a window or without one.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    viewer::cli::main()
+}

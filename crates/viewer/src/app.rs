@@ -1,0 +1,253 @@
+//! The window: events in, frames out. Sleeps while nothing moves.
+
+use std::panic;
+use std::sync::Arc;
+use std::time::Duration;
+
+use egui::ViewportId;
+use scene::Scene;
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::window::{Window, WindowId};
+
+use crate::cli::Failure;
+use crate::gpu::{Gpu, UiFrame};
+use crate::session::{Session, State};
+use crate::stopwatch::Stopwatch;
+use crate::ui::{self, Ui};
+
+/// Frames follow each other no faster than this, should the display not hold them back.
+const SHORTEST_FRAME: Duration = Duration::from_millis(4);
+/// While the window takes no pictures, physics goes on at this pace.
+const UNSEEN_FRAME: Duration = Duration::from_millis(100);
+
+/// Opens the window on a scene and stays until it is closed.
+pub fn run(scene: Scene) -> Result<(), Failure> {
+    let session = Session::new(scene).map_err(Failure::refused)?;
+    let event_loop = event_loop()?;
+    let stopwatch = Stopwatch::start();
+    let mut app = App {
+        session,
+        ui: Ui::new(stopwatch),
+        stopwatch,
+        proxy: event_loop.create_proxy(),
+        open: None,
+        failure: None,
+        last_frame: Duration::ZERO,
+        next_frame: None,
+    };
+    event_loop
+        .run_app(&mut app)
+        .map_err(|error| no_display(&error.to_string()))?;
+    app.failure.map_or(Ok(()), Err)
+}
+
+/// The control panel wants a frame after this time.
+#[derive(Debug)]
+struct Redraw(Duration);
+
+struct App {
+    session: Session,
+    ui: Ui,
+    stopwatch: Stopwatch,
+    proxy: EventLoopProxy<Redraw>,
+    open: Option<Open>,
+    failure: Option<Failure>,
+    /// When the last frame began.
+    last_frame: Duration,
+    /// When the next frame is due; none while nothing moves.
+    next_frame: Option<Duration>,
+}
+
+/// A window with all that is needed to draw in it.
+struct Open {
+    window: Arc<Window>,
+    egui: egui_winit::State,
+    gpu: Gpu,
+}
+
+impl Open {
+    fn new(
+        event_loop: &ActiveEventLoop,
+        window: Arc<Window>,
+        proxy: &EventLoopProxy<Redraw>,
+    ) -> Result<Self, Failure> {
+        let gpu = Gpu::new(event_loop, window.clone()).map_err(|error| no_adapter(&error))?;
+        let context = egui::Context::default();
+        ui::apply_style(&context);
+        let proxy = proxy.clone();
+        context.set_request_repaint_callback(move |request| {
+            // Fails only when the window has closed.
+            let _ = proxy.send_event(Redraw(request.delay));
+        });
+        let egui = egui_winit::State::new(
+            context,
+            ViewportId::ROOT,
+            event_loop,
+            Some(window.scale_factor() as f32),
+            None,
+            Some(gpu.max_texture_side()),
+        );
+        Ok(Self { window, egui, gpu })
+    }
+}
+
+impl App {
+    /// Sees to a frame at `time`, or earlier if one is due already.
+    fn schedule(&mut self, time: Duration) {
+        self.next_frame = Some(self.next_frame.map_or(time, |next| next.min(time)));
+    }
+
+    fn fail(&mut self, event_loop: &ActiveEventLoop, failure: Failure) {
+        self.failure = Some(failure);
+        event_loop.exit();
+    }
+
+    /// Lets physics go on, lays out the control panel and paints both.
+    fn frame(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(open) = &mut self.open else { return };
+        let now = self.stopwatch.read();
+        let stopwatch = self.stopwatch;
+        self.session
+            .advance(now.saturating_sub(self.last_frame), || stopwatch.read());
+        self.last_frame = now;
+
+        let size = open.window.inner_size();
+        let shown = size.width > 0 && size.height > 0 && {
+            let input = open.egui.take_egui_input(&open.window);
+            let context = open.egui.egui_ctx().clone();
+            let mut place = egui::Rect::ZERO;
+            let output = context.run_ui(input, |root| {
+                place = self
+                    .ui
+                    .show(root, &mut self.session, open.gpu.picture_id());
+            });
+            open.egui
+                .handle_platform_output(&open.window, output.platform_output);
+            let pixels = place.size() * output.pixels_per_point;
+            let frame = UiFrame {
+                primitives: context.tessellate(output.shapes, output.pixels_per_point),
+                textures: output.textures_delta,
+                pixels_per_point: output.pixels_per_point,
+            };
+            let pixels = [pixels.x.round() as u32, pixels.y.round() as u32];
+            open.gpu.paint(&self.session.picture(), pixels, frame)
+        };
+        if let Some(error) = open.gpu.take_error() {
+            self.session.notices().error("graphics", error);
+        }
+        if open.gpu.is_lost() {
+            match Open::new(event_loop, open.window.clone(), &self.proxy) {
+                Ok(reopened) => self.open = Some(reopened),
+                Err(failure) => return self.fail(event_loop, failure),
+            }
+        }
+        if self.session.state() == State::Running {
+            let pace = if shown { SHORTEST_FRAME } else { UNSEEN_FRAME };
+            self.schedule(now + pace);
+        }
+    }
+}
+
+impl ApplicationHandler<Redraw> for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.open.is_some() {
+            return;
+        }
+        let attributes = Window::default_attributes()
+            .with_title("Cowbell")
+            .with_inner_size(LogicalSize::new(1280.0, 800.0));
+        let opened = match event_loop.create_window(attributes) {
+            Ok(window) => Open::new(event_loop, Arc::new(window), &self.proxy),
+            Err(error) => Err(no_display(&error.to_string())),
+        };
+        match opened {
+            Ok(open) => {
+                open.window.request_redraw();
+                self.open = Some(open);
+            }
+            Err(failure) => self.fail(event_loop, failure),
+        }
+    }
+
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if cause == StartCause::Init {
+            self.last_frame = self.stopwatch.read();
+        }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, Redraw(delay): Redraw) {
+        // egui asks for a frame in the far future to say that it wants none.
+        if let Some(time) = self.stopwatch.read().checked_add(delay) {
+            self.schedule(time);
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(open) = &mut self.open else { return };
+        let response = open.egui.on_window_event(&open.window, &event);
+        if response.repaint {
+            open.window.request_redraw();
+        }
+        match event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::RedrawRequested => self.frame(event_loop),
+            WindowEvent::Resized(_) | WindowEvent::Occluded(false) => open.window.request_redraw(),
+            WindowEvent::DroppedFile(path) => {
+                self.session.take_in(&path);
+                open.window.request_redraw();
+            }
+            _ => {}
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(open) = &self.open else { return };
+        event_loop.set_control_flow(match self.next_frame {
+            None => ControlFlow::Wait,
+            Some(time) => match time.checked_sub(self.stopwatch.read()) {
+                Some(wait) if !wait.is_zero() => ControlFlow::wait_duration(wait),
+                _ => {
+                    self.next_frame = None;
+                    open.window.request_redraw();
+                    ControlFlow::Wait
+                }
+            },
+        });
+    }
+}
+
+/// The connection to the display. winit panics instead of failing where libraries of the display
+/// are missing; to a person both are the same.
+fn event_loop() -> Result<EventLoop<Redraw>, Failure> {
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let built = panic::catch_unwind(|| EventLoop::with_user_event().build());
+    panic::set_hook(hook);
+    match built {
+        Ok(built) => built.map_err(|error| no_display(&error.to_string())),
+        Err(panic) => Err(no_display(
+            panic
+                .downcast_ref::<String>()
+                .map(String::as_str)
+                .or_else(|| panic.downcast_ref::<&str>().copied())
+                .unwrap_or("the display's libraries are incomplete"),
+        )),
+    }
+}
+
+fn no_display(reason: &str) -> Failure {
+    Failure::NoDisplay(format!(
+        "no window: {reason}. Start it on a desktop with X11 (libx11, libxkbcommon-x11) or \
+         Wayland, or do without a window: cowbell run cube-cow"
+    ))
+}
+
+fn no_adapter(error: &anyhow::Error) -> Failure {
+    Failure::NoDisplay(format!(
+        "no window: {error:#}. Install a Vulkan or OpenGL driver (on Debian \
+         mesa-vulkan-drivers), or do without a window: cowbell run cube-cow"
+    ))
+}

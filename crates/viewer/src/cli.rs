@@ -1,0 +1,265 @@
+//! The command line.
+//!
+//! Exit codes: 0 done; 1 a run failed on the way; 2 the arguments or a file were refused;
+//! 3 no display or graphics adapter.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use scene::Scene;
+use sim_core::{Collision, METHODS, Method};
+
+use crate::{app, headless, shot};
+
+/// Scene of the window when none is named.
+const FIRST_SCENE: &str = "cube-cow";
+
+/// Cowbell simulates colliding triangle meshes. Without a command it opens its window.
+#[derive(Parser)]
+#[command(name = "cowbell", version, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Scene to open: a name from the gallery or the path of a .toml file
+    #[arg(value_name = "NAME|PATH", default_value = FIRST_SCENE)]
+    scene: String,
+    #[command(flatten)]
+    settings: SettingArgs,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a scene without a window and print its final state
+    Run {
+        /// Name from the gallery or path of a .toml file
+        #[arg(value_name = "NAME|PATH")]
+        scene: String,
+        /// Number of steps
+        #[arg(long, value_name = "N", default_value_t = 600)]
+        steps: u64,
+        /// Print one JSON object instead of a table
+        #[arg(long)]
+        json: bool,
+        #[command(flatten)]
+        settings: SettingArgs,
+    },
+    /// Read a mesh file and say what is in it
+    Check {
+        /// Mesh file
+        file: PathBuf,
+        /// Print one JSON object instead of text
+        #[arg(long)]
+        json: bool,
+    },
+    /// Draw a scene into a PNG file, without a window
+    Shot {
+        /// Name from the gallery or path of a .toml file
+        #[arg(value_name = "NAME|PATH")]
+        scene: String,
+        #[command(flatten)]
+        shot: ShotArgs,
+        #[command(flatten)]
+        settings: SettingArgs,
+    },
+}
+
+/// What a scene file says that the command line may overrule.
+#[derive(Args)]
+struct SettingArgs {
+    /// Integrator
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(METHODS.map(|m| m.name)))]
+    method: Option<String>,
+    /// Length of a step, s
+    #[arg(long, value_name = "SECONDS", value_parser = positive, conflicts_with = "rate")]
+    dt: Option<f64>,
+    /// Steps per simulated second, Hz
+    #[arg(long, value_name = "HZ", value_parser = positive)]
+    rate: Option<f64>,
+    /// How meshes are tested for contact
+    #[arg(long, value_name = "HOW")]
+    collision: Option<CollisionArg>,
+}
+
+/// What to draw, and where to.
+#[derive(Args)]
+pub struct ShotArgs {
+    /// Steps to run before drawing
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub step: u64,
+    /// PNG file to write
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = size)]
+    pub size: [u32; 2],
+    /// Draw the bounding boxes of one depth of the hierarchies, or of all
+    #[arg(long, value_name = "DEPTH|all", value_parser = depth)]
+    pub bvh: Option<Depth>,
+    /// Select the body of this name
+    #[arg(long, value_name = "NAME")]
+    pub select: Option<String>,
+}
+
+/// Levels of a bounding volume hierarchy.
+#[derive(Clone, Copy)]
+pub enum Depth {
+    /// Every level.
+    All,
+    /// One level; 0 is the root.
+    Level(usize),
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum CollisionArg {
+    /// Every edge against every triangle
+    Naive,
+    /// Through bounding volume hierarchies
+    Bvh,
+}
+
+/// Why the program ends without having done what it was asked, as one line for a person.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// A run failed on the way.
+    Run(String),
+    /// The arguments or a file were refused.
+    Refused(String),
+    /// There is no display or no graphics adapter.
+    NoDisplay(String),
+}
+
+impl Failure {
+    /// Refuses something for the reason of an error.
+    pub fn refused(error: impl std::fmt::Display) -> Self {
+        Self::Refused(error.to_string())
+    }
+
+    fn code(&self) -> u8 {
+        match self {
+            Self::Run(_) => 1,
+            Self::Refused(_) => 2,
+            Self::NoDisplay(_) => 3,
+        }
+    }
+
+    fn message(&self) -> &str {
+        match self {
+            Self::Run(message) | Self::Refused(message) | Self::NoDisplay(message) => message,
+        }
+    }
+}
+
+/// Does what the arguments of the process ask for.
+pub fn main() -> ExitCode {
+    let done = match Cli::try_parse() {
+        Ok(cli) => obey(cli),
+        Err(error) if error.use_stderr() => Err(Failure::Refused(one_line(&error))),
+        // Help and version.
+        Err(error) => Ok(error.render().to_string()),
+    };
+    match done {
+        Ok(text) => print(&text),
+        Err(failure) => {
+            // Nothing is left to do if even that cannot be written.
+            let _ = writeln!(std::io::stderr(), "cowbell: {}", failure.message());
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+/// Runs a command; the answer is the text for stdout.
+fn obey(cli: Cli) -> Result<String, Failure> {
+    match cli.command {
+        None => {
+            app::run(load(&cli.scene, &cli.settings)?)?;
+            Ok(String::new())
+        }
+        Some(Command::Run {
+            scene,
+            steps,
+            json,
+            settings,
+        }) => headless::run(&load(&scene, &settings)?, steps, json),
+        Some(Command::Check { file, json }) => headless::check(&file, json),
+        Some(Command::Shot {
+            scene,
+            shot,
+            settings,
+        }) => shot::write(load(&scene, &settings)?, &shot),
+    }
+}
+
+/// Reads a scene and overrules what the arguments overrule.
+fn load(name_or_path: &str, settings: &SettingArgs) -> Result<Scene, Failure> {
+    let mut scene = Scene::load(name_or_path).map_err(Failure::refused)?;
+    if let Some(method) = settings.method.as_deref().and_then(Method::named) {
+        scene.method = method;
+    }
+    if let Some(dt) = settings.dt.or(settings.rate.map(|rate| 1.0 / rate)) {
+        scene.dt = dt;
+    }
+    match settings.collision {
+        None => {}
+        Some(CollisionArg::Naive) => scene.collision = Collision::Naive,
+        Some(CollisionArg::Bvh) => scene.collision = Collision::Bvh,
+    }
+    Ok(scene)
+}
+
+/// Writes to stdout. A reader that has gone away, as `head` does, is no failure.
+fn print(text: &str) -> ExitCode {
+    let mut stdout = std::io::stdout().lock();
+    match stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+    {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error) => {
+            let _ = writeln!(
+                std::io::stderr(),
+                "cowbell: cannot write the result: {error}"
+            );
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// What clap says before its usage, in one line.
+fn one_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let text = text.strip_prefix("error: ").unwrap_or(&text);
+    let lines = text.lines().take_while(|line| !line.starts_with("Usage:"));
+    let words: Vec<&str> = lines
+        .filter(|line| !line.contains("--help"))
+        .flat_map(str::split_whitespace)
+        .collect();
+    format!("{}; see cowbell --help", words.join(" "))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("must be a number above 0".to_owned()),
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=8192).contains(side));
+    text.split_once('x')
+        .and_then(|(width, height)| Some([side(width)?, side(height)?]))
+        .ok_or_else(|| "must be WIDTHxHEIGHT, each from 1 to 8192".to_owned())
+}
+
+fn depth(text: &str) -> Result<Depth, String> {
+    match text {
+        "all" => Ok(Depth::All),
+        level => level
+            .parse()
+            .map(Depth::Level)
+            .map_err(|_| "must be a depth from 0, or all".to_owned()),
+    }
+}

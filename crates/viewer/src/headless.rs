@@ -1,0 +1,229 @@
+//! Runs and checks without a window, as text or JSON. Needs neither display nor graphics adapter.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use scene::{Scene, mesh_file};
+use serde::Serialize;
+use sim_core::{DVec3, Repairs, StepError, World};
+
+use crate::cli::Failure;
+use crate::session::{Drift, Reference};
+use crate::stopwatch::Stopwatch;
+
+/// Final state of a run. Numbers are f64 and survive the way through JSON bit for bit.
+#[derive(Serialize)]
+struct RunReport<'a> {
+    time: f64,
+    steps: u64,
+    impacts: u64,
+    kinetic_energy: f64,
+    momentum: [f64; 3],
+    bodies: Vec<BodyReport<'a>>,
+}
+
+#[derive(Serialize)]
+struct BodyReport<'a> {
+    name: &'a str,
+    mass: f64,
+    position: [f64; 3],
+    velocity: [f64; 3],
+}
+
+/// Contents of a mesh file.
+#[derive(Serialize)]
+struct CheckReport {
+    format: &'static str,
+    vertices: usize,
+    triangles: usize,
+    closed: bool,
+    oriented: bool,
+    volume: Option<f64>,
+    repairs: Vec<RepairReport>,
+}
+
+#[derive(Serialize)]
+struct RepairReport {
+    kind: &'static str,
+    count: usize,
+}
+
+/// Takes `steps` steps of a scene; the final state as JSON or as a table.
+pub fn run(scene: &Scene, steps: u64, json: bool) -> Result<String, Failure> {
+    let mut world = scene.world().map_err(Failure::refused)?;
+    let reference = Reference::of(&world);
+    let stopwatch = Stopwatch::start();
+    for _ in 0..steps {
+        world
+            .step()
+            .map_err(|error| Failure::Run(step_error(scene, &world, &error)))?;
+    }
+    let seconds_per_step = stopwatch.read().as_secs_f64() / steps.max(1) as f64;
+    let report = RunReport::of(scene, &world);
+    Ok(if json {
+        to_json(&report)
+    } else {
+        report.table(scene, seconds_per_step, reference.drift(&world))
+    })
+}
+
+/// Reads a mesh file; what is in it as JSON or as text.
+pub fn check(file: &Path, json: bool) -> Result<String, Failure> {
+    let loaded = mesh_file::load(file).map_err(Failure::refused)?;
+    let report = CheckReport {
+        format: loaded.format,
+        vertices: loaded.mesh.vertices().len(),
+        triangles: loaded.mesh.triangles().len(),
+        closed: loaded.mesh.is_closed(),
+        oriented: loaded.mesh.is_oriented(),
+        volume: loaded.mesh.volume(),
+        repairs: repairs(&loaded.repairs),
+    };
+    Ok(if json {
+        to_json(&report)
+    } else {
+        report.text()
+    })
+}
+
+/// A failed step in words: which body of which scene, and when.
+pub fn step_error(scene: &Scene, world: &World, error: &StepError) -> String {
+    let body = scene.bodies.get(error.body).map_or("?", |body| &body.name);
+    format!(
+        "{}: step {} failed for {body}: {error}",
+        scene.name,
+        world.steps() + 1
+    )
+}
+
+fn to_json(report: &impl Serialize) -> String {
+    // Plain structs of numbers and text: nothing in them can be refused.
+    serde_json::to_string(report).map_or_else(|error| error.to_string(), |text| text + "\n")
+}
+
+fn repairs(repairs: &Repairs) -> Vec<RepairReport> {
+    [
+        ("welded_vertices", repairs.welded_vertices),
+        ("degenerate_triangles", repairs.degenerate_triangles),
+        ("duplicate_triangles", repairs.duplicate_triangles),
+        ("unreferenced_vertices", repairs.unreferenced_vertices),
+        ("reversed_winding", usize::from(repairs.reversed_winding)),
+    ]
+    .into_iter()
+    .filter(|&(_, count)| count > 0)
+    .map(|(kind, count)| RepairReport { kind, count })
+    .collect()
+}
+
+impl<'a> RunReport<'a> {
+    fn of(scene: &'a Scene, world: &World) -> Self {
+        Self {
+            time: world.time(),
+            steps: world.steps(),
+            impacts: world.impacts(),
+            kinetic_energy: world.kinetic_energy(),
+            momentum: world.momentum().to_array(),
+            bodies: scene
+                .bodies
+                .iter()
+                .enumerate()
+                .map(|(i, body)| BodyReport {
+                    name: &body.name,
+                    mass: world.mass(i),
+                    position: world.position(i).to_array(),
+                    velocity: world.velocity(i).to_array(),
+                })
+                .collect(),
+        }
+    }
+
+    fn table(&self, scene: &Scene, seconds_per_step: f64, drift: Drift) -> String {
+        let mut text = String::new();
+        let settings = format!(
+            "{} steps of {} s, {}, {}",
+            self.steps,
+            scene.dt,
+            scene.method.name,
+            collision_name(scene)
+        );
+        let lines = [
+            ("Scene", scene.title.clone()),
+            ("Run", settings),
+            ("Time", format!("{:.6} s", self.time)),
+            ("Impacts", self.impacts.to_string()),
+            ("Kinetic energy", format!("{:.9} J", self.kinetic_energy)),
+            (
+                "Momentum",
+                format!("{} kg m/s", vector(self.momentum.into())),
+            ),
+            ("Speed", format!("{:.3} µs a step", seconds_per_step * 1e6)),
+            (
+                "Error",
+                format!(
+                    "energy {:+.1e}, momentum {:.1e} (drift since the start, relative)",
+                    drift.energy, drift.momentum
+                ),
+            ),
+        ];
+        for (what, value) in lines {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{what:<15} {value}");
+        }
+        let width = self
+            .bodies
+            .iter()
+            .map(|body| body.name.chars().count())
+            .max()
+            .unwrap_or(0)
+            .max(4);
+        let _ = writeln!(
+            text,
+            "\n{:<width$} {:>10} {:>38} {:>38}",
+            "Body", "mass, kg", "position, m", "velocity, m/s"
+        );
+        for body in &self.bodies {
+            let _ = writeln!(
+                text,
+                "{:<width$} {:>10} {:>38} {:>38}",
+                body.name,
+                body.mass,
+                vector(body.position.into()),
+                vector(body.velocity.into())
+            );
+        }
+        text
+    }
+}
+
+fn vector(v: DVec3) -> String {
+    format!("{:12.6} {:12.6} {:12.6}", v.x, v.y, v.z)
+}
+
+fn collision_name(scene: &Scene) -> &'static str {
+    match scene.collision {
+        sim_core::Collision::Naive => "naive",
+        sim_core::Collision::Bvh => "bvh",
+    }
+}
+
+impl CheckReport {
+    fn text(&self) -> String {
+        let yes = |is| if is { "yes" } else { "no" };
+        let volume = self.volume.map_or_else(
+            || "none: the surface does not enclose one".to_owned(),
+            |volume| format!("{volume} m^3"),
+        );
+        let mut text = format!(
+            "Format     {}\nVertices   {}\nTriangles  {}\nClosed     {}\nOriented   {}\nVolume     {volume}\n",
+            self.format,
+            self.vertices,
+            self.triangles,
+            yes(self.closed),
+            yes(self.oriented),
+        );
+        for repair in &self.repairs {
+            let _ = writeln!(text, "Repaired   {}: {}", repair.kind, repair.count);
+        }
+        text
+    }
+}

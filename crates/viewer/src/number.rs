@@ -1,0 +1,75 @@
+//! Numbers as people read them.
+
+/// About four significant digits, with an exponent where that is shorter. The columns of a
+/// figure that changes stay in place, since small and large values keep their widths.
+pub fn figure(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 {
+        "0".to_owned()
+    } else if !(1e-3..1e6).contains(&size) {
+        format!("{value:.2e}")
+    } else if size < 10.0 {
+        format!("{value:.4}")
+    } else if size < 1000.0 {
+        format!("{value:.2}")
+    } else {
+        format!("{value:.0}")
+    }
+}
+
+/// A duration in seconds with the unit that suits it.
+pub fn seconds(value: f64) -> String {
+    if value < 1e-3 {
+        format!("{:.1} µs", value * 1e6)
+    } else if value < 1.0 {
+        format!("{:.1} ms", value * 1e3)
+    } else {
+        format!("{value:.2} s")
+    }
+}
+
+/// A relative error: 0, or sign and magnitude.
+pub fn relative(value: f64) -> String {
+    if value == 0.0 {
+        "0".to_owned()
+    } else {
+        format!("{value:+.1e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{figure, relative, seconds};
+
+    #[test]
+    fn figures_stay_short() {
+        let cases = [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (1.0, "1.0000"),
+            (-12.345, "-12.35"),
+            (123456.0, "123456"),
+            (1e-9, "1.00e-9"),
+            (-2.5e300, "-2.50e300"),
+            (f64::NAN, "NaN"),
+            (f64::INFINITY, "inf"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(figure(value), text);
+        }
+    }
+
+    #[test]
+    fn seconds_choose_their_unit() {
+        assert_eq!(seconds(12.34e-6), "12.3 µs");
+        assert_eq!(seconds(0.0167), "16.7 ms");
+        assert_eq!(seconds(2.0), "2.00 s");
+    }
+
+    #[test]
+    fn errors_keep_their_sign() {
+        assert_eq!(relative(0.0), "0");
+        assert_eq!(relative(1.23e-16), "+1.2e-16");
+        assert_eq!(relative(-0.5), "-5.0e-1");
+    }
+}

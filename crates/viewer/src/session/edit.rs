@@ -1,0 +1,165 @@
+//! Edits of bodies. In the layout state they change the set-up, later only the world.
+//! A refused value leaves everything as it was and says why.
+
+use scene::SceneBody;
+use sim_core::{DVec3, WorldError};
+
+use super::{Reference, Session, State};
+
+impl Session {
+    /// Moves the selected body to `position`, m.
+    pub fn set_position(&mut self, position: DVec3) {
+        self.edit("position", |session, i| {
+            session.world.set_position(i, position)?;
+            Ok(move |body: &mut SceneBody| body.position = position)
+        });
+    }
+
+    /// Gives the selected body a velocity, m/s.
+    pub fn set_velocity(&mut self, velocity: DVec3) {
+        self.edit("velocity", |session, i| {
+            session.world.set_velocity(i, velocity)?;
+            Ok(move |body: &mut SceneBody| body.velocity = velocity)
+        });
+    }
+
+    /// Puts the selected body under a constant force, N.
+    pub fn set_force(&mut self, force: DVec3) {
+        self.edit("force", |session, i| {
+            session.world.set_force(i, force)?;
+            Ok(move |body: &mut SceneBody| body.force = force)
+        });
+    }
+
+    /// Gives the selected body a mass, kg; positive and finite.
+    pub fn set_mass(&mut self, mass: f64) {
+        self.edit("mass", |session, i| {
+            session.world.set_mass(i, mass)?;
+            Ok(move |body: &mut SceneBody| body.mass = mass)
+        });
+    }
+
+    /// Turns the selected body: degrees about the fixed axes x, then y, then z. Layout only.
+    pub fn set_rotation(&mut self, rotation: DVec3) {
+        self.edit_shape("rotation", |body| body.rotation = rotation);
+    }
+
+    /// Stretches the selected body along its own axes; not 0. Layout only.
+    pub fn set_scale(&mut self, scale: DVec3) {
+        self.edit_shape("scale", |body| body.scale = scale);
+    }
+
+    /// Sets the selected body's colour, sRGB, each part from 0 to 1.
+    pub fn set_colour(&mut self, colour: [f32; 3]) {
+        if let Some(body) = self.selection.and_then(|i| self.scene.bodies.get_mut(i)) {
+            body.colour = Some(colour);
+        }
+    }
+
+    /// Removes the selected body. Layout only.
+    pub fn delete_selected(&mut self) {
+        let Some(i) = self.selected_in_layout("delete") else {
+            return;
+        };
+        let removed = self.scene.bodies.remove(i);
+        let name = removed.name.clone();
+        self.rebuild("delete", |scene| scene.bodies.insert(i, removed));
+        self.select(None);
+        self.notices.info("delete", format!("Deleted {name}."));
+    }
+
+    /// Adds a copy of the selected body beside everything else and selects it. Layout only.
+    pub fn duplicate_selected(&mut self) {
+        let Some(i) = self.selected_in_layout("duplicate") else {
+            return;
+        };
+        self.add_body(self.scene.bodies[i].clone());
+    }
+
+    /// Adds a body beside everything else, with a name of its own, and selects it.
+    pub(super) fn add_body(&mut self, mut body: SceneBody) {
+        body.name = self.unused_name(&body.name);
+        body.position = self.free_place(&body);
+        self.scene.bodies.push(body);
+        let added = self.rebuild("add", |scene| {
+            scene.bodies.pop();
+        });
+        if added {
+            self.select(self.world.len().checked_sub(1));
+        }
+    }
+
+    /// Applies a change to the selected body of the world and, in the layout state, of the scene.
+    fn edit<Keep: FnOnce(&mut SceneBody)>(
+        &mut self,
+        field: &'static str,
+        change: impl FnOnce(&mut Self, usize) -> Result<Keep, WorldError>,
+    ) {
+        let Some(i) = self.selection else { return };
+        match change(self, i) {
+            Ok(keep) => {
+                self.notices.dismiss(field);
+                if self.state == State::Layout {
+                    keep(&mut self.scene.bodies[i]);
+                }
+                self.reference = Reference::of(&self.world);
+            }
+            Err(error) => {
+                let name = &self.scene.bodies[i].name;
+                self.notices.error(field, format!("{name}: {error}"));
+            }
+        }
+    }
+
+    /// Applies a change of the set-up that needs new geometry.
+    fn edit_shape(&mut self, field: &'static str, change: impl FnOnce(&mut SceneBody)) {
+        let Some(i) = self.selected_in_layout(field) else {
+            return;
+        };
+        let before = self.scene.bodies[i].clone();
+        change(&mut self.scene.bodies[i]);
+        self.rebuild(field, |scene| scene.bodies[i] = before);
+    }
+
+    /// The selected body, if the set-up may be changed now; says so if not.
+    fn selected_in_layout(&mut self, field: &'static str) -> Option<usize> {
+        let i = self.selection?;
+        if self.state == State::Layout {
+            return Some(i);
+        }
+        self.notices.error(
+            field,
+            format!("Reset first: {field} changes the layout, and physics has begun."),
+        );
+        None
+    }
+
+    /// Makes the world anew from a changed scene, or takes the change back. Whether it worked.
+    fn rebuild(
+        &mut self,
+        about: &'static str,
+        take_back: impl FnOnce(&mut scene::Scene),
+    ) -> bool {
+        match self.scene.world() {
+            Ok(world) => {
+                self.notices.dismiss(about);
+                self.adopt(world);
+                true
+            }
+            Err(error) => {
+                take_back(&mut self.scene);
+                self.notices.error(about, error.to_string());
+                false
+            }
+        }
+    }
+
+    /// `wish`, or `wish 2`, `wish 3`, ... if taken.
+    fn unused_name(&self, wish: &str) -> String {
+        let taken = |name: &str| self.scene.bodies.iter().any(|body| body.name == name);
+        std::iter::once(wish.to_owned())
+            .chain((2..).map(|n| format!("{wish} {n}")))
+            .find(|name| !taken(name))
+            .unwrap_or_default()
+    }
+}

@@ -1,0 +1,82 @@
+//! Scenes and meshes from files, and scenes to files.
+
+use std::path::{Path, PathBuf};
+
+use scene::{MeshRef, Scene, SceneBody};
+use sim_core::DVec3;
+
+use super::Session;
+
+impl Session {
+    /// Opens a scene of the gallery, by name, or of a file, by path. On failure the present one
+    /// stays.
+    pub fn open(&mut self, name_or_path: &str) {
+        let opened = Scene::load(name_or_path).and_then(Session::new);
+        match opened {
+            Ok(session) => {
+                let display = self.display;
+                *self = session;
+                self.display = display;
+                let path = PathBuf::from(name_or_path);
+                self.file = path.extension().is_some().then_some(path);
+            }
+            Err(error) => self.notices.error("open", error.to_string()),
+        }
+    }
+
+    /// Adds a body of 1 kg at rest with the mesh of a file, beside all others. Returns to the
+    /// layout state first.
+    pub fn import(&mut self, path: &Path) {
+        match MeshRef::load(path) {
+            Ok(mesh) => {
+                self.reset();
+                let name = path.file_stem().unwrap_or_default().to_string_lossy();
+                self.add_body(SceneBody {
+                    name: name.into_owned(),
+                    mesh,
+                    position: DVec3::ZERO,
+                    rotation: DVec3::ZERO,
+                    scale: DVec3::ONE,
+                    velocity: DVec3::ZERO,
+                    force: DVec3::ZERO,
+                    mass: 1.0,
+                    colour: None,
+                });
+                self.frame();
+            }
+            Err(error) => self.notices.error("import", error.to_string()),
+        }
+    }
+
+    /// Opens a scene or adds a mesh, by the name's ending.
+    pub fn take_in(&mut self, path: &Path) {
+        if path.extension().is_some_and(|ending| ending == "toml") {
+            self.open(&path.to_string_lossy());
+        } else {
+            self.import(path);
+        }
+    }
+
+    /// Writes the set-up to a scene file. A file that is not the scene's own is overwritten only
+    /// with `overwrite`.
+    pub fn save(&mut self, path: &Path, overwrite: bool) {
+        let path = path.with_extension("toml");
+        let own = self.file.as_deref() == Some(path.as_path());
+        if path.exists() && !own && !overwrite {
+            let text = format!("{} exists: choose another name.", path.display());
+            self.notices.error("save", text);
+            return;
+        }
+        match std::fs::write(&path, self.scene.to_toml()) {
+            Ok(()) => {
+                self.notices
+                    .info("save", format!("Saved {}.", path.display()));
+                self.file = Some(path);
+            }
+            Err(error) => {
+                let text = format!("Cannot write {}: {error}.", path.display());
+                self.notices.error("save", text);
+            }
+        }
+    }
+}

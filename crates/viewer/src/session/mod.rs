@@ -1,0 +1,293 @@
+//! A person at work on a scene: set it up, let it run, look at it, put it back.
+//!
+//! A session holds two things that must not be confused: the **scene** as it was set up, which is
+//! what gets saved and what a reset returns to, and the **world** that runs. In the layout state
+//! every edit changes the set-up and the world follows it; once physics has begun, edits reach
+//! only the world. How to simulate (method, rate, collision test) is the person's choice rather
+//! than the bodies' and survives a reset.
+//!
+//! Nothing here draws, opens windows or reads a clock: see `picture` for what is drawn, and
+//! [`Session::advance`] for how time comes in.
+
+mod edit;
+mod figures;
+mod files;
+mod notice;
+mod pick;
+mod picture;
+#[cfg(test)]
+mod tests;
+
+use std::time::Duration;
+
+use scene::{Scene, SceneBody};
+use sim_core::{Collision, FixedStep, Method, Settings, World};
+
+pub use figures::{Drift, Figures, Reference};
+pub use notice::{Notice, Notices};
+pub use picture::{BvhView, Display};
+
+use crate::camera::Camera;
+
+/// Slowest rate offered, in steps per second of simulated time.
+pub const MIN_RATE: f64 = 5.0;
+/// Fastest rate offered, in steps per second of simulated time.
+pub const MAX_RATE: f64 = 240.0;
+
+/// Real time of one frame that may be caught up with; what exceeds it is dropped, so that a
+/// window that was held still for ten seconds does not have to simulate ten seconds at once.
+const CATCH_UP: Duration = Duration::from_millis(250);
+
+/// Real time that the steps of one frame may take before the rest of them is given up: leaves
+/// half of a 60 Hz frame to the drawing.
+const STEP_BUDGET: Duration = Duration::from_millis(8);
+
+/// What the session is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Stopped at the set-up: edits change the scene.
+    Layout,
+    /// Physics runs with the clock.
+    Running,
+    /// Physics has begun and is held still.
+    Paused,
+}
+
+/// A scene, the world made from it, and one person's view of both.
+pub struct Session {
+    scene: Scene,
+    world: World,
+    clock: FixedStep,
+    state: State,
+    reference: Reference,
+    figures: Figures,
+    notices: Notices,
+    selection: Option<usize>,
+    /// File that the scene was read from or last saved to.
+    file: Option<std::path::PathBuf>,
+    /// Where the person looks from.
+    pub camera: Camera,
+    /// What is drawn besides the bodies.
+    pub display: Display,
+}
+
+impl Session {
+    /// A session in the layout state that looks at the whole of `scene`.
+    pub fn new(scene: Scene) -> anyhow::Result<Self> {
+        let world = scene.world()?;
+        let clock = FixedStep::new(scene.dt, CATCH_UP)?;
+        let mut session = Self {
+            reference: Reference::of(&world),
+            scene,
+            world,
+            clock,
+            state: State::Layout,
+            figures: Figures::default(),
+            notices: Notices::default(),
+            selection: None,
+            file: None,
+            camera: Camera::default(),
+            display: Display::default(),
+        };
+        session.frame();
+        Ok(session)
+    }
+
+    /// The scene as it was set up.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The world as it is now.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Whether it is laid out, running or paused.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Speed and cost of the last frames.
+    pub fn figures(&self) -> &Figures {
+        &self.figures
+    }
+
+    /// How far energy and momentum are from where they should be.
+    pub fn drift(&self) -> Drift {
+        self.reference.drift(&self.world)
+    }
+
+    /// Messages to the person, newest last.
+    pub fn notices(&mut self) -> &mut Notices {
+        &mut self.notices
+    }
+
+    /// Index of the selected body.
+    pub fn selection(&self) -> Option<usize> {
+        self.selection
+    }
+
+    /// Selects a body, or none; an index without a body selects none.
+    pub fn select(&mut self, body: Option<usize>) {
+        self.selection = body.filter(|&i| i < self.world.len());
+    }
+
+    /// The selected body as it was set up.
+    pub fn selected(&self) -> Option<&SceneBody> {
+        self.selection.and_then(|i| self.scene.bodies.get(i))
+    }
+
+    /// Lets physics run, from the set-up or from where it was paused.
+    pub fn start(&mut self) {
+        if self.state == State::Layout {
+            self.begin();
+        }
+        self.state = State::Running;
+    }
+
+    /// Holds physics still. Nothing is lost; the layout state stays as it is.
+    pub fn pause(&mut self) {
+        if self.state == State::Running {
+            self.state = State::Paused;
+        }
+    }
+
+    /// Starts or pauses, whichever applies.
+    pub fn toggle(&mut self) {
+        match self.state {
+            State::Running => self.pause(),
+            State::Layout | State::Paused => self.start(),
+        }
+    }
+
+    /// Goes one step ahead and holds still there. `stopwatch` reads real time.
+    pub fn step_once(&mut self, stopwatch: impl Fn() -> Duration) {
+        if self.state == State::Layout {
+            self.begin();
+        }
+        self.state = State::Paused;
+        let before = stopwatch();
+        self.step();
+        self.figures.cost.add(stopwatch().saturating_sub(before));
+        self.figures.steps_per_frame = 1;
+    }
+
+    /// Returns to the layout state: every body as it was set up, time 0.
+    pub fn reset(&mut self) {
+        match self.scene.world() {
+            Ok(world) => self.adopt(world),
+            Err(error) => self.notices.error("reset", error.to_string()),
+        }
+    }
+
+    /// Lets `elapsed` real time pass: takes the whole steps that fit, as long as they do not take
+    /// more real time than a frame can spare; what is given up is reported, never caught up with.
+    /// `stopwatch` reads real time and is used only to measure. Does nothing unless running.
+    pub fn advance(&mut self, elapsed: Duration, stopwatch: impl Fn() -> Duration) {
+        if self.state != State::Running {
+            return;
+        }
+        self.figures.frame.add(elapsed);
+        let mut dropped = self.clock.advance(elapsed);
+        let mut steps = 0;
+        let began = stopwatch();
+        let mut before = began;
+        while self.clock.take() {
+            if !self.step() {
+                break;
+            }
+            steps += 1;
+            let now = stopwatch();
+            self.figures.cost.add(now.saturating_sub(before));
+            before = now;
+            if now.saturating_sub(began) > STEP_BUDGET {
+                dropped += self.clock.drop_backlog();
+                break;
+            }
+        }
+        self.figures.steps_per_frame = steps;
+        self.figures.fell_behind(dropped);
+    }
+
+    /// One step of the world; an error pauses and is shown. Whether the step was taken.
+    fn step(&mut self) -> bool {
+        match self.world.step() {
+            Ok(()) => true,
+            Err(error) => {
+                self.state = State::Paused;
+                self.notices.error(
+                    "step",
+                    crate::headless::step_error(&self.scene, &self.world, &error),
+                );
+                false
+            }
+        }
+    }
+
+    /// Changes the integrator, at any time.
+    pub fn set_method(&mut self, method: &'static Method) {
+        self.set_settings(Settings {
+            method,
+            ..*self.world.settings()
+        });
+    }
+
+    /// Changes how many steps make one simulated second, at any time. Rates that are not
+    /// finite and positive, or too extreme for the clock, are refused.
+    pub fn set_rate(&mut self, rate: f64) {
+        self.set_settings(Settings {
+            dt: 1.0 / rate,
+            ..*self.world.settings()
+        });
+    }
+
+    /// Changes how meshes are tested for contact, at any time.
+    pub fn set_collision(&mut self, collision: Collision) {
+        self.set_settings(Settings {
+            collision,
+            ..*self.world.settings()
+        });
+    }
+
+    fn set_settings(&mut self, settings: Settings) {
+        if let Err(error) = self.try_settings(settings) {
+            self.notices.error("settings", error.to_string());
+            return;
+        }
+        self.scene.dt = settings.dt;
+        self.scene.method = settings.method;
+        self.scene.collision = settings.collision;
+        self.figures = Figures::default();
+    }
+
+    fn try_settings(&mut self, settings: Settings) -> anyhow::Result<()> {
+        let clock = FixedStep::new(settings.dt, CATCH_UP)?;
+        self.world.set_settings(settings)?;
+        if settings.dt != self.clock.dt() {
+            self.clock = clock;
+        }
+        Ok(())
+    }
+
+    /// Turns the camera's eye on the selected body, or on everything.
+    pub fn frame(&mut self) {
+        if let Some((centre, radius)) = self.extent() {
+            self.camera.frame(centre, radius);
+        }
+    }
+
+    /// Leaves the layout state: physics begins here.
+    fn begin(&mut self) {
+        self.reference = Reference::of(&self.world);
+        self.figures = Figures::default();
+    }
+
+    /// Takes a world freshly made from the scene.
+    fn adopt(&mut self, world: World) {
+        self.world = world;
+        self.state = State::Layout;
+        self.select(self.selection);
+        self.begin();
+    }
+}

@@ -1,0 +1,76 @@
+//! Where bodies are: picking them with a ray, and the room they take up.
+
+use scene::SceneBody;
+use sim_core::{Aabb, DVec3};
+
+use super::{Session, State};
+
+impl Session {
+    /// Where body `i` is drawn, m: between the last two states while running.
+    pub(super) fn shown_position(&self, i: usize) -> DVec3 {
+        match self.state {
+            State::Running => self.world.interpolated(i, self.clock.fraction()),
+            State::Layout | State::Paused => self.world.position(i),
+        }
+    }
+
+    /// Selects the nearest body that a ray from `origin` along `direction` meets, or none.
+    pub fn pick(&mut self, origin: DVec3, direction: DVec3) {
+        self.world.build_bvhs();
+        let hit = (0..self.world.len())
+            .filter_map(|i| {
+                let hit = self
+                    .world
+                    .bvh(i)?
+                    .ray(origin - self.shown_position(i), direction)?;
+                Some((hit.t, i))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        self.select(hit.map(|(_, i)| i));
+    }
+
+    /// Centre and radius, m, of a ball around the selected body, or around all bodies.
+    pub(super) fn extent(&self) -> Option<(DVec3, f64)> {
+        let (min, max) = match self.selection {
+            Some(i) => self.body_box(i),
+            None => self.world_box()?,
+        };
+        Some(((min + max) / 2.0, ((max - min).length() / 2.0).max(1e-3)))
+    }
+
+    /// A place for `body` that touches nothing: beside all others along x, at their height.
+    pub(super) fn free_place(&self, body: &SceneBody) -> DVec3 {
+        let reach = reach(body);
+        match self.world_box() {
+            None => DVec3::ZERO,
+            Some((min, max)) => {
+                let middle = (min + max) / 2.0;
+                DVec3::new(max.x + 1.1 * reach + 0.1, middle.y, middle.z)
+            }
+        }
+    }
+
+    fn world_box(&self) -> Option<(DVec3, DVec3)> {
+        (0..self.world.len())
+            .map(|i| self.body_box(i))
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+
+    fn body_box(&self, i: usize) -> (DVec3, DVec3) {
+        let position = self.shown_position(i);
+        match self.world.mesh(i) {
+            Some(mesh) => {
+                let Aabb { min, max } = mesh.bounds();
+                (position + min.as_dvec3(), position + max.as_dvec3())
+            }
+            None => (position, position),
+        }
+    }
+}
+
+/// Radius, m, of the ball about its own origin that holds a body however it is turned.
+fn reach(body: &SceneBody) -> f64 {
+    let Aabb { min, max } = body.mesh.mesh().bounds();
+    let corner = min.as_dvec3().abs().max(max.as_dvec3().abs());
+    (corner * body.scale.abs()).length()
+}

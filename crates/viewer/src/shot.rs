@@ -1,0 +1,57 @@
+//! A picture of a scene in a PNG file, drawn without a window.
+
+use scene::Scene;
+
+use crate::cli::{Depth, Failure, ShotArgs};
+use crate::render::offscreen;
+use crate::session::Session;
+use crate::stopwatch::Stopwatch;
+
+/// Runs a scene for a number of steps, draws it and writes the file; says what was written.
+pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
+    let mut session = Session::new(scene).map_err(Failure::refused)?;
+    if let Some(name) = &args.select {
+        let body = session.scene().bodies.iter().position(|b| b.name == *name);
+        if body.is_none() {
+            return Err(no_such_body(session.scene(), name));
+        }
+        session.select(body);
+    }
+    session.display.bvh.shown = args.bvh.is_some();
+    session.display.bvh.every_body = args.select.is_none();
+    match args.bvh {
+        Some(Depth::Level(depth)) => session.display.bvh.depth = depth,
+        Some(Depth::All) => session.display.bvh.every_depth = true,
+        None => {}
+    }
+    let stopwatch = Stopwatch::start();
+    for _ in 0..args.step {
+        session.step_once(|| stopwatch.read());
+        if let Some(notice) = session.notices().iter().find(|notice| notice.error) {
+            return Err(Failure::Run(notice.text.clone()));
+        }
+    }
+    let image = offscreen::shot(&session.picture(), args.size)
+        .map_err(|error| Failure::NoDisplay(error.to_string()))?;
+    image
+        .save_with_format(&args.output, image::ImageFormat::Png)
+        .map_err(|error| {
+            Failure::Refused(format!("cannot write {}: {error}", args.output.display()))
+        })?;
+    Ok(format!(
+        "{}: {} by {} pixels, step {}\n",
+        args.output.display(),
+        args.size[0],
+        args.size[1],
+        session.world().steps()
+    ))
+}
+
+fn no_such_body(scene: &Scene, name: &str) -> Failure {
+    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    Failure::Refused(format!(
+        "{} has no body {name}; it has {}",
+        scene.name,
+        names.join(", ")
+    ))
+}

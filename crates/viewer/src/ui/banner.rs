@@ -1,0 +1,34 @@
+//! Messages over the picture, until dismissed.
+
+use egui::{Align2, Area, Button, Frame, RichText, Stroke};
+
+use super::style;
+use crate::session::Session;
+
+pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session) {
+    let mut dismissed = None;
+    Area::new("notices".into())
+        .order(egui::Order::Foreground)
+        .pivot(Align2::CENTER_TOP)
+        .fixed_pos(over.center_top() + egui::vec2(0.0, 12.0))
+        .show(ctx, |ui| {
+            for notice in session.notices().iter() {
+                let colour = if notice.error { style::RED } else { style::GREEN };
+                Frame::popup(ui.style())
+                    .stroke(Stroke::new(1.0, colour))
+                    .show(ui, |ui| {
+                        ui.set_max_width((over.width() - 60.0).clamp(160.0, 560.0));
+                        ui.horizontal(|ui| {
+                            let close = Button::new(RichText::new("✖").color(colour)).frame(false);
+                            if ui.add(close).on_hover_text("Dismiss").clicked() {
+                                dismissed = Some(notice.about);
+                            }
+                            ui.add(egui::Label::new(&notice.text).wrap());
+                        });
+                    });
+            }
+        });
+    if let Some(about) = dismissed {
+        session.notices().dismiss(about);
+    }
+}

@@ -1,0 +1,98 @@
+//! The bar on top: what runs, and the buttons that start, hold and reset it.
+
+use egui::{Button, Panel, RichText};
+
+use super::{Ui, style};
+use crate::number;
+use crate::session::{Session, State};
+
+pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
+    let frame = egui::Frame::side_top_panel(root.style()).inner_margin(egui::Margin::symmetric(10, 7));
+    Panel::top("bar").frame(frame).show(root, |ui| {
+        ui.horizontal(|ui| {
+            buttons(ui, state, session);
+            ui.add_space(6.0);
+            status(ui, session);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.toggle_value(&mut state.help, "Keys")
+                    .on_hover_text("All keys and mouse gestures (H)");
+                let mut shown = !state.panel_hidden;
+                ui.toggle_value(&mut shown, "Panel")
+                    .on_hover_text("Show or hide the side panel (P)");
+                state.panel_hidden = !shown;
+                ui.add_space(6.0);
+                ui.add(egui::Label::new(RichText::new(&session.scene().title).weak()).truncate())
+                    .on_hover_text(&session.scene().about);
+            });
+        });
+    });
+}
+
+fn buttons(ui: &mut egui::Ui, state: &Ui, session: &mut Session) {
+    let running = session.state() == State::Running;
+    let start = if running { "⏸ Pause" } else { "▶ Start" };
+    let button = Button::new(RichText::new(start).strong()).min_size(egui::vec2(78.0, 26.0));
+    if ui
+        .add(button)
+        .on_hover_text("Start or pause physics (Space)")
+        .clicked()
+    {
+        session.toggle();
+    }
+    let small = |text: &'static str| Button::new(text).min_size(egui::vec2(66.0, 26.0));
+    if ui
+        .add(small("⏩ Step"))
+        .on_hover_text("Go one step ahead and hold there (right arrow or .)")
+        .clicked()
+    {
+        state.step(session);
+    }
+    if ui
+        .add_enabled(session.state() != State::Layout, small("⟲ Reset"))
+        .on_hover_text("Put every body back as it was set up (R)")
+        .on_disabled_hover_text("Everything is as it was set up")
+        .clicked()
+    {
+        session.reset();
+    }
+}
+
+fn status(ui: &mut egui::Ui, session: &Session) {
+    let (text, colour, meaning) = match session.state() {
+        State::Layout => (
+            "Layout",
+            style::BLUE,
+            "Stopped at the set-up. Edits change the scene, and Reset returns here.",
+        ),
+        State::Running => ("Running", style::GREEN, "Physics runs with the clock."),
+        State::Paused => (
+            "Paused",
+            style::AMBER,
+            "Physics is held still. Edits last until Reset.",
+        ),
+    };
+    ui.label(RichText::new(text).strong().color(colour))
+        .on_hover_text(meaning);
+    let world = session.world();
+    ui.label(RichText::new(format!("{:.3} s", world.time())).monospace())
+        .on_hover_text("Simulated time");
+    if session.figures().is_behind() {
+        let behind = session.figures().behind.as_secs_f64();
+        ui.label(
+            RichText::new(format!("behind real time by {}", number::seconds(behind)))
+                .color(style::AMBER),
+        )
+        .on_hover_text(
+            "Steps take longer than the time they stand for, so the rest was given up. \
+             Lower the rate, or test collisions through the BVH.",
+        );
+    }
+}
+
+impl Ui {
+    /// One step by hand, measured.
+    pub(super) fn step(&self, session: &mut Session) {
+        let stopwatch = self.stopwatch;
+        session.step_once(|| stopwatch.map(|s| s.read()).unwrap_or_default());
+    }
+}

@@ -1,0 +1,61 @@
+//! What is drawn besides the bodies.
+
+use egui::{RichText, Slider};
+
+use super::field;
+use crate::session::Session;
+
+pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        if ui
+            .button("Frame")
+            .on_hover_text("Look at the selected body, or at everything (F)")
+            .clicked()
+        {
+            session.frame();
+        }
+        ui.checkbox(&mut session.display.grid, "Ground grid");
+    });
+    ui.horizontal(|ui| {
+        field::label(ui, "Velocity", "Blue arrows");
+        ui.checkbox(&mut session.display.all_velocities, "of every body")
+            .on_hover_text("Otherwise of the selected body");
+    });
+    ui.horizontal(|ui| {
+        field::label(ui, "Arrow", "Length of a velocity arrow");
+        ui.add(
+            Slider::new(&mut session.display.arrow_time, 0.01..=10.0)
+                .logarithmic(true)
+                .suffix(" s"),
+        )
+        .on_hover_text("An arrow shows how far its body goes in this time");
+    });
+    boxes(ui, session);
+}
+
+fn boxes(ui: &mut egui::Ui, session: &mut Session) {
+    ui.checkbox(&mut session.display.bvh.shown, "Bounding volume hierarchy")
+        .on_hover_text("Boxes around parts of a mesh, coloured by depth (B)");
+    if !session.display.bvh.shown {
+        return;
+    }
+    let levels = session.bvh_depth();
+    let nothing = session.selection().is_none() && !session.display.bvh.every_body;
+    let view = &mut session.display.bvh;
+    ui.horizontal(|ui| {
+        field::label(ui, "Boxes of", "Whose hierarchy is drawn");
+        ui.selectable_value(&mut view.every_body, false, "selected body");
+        ui.selectable_value(&mut view.every_body, true, "every body");
+    });
+    if nothing {
+        ui.label(RichText::new("No body is selected.").weak());
+    }
+    ui.horizontal(|ui| {
+        field::label(ui, "Depth", "0 is the box around the whole mesh");
+        ui.add_enabled(
+            !view.every_depth,
+            Slider::new(&mut view.depth, 0..=levels.saturating_sub(1)),
+        );
+        ui.checkbox(&mut view.every_depth, "all");
+    });
+}

@@ -1,0 +1,136 @@
+//! Keys: one table that is obeyed, listed below the picture and explained in a window.
+
+use egui::{Key, Panel, RichText};
+
+use super::Ui;
+use crate::session::Session;
+
+/// A key and what it does.
+struct Shortcut {
+    keys: &'static [Key],
+    label: &'static str,
+    meaning: &'static str,
+    act: fn(&mut Ui, &mut Session),
+}
+
+static SHORTCUTS: [Shortcut; 9] = [
+    Shortcut {
+        keys: &[Key::Space],
+        label: "Space",
+        meaning: "start / pause",
+        act: |_, session| session.toggle(),
+    },
+    Shortcut {
+        keys: &[Key::ArrowRight, Key::Period],
+        label: "→ .",
+        meaning: "single step",
+        act: |ui, session| ui.step(session),
+    },
+    Shortcut {
+        keys: &[Key::R],
+        label: "R",
+        meaning: "reset",
+        act: |_, session| session.reset(),
+    },
+    Shortcut {
+        keys: &[Key::F],
+        label: "F",
+        meaning: "frame",
+        act: |_, session| session.frame(),
+    },
+    Shortcut {
+        keys: &[Key::B],
+        label: "B",
+        meaning: "BVH boxes",
+        act: |_, session| session.display.bvh.shown ^= true,
+    },
+    Shortcut {
+        keys: &[Key::Delete],
+        label: "Del",
+        meaning: "delete body",
+        act: |_, session| session.delete_selected(),
+    },
+    Shortcut {
+        keys: &[Key::Escape],
+        label: "Esc",
+        meaning: "select nothing",
+        act: |_, session| session.select(None),
+    },
+    Shortcut {
+        keys: &[Key::P],
+        label: "P",
+        meaning: "side panel",
+        act: |ui, _| ui.panel_hidden ^= true,
+    },
+    Shortcut {
+        keys: &[Key::H],
+        label: "H",
+        meaning: "all keys",
+        act: |ui, _| ui.help ^= true,
+    },
+];
+
+static GESTURES: [(&str, &str); 6] = [
+    ("Click", "select a body"),
+    ("Drag left or right", "orbit"),
+    ("Drag middle, Shift + drag", "pan"),
+    ("Wheel", "zoom"),
+    ("Drop a file", "add a mesh or open a scene"),
+    ("Drag a number", "change it; click to type"),
+];
+
+/// Obeys the keys pressed, unless they are typed into a field.
+pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session) {
+    if ctx.egui_wants_keyboard_input() {
+        return;
+    }
+    for shortcut in &SHORTCUTS {
+        let pressed = ctx.input(|i| {
+            // Ctrl and Alt belong to the system and to egui.
+            !i.modifiers.ctrl
+                && !i.modifiers.alt
+                && !i.modifiers.command
+                && shortcut.keys.iter().any(|&key| i.key_pressed(key))
+        });
+        if pressed {
+            (shortcut.act)(state, session);
+        }
+    }
+}
+
+/// The line below the picture.
+pub(super) fn show_line(root: &mut egui::Ui) {
+    Panel::bottom("keys").show(root, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 5.0;
+            for shortcut in &SHORTCUTS {
+                ui.label(RichText::new(shortcut.label).small().strong());
+                ui.label(RichText::new(shortcut.meaning).small().weak());
+                ui.add_space(6.0);
+            }
+        });
+    });
+}
+
+/// The window that lists everything.
+pub(super) fn show_help(ctx: &egui::Context, open: &mut bool) {
+    egui::Window::new("Keys and mouse")
+        .open(open)
+        .collapsible(false)
+        .resizable(false)
+        .pivot(egui::Align2::CENTER_CENTER)
+        .default_pos(ctx.content_rect().center())
+        .show(ctx, |ui| {
+            egui::Grid::new("keys")
+                .num_columns(2)
+                .spacing([24.0, 4.0])
+                .show(ui, |ui| {
+                    let keys = SHORTCUTS.iter().map(|s| (s.label, s.meaning));
+                    for (what, meaning) in keys.chain(GESTURES) {
+                        ui.label(RichText::new(what).strong());
+                        ui.label(meaning);
+                        ui.end_row();
+                    }
+                });
+        });
+}

@@ -1,0 +1,98 @@
+//! Figures of the running world.
+
+use egui::RichText;
+
+use super::{field, style};
+use crate::number;
+use crate::session::Session;
+
+pub(super) fn show(ui: &mut egui::Ui, session: &Session) {
+    ui.spacing_mut().item_spacing.y = 2.0;
+    let (world, figures, drift) = (session.world(), session.figures(), session.drift());
+    let none = || "–".to_owned();
+    field::figure(ui, "Time", "Simulated time", format!("{:.3} s", world.time()));
+    field::figure(
+        ui,
+        "Steps",
+        "Steps since the start, and those taken in the last frame",
+        format!("{}   {} a frame", world.steps(), figures.steps_per_frame),
+    );
+    field::figure(
+        ui,
+        "Step cost",
+        "Real time that one step takes, averaged over the last ones",
+        figures.cost.seconds().map_or_else(none, number::seconds),
+    );
+    field::figure(
+        ui,
+        "Frame",
+        "Real time from one picture to the next while running",
+        figures.frame.seconds().map_or_else(none, number::seconds),
+    );
+    field::figure(
+        ui,
+        "Behind",
+        "Real time given up since the start because steps came too late",
+        number::seconds(figures.behind.as_secs_f64()),
+    );
+    field::figure(
+        ui,
+        "Energy",
+        "Kinetic energy of all bodies",
+        format!("{} J", number::figure(world.kinetic_energy())),
+    );
+    field::figure(
+        ui,
+        "  drift",
+        "Relative error of the energy since the start or the last edit; what the forces do is \
+         taken into account",
+        number::relative(drift.energy),
+    );
+    let p = world.momentum();
+    field::figure(
+        ui,
+        "Momentum",
+        "Sum of mass times velocity, kg m/s",
+        [p.x, p.y, p.z].map(number::figure).join("  ") + " kg m/s",
+    );
+    field::figure(
+        ui,
+        "  drift",
+        "Relative error of the momentum since the start or the last edit; what the forces do is \
+         taken into account",
+        number::relative(drift.momentum),
+    );
+    impacts(ui, session);
+}
+
+fn impacts(ui: &mut egui::Ui, session: &Session) {
+    let world = session.world();
+    field::figure(
+        ui,
+        "Impacts",
+        "Collisions answered since the start",
+        world.impacts().to_string(),
+    );
+    let name = |i: usize| session.scene().bodies.get(i).map_or("?", |b| b.name.as_str());
+    if let Some(impact) = world.last_impact() {
+        let (a, b) = impact.bodies;
+        field::figure(
+            ui,
+            "  last",
+            "The last collision: when, between which bodies, and the impulse exchanged",
+            format!(
+                "{:.3} s  {} – {}  {} N s",
+                impact.time,
+                name(a),
+                name(b),
+                number::figure(impact.impulse)
+            ),
+        );
+    }
+    for &(a, b) in world.overlapping() {
+        let text = format!("{} and {} began inside each other", name(a), name(b));
+        ui.label(RichText::new(text).color(style::AMBER)).on_hover_text(
+            "They move freely until they have parted. Reset and move them apart to let them collide.",
+        );
+    }
+}

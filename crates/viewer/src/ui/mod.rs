@@ -1,0 +1,93 @@
+//! The control panel: what the person sees around the picture and can do to the session.
+//!
+//! Each panel is one file with one `show`. Panels call the session's methods and nothing else;
+//! the picture arrives as a texture, drawn elsewhere.
+
+mod banner;
+mod bar;
+mod body;
+mod dialog;
+mod display;
+mod field;
+mod keys;
+mod live;
+mod scene;
+mod simulation;
+mod style;
+mod viewport;
+
+use egui::{CollapsingHeader, Panel, RichText, ScrollArea};
+
+use crate::session::Session;
+use crate::stopwatch::Stopwatch;
+
+pub use style::apply as apply_style;
+
+/// What the control panel remembers between frames.
+#[derive(Default)]
+pub struct Ui {
+    help: bool,
+    panel_hidden: bool,
+    files: scene::Files,
+    /// Reads real time, to measure steps taken by hand.
+    stopwatch: Option<Stopwatch>,
+}
+
+impl Ui {
+    /// A control panel that measures with `stopwatch`.
+    pub fn new(stopwatch: Stopwatch) -> Self {
+        Self {
+            stopwatch: Some(stopwatch),
+            ..Self::default()
+        }
+    }
+
+    /// Lays out one frame; returns the rectangle of the picture, in points.
+    pub fn show(
+        &mut self,
+        root: &mut egui::Ui,
+        session: &mut Session,
+        picture: egui::TextureId,
+    ) -> egui::Rect {
+        self.files.poll(root.ctx(), session);
+        keys::handle(root.ctx(), self, session);
+        bar::show(root, self, session);
+        keys::show_line(root);
+        if !self.panel_hidden {
+            self.side_panel(root, session);
+        }
+        let rect = viewport::show(root, session, picture);
+        banner::show(root.ctx(), rect, session);
+        keys::show_help(root.ctx(), &mut self.help);
+        rect
+    }
+
+    fn side_panel(&mut self, root: &mut egui::Ui, session: &mut Session) {
+        Panel::right("panel")
+            .default_size(328.0)
+            .min_size(290.0)
+            .max_size(0.6 * root.available_width().max(484.0))
+            .show(root, |ui| {
+                ScrollArea::vertical()
+                    .auto_shrink([false, false])
+                    .show(ui, |ui| {
+                        section(ui, "Scene", |ui| scene::show(ui, &mut self.files, session));
+                        section(ui, "Simulation", |ui| simulation::show(ui, session));
+                        section(ui, "Selected body", |ui| body::show(ui, session));
+                        section(ui, "Live", |ui| live::show(ui, session));
+                        section(ui, "Display", |ui| display::show(ui, session));
+                    });
+            });
+    }
+}
+
+fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui)) {
+    CollapsingHeader::new(RichText::new(title).heading())
+        .default_open(true)
+        .show_unindented(ui, |ui| {
+            ui.add_space(2.0);
+            contents(ui);
+            ui.add_space(8.0);
+        });
+    ui.separator();
+}

@@ -1,0 +1,97 @@
+//! The picture, and what the mouse does on it.
+
+use egui::{Align2, Color32, CornerRadius, PointerButton, Pos2, Rect, Sense, TextureId};
+
+use super::style;
+use crate::session::Session;
+
+/// Turn of the camera by a drag across the whole height of the picture, radians.
+const TURN: f64 = 4.0;
+/// Growth of the zoom by a wheel's travel of one point.
+const ZOOM: f64 = 0.003;
+
+/// Shows the picture in the room that is left; returns its rectangle, in points.
+pub(super) fn show(ui: &mut egui::Ui, session: &mut Session, picture: TextureId) -> Rect {
+    let rect = ui.available_rect_before_wrap();
+    let response = ui.allocate_rect(rect, Sense::click_and_drag());
+    let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+    ui.painter().image(picture, rect, whole, Color32::WHITE);
+    if rect.width() < 1.0 || rect.height() < 1.0 {
+        return rect;
+    }
+    let aspect = f64::from(rect.width() / rect.height());
+    if response.clicked_by(PointerButton::Primary)
+        && let Some(at) = response.interact_pointer_pos()
+    {
+        let at = (at - rect.center()) / rect.size();
+        let (origin, direction) =
+            session
+                .camera
+                .ray(2.0 * f64::from(at.x), -2.0 * f64::from(at.y), aspect);
+        session.pick(origin, direction);
+    }
+    drag(ui, &response, session);
+    if response.hovered() {
+        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+        let factor = (ZOOM * f64::from(scroll)).exp() * f64::from(pinch);
+        session.camera.zoom(factor);
+    }
+    name_selected(ui, rect, aspect, session);
+    offer_drop(ui, rect);
+    rect
+}
+
+fn drag(ui: &egui::Ui, response: &egui::Response, session: &mut Session) {
+    if !response.dragged() {
+        return;
+    }
+    let moved = response.drag_delta() / response.rect.height();
+    let (dx, dy) = (f64::from(moved.x), f64::from(moved.y));
+    if response.dragged_by(PointerButton::Middle) || ui.input(|i| i.modifiers.shift) {
+        session.camera.pan(-dx, dy);
+        ui.set_cursor_icon(egui::CursorIcon::Move);
+    } else {
+        session.camera.orbit(-TURN * dx, TURN * dy);
+        ui.set_cursor_icon(egui::CursorIcon::Grabbing);
+    }
+}
+
+/// Writes the selected body's name above it.
+fn name_selected(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
+    let Some(body) = session.selected() else {
+        return;
+    };
+    let Some([x, y]) = session
+        .selected_top()
+        .and_then(|top| session.camera.project(top, aspect))
+    else {
+        return;
+    };
+    let at = rect.center() + 0.5 * egui::vec2(x as f32, -y as f32) * rect.size();
+    let painter = ui.painter().with_clip_rect(rect);
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let text = painter.layout_no_wrap(body.name.clone(), font, style::BLUE);
+    let place = Align2::CENTER_BOTTOM.anchor_size(at - egui::vec2(0.0, 6.0), text.size());
+    painter.rect_filled(
+        place.expand2(egui::vec2(5.0, 1.0)),
+        CornerRadius::same(4),
+        Color32::from_black_alpha(150),
+    );
+    painter.galley(place.min, text, style::BLUE);
+}
+
+/// Says what happens to files that hang over the window.
+fn offer_drop(ui: &egui::Ui, rect: Rect) {
+    if ui.input(|i| i.raw.hovered_files.is_empty()) {
+        return;
+    }
+    ui.painter()
+        .rect_filled(rect, CornerRadius::ZERO, Color32::from_black_alpha(160));
+    ui.painter().text(
+        rect.center(),
+        Align2::CENTER_CENTER,
+        "Drop a mesh to add it, or a scene (.toml) to open it",
+        egui::TextStyle::Heading.resolve(ui.style()),
+        Color32::WHITE,
+    );
+}
