@@ -1,0 +1,21 @@
+//! Do two meshes meet, where, and which features touch first?
+//!
+//! All of it is about two meshes, the second displaced by an `offset` in the first one's frame.
+//! Its vertices are *placed*, `fl64(f64(v) + offset)`, the same value wherever a vertex is used,
+//! and every decision is exact for the placed vertices.
+
+mod hit;
+pub mod naive;
+pub mod predicates;
+pub mod touch;
+pub mod tree;
+
+pub use hit::{Hit, Side};
+pub use touch::{Feature, Touch};
+
+use glam::{DVec3, Vec3};
+
+/// A vertex of the second mesh in the first one's frame.
+fn place(v: Vec3, offset: DVec3) -> DVec3 {
+    v.as_dvec3() + offset
+}

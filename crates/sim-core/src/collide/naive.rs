@@ -1,0 +1,70 @@
+//! The plain way: every edge of one mesh against every triangle of the other, both ways.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+use glam::DVec3;
+
+use super::{Hit, Side, place, predicates::segment_meets_triangle};
+use crate::Mesh;
+
+/// Whether the surfaces of two meshes meet, the second displaced by `offset` (m). Stops at the
+/// first hit.
+///
+/// One direction would miss a spike: a corner of the second that pierces a face of the first
+/// between its edges.
+pub fn intersect(first: &Mesh, second: &Mesh, offset: DVec3) -> bool {
+    each_hit(first, second, offset, |_| ControlFlow::Break(())).is_break()
+}
+
+/// Every edge of one mesh in a triangle of the other, the first mesh's edges first, by edge and
+/// face.
+pub fn hits(first: &Mesh, second: &Mesh, offset: DVec3) -> Vec<Hit> {
+    let mut hits = Vec::new();
+    let _ = each_hit(first, second, offset, |pair| {
+        hits.push(pair.measure());
+        ControlFlow::Continue(())
+    });
+    hits
+}
+
+/// An edge and the triangle it meets.
+struct Pair {
+    edge: (Side, u32, [DVec3; 2]),
+    face: (u32, [DVec3; 3]),
+}
+
+impl Pair {
+    fn measure(self) -> Hit {
+        Hit::new(self.edge, self.face)
+    }
+}
+
+fn each_hit(
+    first: &Mesh,
+    second: &Mesh,
+    offset: DVec3,
+    mut found: impl FnMut(Pair) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let first_vertices: Vec<DVec3> = first.vertices().iter().map(|v| v.as_dvec3()).collect();
+    let second_vertices: Vec<DVec3> =
+        second.vertices().iter().map(|&v| place(v, offset)).collect();
+    let ways = [
+        (Side::First, first, &first_vertices, second, &second_vertices),
+        (Side::Second, second, &second_vertices, first, &first_vertices),
+    ];
+    for (side, edges_of, edge_vertices, faces_of, face_vertices) in ways {
+        for (edge, ends) in edges_of.edges().iter().enumerate() {
+            let [p, q] = ends.map(|v| edge_vertices[v as usize]);
+            for (face, corners) in faces_of.triangles().iter().enumerate() {
+                let corners = corners.map(|v| face_vertices[v as usize]);
+                if segment_meets_triangle(p, q, corners) {
+                    found(Pair {
+                        edge: (side, edge as u32, [p, q]),
+                        face: (face as u32, corners),
+                    })?;
+                }
+            }
+        }
+    }
+    ControlFlow::Continue(())
+}

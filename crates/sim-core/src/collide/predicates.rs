@@ -1,0 +1,200 @@
+//! Exact answers about points, segments and triangles.
+//!
+//! Every decision is the sign of a determinant, computed exactly (Shewchuk 1997, "Adaptive
+//! precision floating-point arithmetic and fast robust geometric predicates", sec. 4). Sets are
+//! closed: what touches, meets. No tolerance exists, so two triangles that share an edge never
+//! disagree about it, and nothing slips between them.
+//!
+//! Coordinates must be finite, with differences between 1e-97 and 1e102 in size or zero, so that
+//! products of three neither overflow nor underflow.
+
+use glam::DVec3;
+use robust::{Coord, Coord3D};
+
+/// Positive if `d` sees `a`, `b`, `c` clockwise, negative if counter-clockwise, zero if the four
+/// points lie in a plane: the exact sign of `det(a - d, b - d, c - d)`.
+pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
+    let at = |p: DVec3| Coord3D {
+        x: p.x,
+        y: p.y,
+        z: p.z,
+    };
+    robust::orient3d(at(a), at(b), at(c), at(d))
+}
+
+/// Whether the closed segment `pq` and the closed triangle `abc` share a point.
+///
+/// Segment and triangle may be degenerate (a point, a segment).
+pub fn segment_meets_triangle(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+    let sp = orient3d(a, b, c, p);
+    let sq = orient3d(a, b, c, q);
+    if (sp > 0.0 && sq > 0.0) || (sp < 0.0 && sq < 0.0) {
+        return false;
+    }
+    if sp == 0.0 && sq == 0.0 {
+        return coplanar_segment_meets_triangle(p, q, [a, b, c]);
+    }
+    // The segment reaches the plane; its line passes inside if it has all edges on one side.
+    let s1 = orient3d(p, q, a, b);
+    let s2 = orient3d(p, q, b, c);
+    let s3 = orient3d(p, q, c, a);
+    same_side(s1, s2, s3)
+}
+
+/// Whether two closed triangles share a point.
+///
+/// They do if and only if an edge of one meets the other: where two triangles cross, the segment
+/// they share ends on an edge of either, and where one lies in the other's plane, edges cross or
+/// lie inside.
+pub fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
+    let edge_of_one_meets = |s: [DVec3; 3], t: [DVec3; 3]| {
+        (0..3).any(|i| segment_meets_triangle(s[i], s[(i + 1) % 3], t))
+    };
+    edge_of_one_meets(s, t) || edge_of_one_meets(t, s)
+}
+
+/// All signs in `[0, ∞)` or all in `(-∞, 0]`.
+fn same_side(s1: f64, s2: f64, s3: f64) -> bool {
+    (s1 >= 0.0 && s2 >= 0.0 && s3 >= 0.0) || (s1 <= 0.0 && s2 <= 0.0 && s3 <= 0.0)
+}
+
+fn coplanar_segment_meets_triangle(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+    let edges = [(a, b), (b, c), (c, a)];
+    let inside = Axis::ALL
+        .into_iter()
+        .find(|axis| axis.orient(a, b, c) != 0.0)
+        .is_some_and(|axis| {
+            let inside = |x| {
+                let [s1, s2, s3] = edges.map(|(a, b)| axis.orient(a, b, x));
+                same_side(s1, s2, s3)
+            };
+            inside(p) || inside(q)
+        });
+    inside || edges.into_iter().any(|(a, b)| segments_meet(p, q, a, b))
+}
+
+/// Whether the closed segments `pq` and `ab` share a point; either may be a point.
+pub fn segments_meet(p: DVec3, q: DVec3, a: DVec3, b: DVec3) -> bool {
+    if orient3d(p, q, a, b) != 0.0 {
+        return false;
+    }
+    // Some three of the points span the plane of all four; along an axis in which those three
+    // keep area, the plane projects one to one, and signs in the projection decide.
+    let triples = [(p, q, a), (p, q, b), (a, b, p), (a, b, q)];
+    let axis = Axis::ALL
+        .into_iter()
+        .find(|axis| triples.iter().any(|&(x, y, z)| axis.orient(x, y, z) != 0.0));
+    match axis {
+        Some(axis) => {
+            let [pa, pb, ap, aq] = triples.map(|(x, y, z)| axis.orient(x, y, z));
+            let apart = |s: f64, t: f64| (s > 0.0 && t > 0.0) || (s < 0.0 && t < 0.0);
+            !apart(pa, pb) && !apart(ap, aq)
+        }
+        // All on one line, where lexicographic order is order along the line.
+        None => {
+            let before = |s: DVec3, t: DVec3| (s.x, s.y, s.z) <= (t.x, t.y, t.z);
+            let sorted = |s: DVec3, t: DVec3| if before(s, t) { (s, t) } else { (t, s) };
+            let ((p, q), (a, b)) = (sorted(p, q), sorted(a, b));
+            before(p, b) && before(a, q)
+        }
+    }
+}
+
+/// The axis along which a plane is projected.
+#[derive(Clone, Copy)]
+enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+impl Axis {
+    const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+
+    /// The exact sign of the projected triangle's area.
+    fn orient(self, a: DVec3, b: DVec3, c: DVec3) -> f64 {
+        let at = |p: DVec3| match self {
+            Axis::X => Coord { x: p.y, y: p.z },
+            Axis::Y => Coord { x: p.z, y: p.x },
+            Axis::Z => Coord { x: p.x, y: p.y },
+        };
+        robust::orient2d(at(a), at(b), at(c))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const T: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
+
+    fn v(x: f64, y: f64, z: f64) -> DVec3 {
+        DVec3::new(x, y, z)
+    }
+
+    #[test]
+    fn segments_against_a_triangle() {
+        let tiny = 1e-90;
+        let cases = [
+            ("through the middle", v(0.2, 0.2, -1.0), v(0.2, 0.2, 1.0), true),
+            ("beside", v(0.6, 0.6, -1.0), v(0.6, 0.6, 1.0), false),
+            ("ends above", v(0.2, 0.2, 1e-90), v(0.2, 0.2, 1.0), false),
+            ("ends on the face", v(0.2, 0.2, 0.0), v(0.2, 0.2, 1.0), true),
+            ("through a corner", v(0.0, 0.0, -1.0), v(0.0, 0.0, 1.0), true),
+            ("through an edge", v(0.5, 0.5, -1.0), v(0.5, 0.5, 1.0), true),
+            ("an ulp past the edge", v(0.5, 0.5 + f64::EPSILON, -1.0), v(0.5, 0.5 + f64::EPSILON, 1.0), false),
+            ("in the plane, inside", v(0.1, 0.1, 0.0), v(0.2, 0.2, 0.0), true),
+            ("in the plane, across", v(-1.0, 0.2, 0.0), v(2.0, 0.2, 0.0), true),
+            ("in the plane, beside", v(-1.0, -0.1, 0.0), v(2.0, -0.1, 0.0), false),
+            ("in the plane, along an edge", v(-1.0, 0.0, 0.0), v(2.0, 0.0, 0.0), true),
+            ("in the plane, short of the edge", v(-1.0, 0.0, 0.0), v(-0.5, 0.0, 0.0), false),
+            ("in the plane, touching a corner", v(-1.0, 0.0, 0.0), v(0.0, 0.0, 0.0), true),
+            ("parallel, a little above", v(-1.0, 0.2, tiny), v(2.0, 0.2, tiny), false),
+            ("a point inside", v(0.2, 0.2, 0.0), v(0.2, 0.2, 0.0), true),
+            ("a point outside", v(0.2, 0.2, 1.0), v(0.2, 0.2, 1.0), false),
+        ];
+        for (what, p, q, expected) in cases {
+            for t in [T, [T[1], T[2], T[0]], [T[2], T[1], T[0]]] {
+                assert_eq!(segment_meets_triangle(p, q, t), expected, "{what}");
+                assert_eq!(segment_meets_triangle(q, p, t), expected, "{what}, reversed");
+                let turn = |p: DVec3| v(p.y, p.z, p.x);
+                assert_eq!(segment_meets_triangle(turn(p), turn(q), t.map(turn)), expected, "{what}, turned");
+            }
+        }
+    }
+
+    #[test]
+    fn triangles_without_area_are_segments_and_points() {
+        let line = [DVec3::ZERO, v(1.0, 1.0, 1.0), v(0.5, 0.5, 0.5)];
+        assert!(segment_meets_triangle(v(0.25, 0.25, 0.0), v(0.25, 0.25, 1.0), line));
+        assert!(!segment_meets_triangle(v(0.25, 0.26, 0.0), v(0.25, 0.26, 1.0), line));
+        assert!(segment_meets_triangle(v(-1.0, -1.0, -1.0), DVec3::ZERO, line));
+        assert!(!segment_meets_triangle(v(-1.0, -1.0, -1.0), v(-0.1, -0.1, -0.1), line));
+        let point = [DVec3::ONE; 3];
+        assert!(segment_meets_triangle(DVec3::ZERO, v(2.0, 2.0, 2.0), point));
+        assert!(!segment_meets_triangle(DVec3::ZERO, v(0.5, 0.5, 0.5), point));
+        assert!(segment_meets_triangle(DVec3::ONE, DVec3::ONE, point));
+        assert!(!segment_meets_triangle(DVec3::X, DVec3::X, point));
+    }
+
+    #[test]
+    fn a_triangle_within_another_meets_it() {
+        let inner = [v(0.2, 0.2, 0.0), v(0.3, 0.2, 0.0), v(0.2, 0.3, 0.0)];
+        assert!(triangles_meet(inner, T) && triangles_meet(T, inner));
+        let above = inner.map(|p| p + v(0.0, 0.0, 1e-60));
+        assert!(!triangles_meet(above, T) && !triangles_meet(T, above));
+    }
+
+    #[test]
+    fn an_edge_cannot_slip_between_two_triangles() {
+        // The line aims at points of the shared edge that are rounded off it, one way or the other.
+        let (a, b) = (v(0.1, 0.7, 0.3), v(0.9, -0.2, 0.4));
+        let left = [a, b, v(-1.0, -1.0, 0.0)];
+        let right = [b, a, v(2.0, 2.0, 0.1)];
+        for i in 0..1000 {
+            let aim = a.lerp(b, f64::from(i) / 999.0);
+            let (p, q) = (aim + v(0.01, 0.02, 1.0), aim - v(0.01, 0.02, 1.0));
+            assert!(segment_meets_triangle(p, q, left) || segment_meets_triangle(p, q, right));
+        }
+    }
+}

@@ -1,0 +1,237 @@
+//! The feature of two moving meshes that touches first, and the contact normal that it gives.
+//!
+//! An impulse needs one normal where many edges and faces meet. The normal is that of the feature
+//! that touches first along the relative motion of the step, because it is what stops the bodies;
+//! what overlaps at the end of the step depends on the length of the step instead.
+//!
+//! - A vertex in a face gives the face's normal, two crossing edges give their common
+//!   perpendicular; it is turned to point from the first mesh to the second, against the motion.
+//! - Of features that touch at the same time, to within the rounding of the times, a vertex in a
+//!   face goes before two edges, since a face has a tangent plane of its own where the
+//!   perpendicular of two edges that end there may point anywhere. Of those left the one that
+//!   opposes the motion most goes first, then the one that comes first in the meshes.
+//!
+//! So a cube that meets a cube face-on gets the face's normal and bounces straight back, though
+//! four corners, and edges with edges, touch at once.
+//!
+//! The motion is a translation, so every time of contact solves a linear equation. With the
+//! second mesh moving by `d` and `h(x) = orient(a, b, c, x)`:
+//!
+//! ```text
+//! vertex x in face abc:     t = -h(x) / (n·d),   n = (b-a) × (c-a)
+//! edges a + s u, c + q w:   t = u·(w×m) / D,  s = m·(w×e) / D,  q = -u·(m×e) / D,
+//!                           m = c - a,  e = -d,  D = u·(w×e)
+//! ```
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+use glam::DVec3;
+
+use super::{place, tree::each_pair};
+use crate::bvh::{Bvh, Triangle};
+
+/// What touches what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Feature {
+    /// A vertex of the first mesh in a face of the second.
+    VertexFace {
+        /// Vertex of the first mesh.
+        vertex: u32,
+        /// Triangle of the second mesh.
+        face: u32,
+    },
+    /// A vertex of the second mesh in a face of the first.
+    FaceVertex {
+        /// Triangle of the first mesh.
+        face: u32,
+        /// Vertex of the second mesh.
+        vertex: u32,
+    },
+    /// An edge of each.
+    EdgeEdge {
+        /// Edge of the first mesh.
+        first: u32,
+        /// Edge of the second mesh.
+        second: u32,
+    },
+}
+
+/// The first contact along a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Part of the motion done at the contact, 0 to 1 (rounded).
+    pub time: f64,
+    /// Where, in the first mesh's frame, m (rounded).
+    pub point: DVec3,
+    /// Unit normal, from the first mesh to the second.
+    pub normal: DVec3,
+    /// What touches.
+    pub feature: Feature,
+}
+
+/// The first contact of two meshes that are apart with the second displaced by `offset` and then
+/// moving by `motion` (m), both in the first one's frame. `None` if they do not touch on the way.
+pub fn first_touch(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> Option<Touch> {
+    let mut search = Search::new(offset, motion)?;
+    let _ = each_pair(
+        first,
+        second,
+        |a, b| a.bounds.meets_swept(&b.bounds, offset, motion),
+        |s, t| {
+            search.triangles(s, t);
+            ControlFlow::Continue(())
+        },
+    );
+    search.best()
+}
+
+/// Candidates for the first contact.
+struct Search {
+    offset: DVec3,
+    motion: DVec3,
+    direction: DVec3,
+    /// An upper bound of the earliest time.
+    earliest: f64,
+    /// Contacts that may be the earliest, with the rounding error of their times.
+    found: Vec<(Touch, f64)>,
+}
+
+/// Bounds the rounding error of a triple product, relative to that of absolute values: three
+/// differences, two multiplications, and the sums, doubled for the rounding of the bound itself.
+const TRIPLE_ERROR: f64 = 16.0 * f64::EPSILON;
+
+impl Search {
+    fn new(offset: DVec3, motion: DVec3) -> Option<Search> {
+        let direction = motion.try_normalize()?;
+        Some(Search {
+            offset,
+            motion,
+            direction,
+            earliest: 1.0,
+            found: Vec::new(),
+        })
+    }
+
+    fn triangles(&mut self, s: &Triangle, t: &Triangle) {
+        let first = s.corners.map(|v| v.as_dvec3());
+        let second = t.corners.map(|v| place(v, self.offset));
+        for i in (0..3).filter(|&i| t.owns_vertex[i]) {
+            let feature = Feature::FaceVertex {
+                face: s.face,
+                vertex: t.vertices[i],
+            };
+            self.vertex_face(second[i], first, self.motion, feature);
+        }
+        for i in (0..3).filter(|&i| s.owns_vertex[i]) {
+            let feature = Feature::VertexFace {
+                vertex: s.vertices[i],
+                face: t.face,
+            };
+            self.vertex_face(first[i], second, -self.motion, feature);
+        }
+        for i in (0..3).filter(|&i| s.owns_edge[i]) {
+            for j in (0..3).filter(|&j| t.owns_edge[j]) {
+                let feature = Feature::EdgeEdge {
+                    first: s.edges[i],
+                    second: t.edges[j],
+                };
+                let ends = [first[i], first[(i + 1) % 3], second[j], second[(j + 1) % 3]];
+                self.edge_edge(ends, feature);
+            }
+        }
+    }
+
+    /// A point moving by `d` against a triangle at rest.
+    fn vertex_face(&mut self, x: DVec3, [a, b, c]: [DVec3; 3], d: DVec3, feature: Feature) {
+        let normal = (b - a).cross(c - a);
+        let (height, height_error) = triple(b - a, c - a, x - a);
+        let (fall, fall_error) = triple(b - a, c - a, d);
+        let sides = [(a, b), (b, c), (c, a)].map(|(a, b)| triple(d, a - x, b - x));
+        let outside = |sign: f64| sides.iter().any(|&(s, error)| sign * s > error);
+        if outside(1.0) && outside(-1.0) {
+            return;
+        }
+        let moving = matches!(feature, Feature::FaceVertex { .. });
+        let place = |t: f64| if moving { x + t * d } else { x };
+        self.add((-height, height_error), (fall, fall_error), normal, place, feature);
+    }
+
+    fn edge_edge(&mut self, [a, b, c, e]: [DVec3; 4], feature: Feature) {
+        let (u, w, m, back) = (b - a, e - c, c - a, -self.motion);
+        let (det, det_error) = triple(u, w, back);
+        let (time, time_error) = triple(u, w, m);
+        let (on_first, on_first_error) = triple(m, w, back);
+        let (on_second, on_second_error) = triple(m, u, back);
+        let within = |x: f64, error: f64| {
+            let x = if det < 0.0 { -x } else { x };
+            x >= -error && x <= det.abs() + error + det_error
+        };
+        if !within(on_first, on_first_error) || !within(on_second, on_second_error) {
+            return;
+        }
+        let place = |_| a + (on_first / det).clamp(0.0, 1.0) * u;
+        self.add((time, time_error), (det, det_error), u.cross(w), place, feature);
+    }
+
+    /// Notes the contact at time `numerator / denominator`, if it may be the earliest.
+    fn add(
+        &mut self,
+        (numerator, numerator_error): (f64, f64),
+        (denominator, denominator_error): (f64, f64),
+        normal: DVec3,
+        place: impl Fn(f64) -> DVec3,
+        feature: Feature,
+    ) {
+        // Motion along the feature never enters it.
+        if denominator.abs() <= denominator_error {
+            return;
+        }
+        let time = numerator / denominator;
+        let error = (numerator_error + time.abs() * denominator_error) / denominator.abs();
+        if time < -error || time - error > self.earliest {
+            return;
+        }
+        let Some(normal) = normal.try_normalize() else {
+            return;
+        };
+        let time = time.clamp(0.0, 1.0);
+        self.earliest = self.earliest.min(time + error);
+        let against = if normal.dot(self.motion) < 0.0 { normal } else { -normal };
+        let touch = Touch {
+            time,
+            point: place(time),
+            normal: against,
+            feature,
+        };
+        self.found.push((touch, error));
+    }
+
+    fn best(mut self) -> Option<Touch> {
+        let earliest = self.earliest;
+        self.found.retain(|(touch, error)| touch.time - error <= earliest);
+        let rank = |touch: &Touch| {
+            let edges = matches!(touch.feature, Feature::EdgeEdge { .. });
+            (edges, touch.normal.dot(self.direction), touch.feature)
+        };
+        let first = |x: &Touch, y: &Touch| {
+            let ((edges_x, along_x, feature_x), (edges_y, along_y, feature_y)) = (rank(x), rank(y));
+            edges_x
+                .cmp(&edges_y)
+                .then(along_x.total_cmp(&along_y))
+                .then(feature_x.cmp(&feature_y))
+        };
+        self.found.into_iter().map(|(touch, _)| touch).min_by(first)
+    }
+}
+
+/// `a·(b × c)` and a bound of its rounding error.
+fn triple(a: DVec3, b: DVec3, c: DVec3) -> (f64, f64) {
+    let value = a.x * (b.y * c.z - b.z * c.y)
+        + a.y * (b.z * c.x - b.x * c.z)
+        + a.z * (b.x * c.y - b.y * c.x);
+    let (a, b, c) = (a.abs(), b.abs(), c.abs());
+    let size = a.x * (b.y * c.z + b.z * c.y)
+        + a.y * (b.z * c.x + b.x * c.z)
+        + a.z * (b.x * c.y + b.y * c.x);
+    (value, TRIPLE_ERROR * size)
+}

@@ -1,0 +1,96 @@
+//! Time integration: one fixed step from a state to the next.
+//!
+//! A [`Method`] is a value in the table [`METHODS`]. A new one is a file here and a line there;
+//! tests, benchmarks, scene files and the control panel go through the table.
+
+mod backward_euler;
+mod forward_euler;
+mod rk4;
+mod symplectic_euler;
+
+use alloc::vec::Vec;
+use glam::DVec3;
+
+/// A way to step `x' = v`, `v' = F/m` forward by `dt`.
+#[derive(Debug)]
+pub struct Method {
+    /// Name in scene files and on the command line.
+    pub name: &'static str,
+    /// Name in prose.
+    pub title: &'static str,
+    /// Order of convergence: the error at a fixed time shrinks as `dt` to this power.
+    pub order: u32,
+    /// Stability on `x'' = -ω² x`, in a few words.
+    pub stability: &'static str,
+    /// Where it is described.
+    pub source: &'static str,
+    /// Steps every body: reads the state before, writes the state after.
+    pub(crate) step: fn(&State, &mut State, &Forces<'_>, f64),
+}
+
+/// Every method, the course's four in its order.
+pub static METHODS: [&Method; 4] = [
+    &forward_euler::METHOD,
+    &backward_euler::METHOD,
+    &symplectic_euler::METHOD,
+    &rk4::METHOD,
+];
+
+impl Method {
+    /// The method of that name.
+    pub fn named(name: &str) -> Option<&'static Method> {
+        METHODS.into_iter().find(|m| m.name == name)
+    }
+}
+
+impl PartialEq for Method {
+    fn eq(&self, other: &Method) -> bool {
+        self.name == other.name
+    }
+}
+
+/// Motion of all bodies, in columns.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct State {
+    pub(crate) position: Vec<DVec3>,
+    pub(crate) velocity: Vec<DVec3>,
+}
+
+impl State {
+    pub(crate) fn push(&mut self, position: DVec3, velocity: DVec3) {
+        self.position.push(position);
+        self.velocity.push(velocity);
+    }
+
+    pub(crate) fn copy_from(&mut self, other: &State) {
+        self.position.copy_from_slice(&other.position);
+        self.velocity.copy_from_slice(&other.velocity);
+    }
+
+    /// The first body whose position or velocity is not finite.
+    pub(crate) fn not_finite(&self) -> Option<usize> {
+        let lost = |(x, v): (&DVec3, &DVec3)| !(x.is_finite() && v.is_finite());
+        self.position.iter().zip(&self.velocity).position(lost)
+    }
+
+    /// Writes the state that `step` makes of each body of `before` and its acceleration.
+    fn fill(
+        &mut self,
+        before: &State,
+        forces: &Forces<'_>,
+        step: impl Fn(DVec3, DVec3, DVec3) -> (DVec3, DVec3),
+    ) {
+        let start = before.position.iter().zip(&before.velocity);
+        let end = self.position.iter_mut().zip(&mut self.velocity);
+        let drive = forces.force.iter().zip(forces.mass);
+        for (((x, v), (x_end, v_end)), (&force, &mass)) in start.zip(end).zip(drive) {
+            (*x_end, *v_end) = step(*x, *v, force / mass);
+        }
+    }
+}
+
+/// What drives each body: its constant resultant force (N) on its mass (kg).
+pub(crate) struct Forces<'a> {
+    pub(crate) force: &'a [DVec3],
+    pub(crate) mass: &'a [f64],
+}

@@ -1,0 +1,75 @@
+//! What can be wrong with a mesh.
+
+use glam::{DVec3, Vec3};
+
+/// Why triangles do not make a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// There is no triangle.
+    #[error("the mesh has no triangle: a mesh needs at least one face")]
+    Empty,
+    /// A coordinate is NaN, infinite, or beyond the range of f32.
+    #[error("vertex {vertex} is not finite: coordinates must be numbers within ±3.4e38 m")]
+    NotFinite {
+        /// Index of the vertex, from 0.
+        vertex: usize,
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} uses vertex {index}, but there are {vertices} (indices from 0)")]
+    IndexOutOfRange {
+        /// Index of the triangle, from 0.
+        triangle: usize,
+        /// The vertex it asks for.
+        index: u32,
+        /// How many there are.
+        vertices: usize,
+    },
+    /// A triangle uses a vertex twice.
+    #[error("triangle {triangle} uses a vertex twice: drop it, or load through Mesh::repaired")]
+    RepeatedCorner {
+        /// Index of the triangle, from 0.
+        triangle: usize,
+    },
+    /// More triangles or vertices than 32-bit indices can name.
+    #[error("the mesh has {count} elements: at most 1,000,000,000 triangles and as many vertices")]
+    TooLarge {
+        /// How many there are.
+        count: usize,
+    },
+    /// A scale that is zero or not finite along some axis.
+    #[error("scale {scale} flattens the mesh: every component must be finite and not zero")]
+    Scale {
+        /// The scale asked for.
+        scale: DVec3,
+    },
+    /// A rotation that is not a unit quaternion.
+    #[error("the rotation is not a unit quaternion")]
+    Rotation,
+}
+
+/// Three edges for each triangle must still fit 32-bit indices.
+const MOST: usize = 1_000_000_000;
+
+/// Checks sizes, coordinates and indices.
+pub(super) fn validate(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
+    if triangles.is_empty() {
+        return Err(MeshError::Empty);
+    }
+    let count = vertices.len().max(triangles.len());
+    if count > MOST {
+        return Err(MeshError::TooLarge { count });
+    }
+    if let Some(vertex) = vertices.iter().position(|v| !v.is_finite()) {
+        return Err(MeshError::NotFinite { vertex });
+    }
+    for (triangle, corners) in triangles.iter().enumerate() {
+        if let Some(&index) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
+            return Err(MeshError::IndexOutOfRange {
+                triangle,
+                index,
+                vertices: vertices.len(),
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,51 @@
+//! Which edges there are, and how the triangles hang together on them.
+
+use alloc::{vec, vec::Vec};
+
+/// Edges of a mesh and what follows from counting their triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Topology {
+    pub(super) edges: Vec<[u32; 2]>,
+    pub(super) triangle_edges: Vec<[u32; 3]>,
+    pub(super) closed: bool,
+    pub(super) oriented: bool,
+}
+
+impl Topology {
+    pub(super) fn of(triangles: &[[u32; 3]]) -> Topology {
+        // Every side of every triangle, sorted so that the sides of one edge lie together.
+        let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * triangles.len());
+        for (triangle, &[a, b, c]) in triangles.iter().enumerate() {
+            for (side, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+                sides.push((edge_key(from, to), (3 * triangle + side) as u32));
+            }
+        }
+        sides.sort_unstable();
+
+        let mut topology = Topology {
+            edges: Vec::with_capacity(sides.len() / 2 + 1),
+            triangle_edges: vec![[0; 3]; triangles.len()],
+            closed: true,
+            oriented: true,
+        };
+        for run in sides.chunk_by(|x, y| x.0 == y.0) {
+            let edge = topology.edges.len() as u32;
+            topology.edges.push([(run[0].0 >> 32) as u32, run[0].0 as u32]);
+            let mut upward = 0;
+            for &(_, place) in run {
+                let (triangle, side) = (place as usize / 3, place as usize % 3);
+                topology.triangle_edges[triangle][side] = edge;
+                let corners = triangles[triangle];
+                upward += usize::from(corners[side] < corners[(side + 1) % 3]);
+            }
+            topology.closed &= run.len() == 2;
+            topology.oriented &= upward <= 1 && run.len() - upward <= 1;
+        }
+        topology
+    }
+}
+
+/// Orders edges by their lower vertex, then by their higher one.
+fn edge_key(from: u32, to: u32) -> u64 {
+    u64::from(from.min(to)) << 32 | u64::from(from.max(to))
+}

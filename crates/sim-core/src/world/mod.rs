@@ -1,0 +1,303 @@
+//! The running state of a scene.
+
+mod collision;
+mod error;
+
+use alloc::{sync::Arc, vec::Vec};
+use glam::DVec3;
+
+use crate::{
+    Body, Bvh, Mesh,
+    integrate::{Forces, Method, State},
+};
+pub use collision::Impact;
+pub use error::{StepError, WorldError};
+
+/// Bodies, their motion, and how it goes on.
+///
+/// ```
+/// use sim_core::{Body, DVec3, Settings, World};
+///
+/// let mut world = World::new(Settings::default())?;
+/// let stone = world.add(Body {
+///     velocity: DVec3::new(2.0, 3.0, 0.0),
+///     force: DVec3::new(0.0, -1.0, 0.0),
+///     ..Body::default()
+/// })?;
+/// for _ in 0..60 {
+///     world.step()?;
+/// }
+/// assert!((world.position(stone).x - 2.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct World {
+    settings: Settings,
+    current: State,
+    previous: State,
+    mass: Vec<f64>,
+    force: Vec<DVec3>,
+    /// The shape of each body, as an index of `shapes`; `None` is a point.
+    shape: Vec<Option<u32>>,
+    shapes: Vec<Shape>,
+    /// The bodies that have a shape.
+    solid: Vec<usize>,
+    /// Pairs that began in overlap, in order.
+    overlapping: Vec<(usize, usize)>,
+    steps: u64,
+    impacts: u64,
+    last_impact: Option<Impact>,
+    /// Time and step at which `dt` was last set: time since is steps times `dt`, without drift.
+    since: (f64, u64),
+}
+
+/// A mesh, shared by all bodies that have it, with its tree once one is needed.
+#[derive(Clone, Debug)]
+struct Shape {
+    mesh: Arc<Mesh>,
+    bvh: Option<Arc<Bvh>>,
+}
+
+/// How a world steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Length of a step, s; positive.
+    pub dt: f64,
+    /// Time integration.
+    pub method: &'static Method,
+    /// How overlap is detected.
+    pub collision: Collision,
+}
+
+/// How the overlap of two meshes is detected. Both give the same answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Collision {
+    /// Every edge of one against every triangle of the other.
+    Naive,
+    /// Through bounding volume hierarchies.
+    Bvh,
+}
+
+impl Default for Settings {
+    /// 60 Hz, symplectic Euler, through hierarchies.
+    fn default() -> Settings {
+        Settings {
+            dt: 1.0 / 60.0,
+            method: Method::named("symplectic-euler").expect("it is in the table"),
+            collision: Collision::Bvh,
+        }
+    }
+}
+
+impl World {
+    /// An empty world at time 0.
+    pub fn new(settings: Settings) -> Result<World, WorldError> {
+        error::check_dt(settings.dt)?;
+        Ok(World {
+            settings,
+            current: State::default(),
+            previous: State::default(),
+            mass: Vec::new(),
+            force: Vec::new(),
+            shape: Vec::new(),
+            shapes: Vec::new(),
+            solid: Vec::new(),
+            overlapping: Vec::new(),
+            steps: 0,
+            impacts: 0,
+            last_impact: None,
+            since: (0.0, 0),
+        })
+    }
+
+    /// Adds a body and returns its index: 0 for the first, and so on.
+    pub fn add(&mut self, body: Body) -> Result<usize, WorldError> {
+        let index = self.len();
+        error::check_vector(index, "position", body.position)?;
+        error::check_vector(index, "velocity", body.velocity)?;
+        error::check_vector(index, "force", body.force)?;
+        error::check_mass(index, body.mass)?;
+        self.current.push(body.position, body.velocity);
+        self.previous.push(body.position, body.velocity);
+        self.mass.push(body.mass);
+        self.force.push(body.force);
+        let shape = body.mesh.map(|mesh| self.share(mesh));
+        self.solid.extend(shape.map(|_| index));
+        self.shape.push(shape);
+        self.note_overlaps_of(index);
+        Ok(index)
+    }
+
+    /// Steps by `dt`: moves every body, then lets those that meet bounce.
+    ///
+    /// On an error the world stays as it was before the step.
+    pub fn step(&mut self) -> Result<(), StepError> {
+        core::mem::swap(&mut self.previous, &mut self.current);
+        self.integrate()?;
+        self.collide();
+        self.steps += 1;
+        Ok(())
+    }
+
+    fn integrate(&mut self) -> Result<(), StepError> {
+        let forces = Forces {
+            force: &self.force,
+            mass: &self.mass,
+        };
+        let Settings { dt, method, .. } = self.settings;
+        (method.step)(&self.previous, &mut self.current, &forces, dt);
+        if let Some(body) = self.current.not_finite() {
+            self.current.copy_from(&self.previous);
+            return Err(StepError::NotFinite {
+                body,
+                step: self.steps + 1,
+                method: method.title,
+            });
+        }
+        Ok(())
+    }
+
+    /// How many bodies there are.
+    pub fn len(&self) -> usize {
+        self.mass.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.mass.is_empty()
+    }
+
+    /// Simulated time, s.
+    pub fn time(&self) -> f64 {
+        let (time, step) = self.since;
+        time + (self.steps - step) as f64 * self.settings.dt
+    }
+
+    /// Steps done.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Impulses exchanged.
+    pub fn impacts(&self) -> u64 {
+        self.impacts
+    }
+
+    /// The latest exchange of an impulse.
+    pub fn last_impact(&self) -> Option<&Impact> {
+        self.last_impact.as_ref()
+    }
+
+    /// Pairs of bodies that were put into the world in overlap and have not parted since. They
+    /// may move apart, and an elastic impulse along their centres keeps them from moving closer.
+    pub fn overlapping(&self) -> &[(usize, usize)] {
+        &self.overlapping
+    }
+
+    /// Position of a body, m.
+    pub fn position(&self, body: usize) -> DVec3 {
+        self.current.position[body]
+    }
+
+    /// Position one step before, m.
+    pub fn previous_position(&self, body: usize) -> DVec3 {
+        self.previous.position[body]
+    }
+
+    /// Position between the last two states, m: 0 gives the previous one, 1 the current one.
+    pub fn interpolated(&self, body: usize, fraction: f64) -> DVec3 {
+        self.previous_position(body).lerp(self.position(body), fraction)
+    }
+
+    /// Velocity of a body, m/s.
+    pub fn velocity(&self, body: usize) -> DVec3 {
+        self.current.velocity[body]
+    }
+
+    /// Mass of a body, kg.
+    pub fn mass(&self, body: usize) -> f64 {
+        self.mass[body]
+    }
+
+    /// Resultant force on a body, N.
+    pub fn force(&self, body: usize) -> DVec3 {
+        self.force[body]
+    }
+
+    /// Mesh of a body, unless it is a point.
+    pub fn mesh(&self, body: usize) -> Option<&Arc<Mesh>> {
+        self.shape[body].map(|s| &self.shapes[s as usize].mesh)
+    }
+
+    /// Tree over a body's mesh, if one has been needed so far.
+    pub fn bvh(&self, body: usize) -> Option<&Bvh> {
+        self.shape[body].and_then(|s| self.shapes[s as usize].bvh.as_deref())
+    }
+
+    /// Builds the trees that no step has needed yet, to look at them or to aim rays.
+    pub fn build_bvhs(&mut self) {
+        for body in 0..self.len() {
+            self.need_bvh(body);
+        }
+    }
+
+    /// Places a body, m. It starts afresh from there: its previous position is the same.
+    pub fn set_position(&mut self, body: usize, position: DVec3) -> Result<(), WorldError> {
+        error::check_vector(body, "position", position)?;
+        self.current.position[body] = position;
+        self.previous.position[body] = position;
+        self.overlapping.retain(|&(i, j)| i != body && j != body);
+        self.note_overlaps_of(body);
+        Ok(())
+    }
+
+    /// Sets a velocity, m/s.
+    pub fn set_velocity(&mut self, body: usize, velocity: DVec3) -> Result<(), WorldError> {
+        error::check_vector(body, "velocity", velocity)?;
+        self.current.velocity[body] = velocity;
+        Ok(())
+    }
+
+    /// Sets a resultant force, N.
+    pub fn set_force(&mut self, body: usize, force: DVec3) -> Result<(), WorldError> {
+        error::check_vector(body, "force", force)?;
+        self.force[body] = force;
+        Ok(())
+    }
+
+    /// Sets a mass, kg.
+    pub fn set_mass(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
+        error::check_mass(body, mass)?;
+        self.mass[body] = mass;
+        Ok(())
+    }
+
+    /// How the world steps.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Changes how the world steps, from the next step on.
+    pub fn set_settings(&mut self, settings: Settings) -> Result<(), WorldError> {
+        error::check_dt(settings.dt)?;
+        self.since = (self.time(), self.steps);
+        self.settings = settings;
+        Ok(())
+    }
+
+    /// The index of a mesh among the shapes, which bodies with the same one share.
+    fn share(&mut self, mesh: Arc<Mesh>) -> u32 {
+        let known = self.shapes.iter().position(|s| Arc::ptr_eq(&s.mesh, &mesh));
+        known.unwrap_or_else(|| {
+            self.shapes.push(Shape { mesh, bvh: None });
+            self.shapes.len() - 1
+        }) as u32
+    }
+
+    fn need_bvh(&mut self, body: usize) {
+        if let Some(shape) = self.shape[body] {
+            let Shape { mesh, bvh } = &mut self.shapes[shape as usize];
+            bvh.get_or_insert_with(|| Arc::new(Bvh::build(mesh)));
+        }
+    }
+}
