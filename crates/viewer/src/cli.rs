@@ -73,10 +73,10 @@ struct SettingArgs {
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(METHODS.map(|m| m.name)))]
     method: Option<String>,
     /// Length of a step, s
-    #[arg(long, value_name = "SECONDS", value_parser = positive, conflicts_with = "rate")]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true, conflicts_with = "rate")]
     dt: Option<f64>,
     /// Steps per simulated second, Hz
-    #[arg(long, value_name = "HZ", value_parser = positive)]
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
     rate: Option<f64>,
     /// How meshes are tested for contact
     #[arg(long, value_name = "HOW")]

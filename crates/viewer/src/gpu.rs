@@ -81,7 +81,6 @@ impl Gpu {
         let mut ui = egui_wgpu::Renderer::new(&device, format, Default::default());
         let scene = Renderer::new(
             &device,
-            &queue,
             PICTURE,
             render::supported_samples(&adapter),
         );

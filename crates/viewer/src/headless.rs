@@ -1,6 +1,6 @@
 //! Runs and checks without a window, as text or JSON. Needs neither display nor graphics adapter.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 use std::path::Path;
 
 use scene::{Scene, mesh_file};
@@ -56,7 +56,7 @@ pub fn run(scene: &Scene, steps: u64, json: bool) -> Result<String, Failure> {
     for _ in 0..steps {
         world
             .step()
-            .map_err(|error| Failure::Run(step_error(scene, &world, &error)))?;
+            .map_err(|error| Failure::Run(step_error(scene, &error)))?;
     }
     let seconds_per_step = stopwatch.read().as_secs_f64() / steps.max(1) as f64;
     let report = RunReport::of(scene, &world);
@@ -86,14 +86,18 @@ pub fn check(file: &Path, json: bool) -> Result<String, Failure> {
     })
 }
 
-/// A failed step in words: which body of which scene, and when.
-pub fn step_error(scene: &Scene, world: &World, error: &StepError) -> String {
-    let body = scene.bodies.get(error.body).map_or("?", |body| &body.name);
-    format!(
-        "{}: step {} failed for {body}: {error}",
-        scene.name,
-        world.steps() + 1
-    )
+/// A failed step in words: in which scene, and the body by its name.
+pub fn step_error(scene: &Scene, error: &StepError) -> String {
+    let StepError::NotFinite { body, .. } = *error;
+    format!("scene `{}`: {}", scene.name, with_name(scene, body, error))
+}
+
+/// An error's message with a body's name in place of its index.
+pub fn with_name(scene: &Scene, body: usize, error: &impl Display) -> String {
+    let name = scene.bodies.get(body).map_or("?", |body| &body.name);
+    error
+        .to_string()
+        .replacen(&format!("body {body}"), &format!("body `{name}`"), 1)
 }
 
 fn to_json(report: &impl Serialize) -> String {

@@ -4,6 +4,8 @@
 use scene::SceneBody;
 use sim_core::{DVec3, WorldError};
 
+use crate::headless;
+
 use super::{Reference, Session, State};
 
 impl Session {
@@ -105,8 +107,8 @@ impl Session {
                 self.reference = Reference::of(&self.world);
             }
             Err(error) => {
-                let name = &self.scene.bodies[i].name;
-                self.notices.error(field, format!("{name}: {error}"));
+                let text = headless::with_name(&self.scene, i, &error);
+                self.notices.error(field, text);
             }
         }
     }

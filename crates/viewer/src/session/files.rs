@@ -11,8 +11,8 @@ impl Session {
     /// Opens a scene of the gallery, by name, or of a file, by path. On failure the present one
     /// stays.
     pub fn open(&mut self, name_or_path: &str) {
-        let opened = Scene::load(name_or_path).and_then(Session::new);
-        match opened {
+        let opened = Scene::load(name_or_path).map_err(anyhow::Error::new);
+        match opened.and_then(Session::new) {
             Ok(session) => {
                 let display = self.display;
                 *self = session;
@@ -67,16 +67,13 @@ impl Session {
             self.notices.error("save", text);
             return;
         }
-        match std::fs::write(&path, self.scene.to_toml()) {
+        match self.scene.save(&path) {
             Ok(()) => {
                 self.notices
                     .info("save", format!("Saved {}.", path.display()));
                 self.file = Some(path);
             }
-            Err(error) => {
-                let text = format!("Cannot write {}: {error}.", path.display());
-                self.notices.error("save", text);
-            }
+            Err(error) => self.notices.error("save", error.to_string()),
         }
     }
 }

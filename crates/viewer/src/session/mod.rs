@@ -28,6 +28,7 @@ pub use notice::{Notice, Notices};
 pub use picture::{BvhView, Display};
 
 use crate::camera::Camera;
+use crate::headless;
 
 /// Slowest rate offered, in steps per second of simulated time.
 pub const MIN_RATE: f64 = 5.0;
@@ -216,10 +217,8 @@ impl Session {
             Ok(()) => true,
             Err(error) => {
                 self.state = State::Paused;
-                self.notices.error(
-                    "step",
-                    crate::headless::step_error(&self.scene, &self.world, &error),
-                );
+                self.notices
+                    .error("step", headless::step_error(&self.scene, &error));
                 false
             }
         }

@@ -38,6 +38,13 @@ impl Session {
         Some(((min + max) / 2.0, ((max - min).length() / 2.0).max(1e-3)))
     }
 
+    /// Top of the selected body's box as drawn, m: where its name goes.
+    pub fn selected_top(&self) -> Option<DVec3> {
+        let (min, max) = self.body_box(self.selection?);
+        let middle = (min + max) / 2.0;
+        Some(DVec3::new(middle.x, max.y, middle.z))
+    }
+
     /// A place for `body` that touches nothing: beside all others along x, at their height.
     pub(super) fn free_place(&self, body: &SceneBody) -> DVec3 {
         let reach = reach(body);

@@ -7,7 +7,7 @@ use crate::session::Session;
 
 pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session) {
     let mut dismissed = None;
-    Area::new("notices".into())
+    Area::new(egui::Id::unique("notices"))
         .order(egui::Order::Foreground)
         .pivot(Align2::CENTER_TOP)
         .fixed_pos(over.center_top() + egui::vec2(0.0, 12.0))
