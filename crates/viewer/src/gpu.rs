@@ -127,17 +127,16 @@ impl Gpu {
 
     /// Draws a picture of `size` pixels and the control panel over it. Whether it came to the
     /// window: a hidden or minimised window takes no pictures.
-    pub fn paint(&mut self, picture: &Picture, size: [u32; 2], frame: UiFrame) -> bool {
+    pub fn paint(&mut self, picture: &Picture, size: [u32; 2], mut frame: UiFrame) -> bool {
         // egui sends each texture once, so these are taken in even if nothing can be shown.
-        for (id, deltas) in &frame.textures.set {
-            for delta in deltas {
-                self.ui
-                    .update_texture(&self.device, &self.queue, *id, delta);
+        for (id, deltas) in frame.textures.set.drain() {
+            for delta in &deltas {
+                self.ui.update_texture(&self.device, &self.queue, id, delta);
             }
         }
         let shown = self.paint_surface(picture, size, &frame);
-        for id in &frame.textures.free {
-            self.ui.free_texture(id);
+        for id in frame.textures.free.drain() {
+            self.ui.free_texture(&id);
         }
         shown
     }
