@@ -152,7 +152,10 @@ impl World {
     /// moving closer: an elastic impulse along the line of their centres, nothing put back.
     fn part_overlapping(&mut self) {
         let pairs = core::mem::take(&mut self.overlapping);
-        let still: Vec<_> = pairs.into_iter().filter(|&(i, j)| self.meet(i, j)).collect();
+        let still: Vec<_> = pairs
+            .into_iter()
+            .filter(|&(i, j)| self.meet(i, j))
+            .collect();
         for &(i, j) in &still {
             let (from, to) = (self.centre(i), self.centre(j));
             let normal = (to - from).try_normalize().unwrap_or(DVec3::X);
@@ -164,7 +167,9 @@ impl World {
 
     /// Middle of a body's box, m.
     fn centre(&self, body: usize) -> DVec3 {
-        let middle = self.mesh(body).map_or(DVec3::ZERO, |mesh| mesh.bounds().centre());
+        let middle = self
+            .mesh(body)
+            .map_or(DVec3::ZERO, |mesh| mesh.bounds().centre());
         self.current.position[body] + middle
     }
 
