@@ -87,7 +87,7 @@ impl World {
     }
 
     /// Whether the surfaces of two bodies meet where they are now.
-    fn meet(&mut self, i: usize, j: usize) -> bool {
+    pub(super) fn meet(&mut self, i: usize, j: usize) -> bool {
         let offset = self.current.position[j] - self.current.position[i];
         let Some((first, second)) = self.mesh(i).zip(self.mesh(j)) else {
             return false;

@@ -2,6 +2,8 @@
 
 mod collision;
 mod error;
+#[cfg(test)]
+mod tests;
 
 use alloc::{sync::Arc, vec::Vec};
 use glam::DVec3;
