@@ -167,7 +167,11 @@ impl<'r, 'd, 'x> Assembly<'r, 'd, 'x> {
         }
         for &[a, b, c] in &geometry.triangles {
             // A mirror turns the triangles inside out.
-            let corners = if determinant > 0.0 { [a, b, c] } else { [a, c, b] };
+            let corners = if determinant > 0.0 {
+                [a, b, c]
+            } else {
+                [a, c, b]
+            };
             soup.triangles.push(corners.map(|corner| first + corner));
         }
         Ok(())
