@@ -16,7 +16,7 @@ const MAX_DEPTH: usize = 128;
 
 /// How many parts (elements and the text between them) the nodes may expand to, so that instances
 /// of instances end even where they show nothing.
-const MAX_PARTS: usize = 10_000_000;
+const MAX_PARTS: usize = 1_000_000;
 
 /// Everything gathered so far from one document.
 pub(super) struct Assembly<'r, 'd, 'x> {
