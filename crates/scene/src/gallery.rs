@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use crate::SceneError;
 use crate::scene::Scene;
 use crate::scene_file::{self, MeshSource};
-use crate::SceneError;
 
 /// The gallery, in the order of a first visit. The first is the default.
 pub static SCENES: &[GalleryScene] = &[

@@ -8,7 +8,7 @@ use sim_core::Mesh;
 use crate::mesh_file::{self, MeshFileError};
 
 /// A mesh by its name in the scene, loaded: neither rotated nor scaled.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MeshRef {
     name: String,
     path: Option<PathBuf>,
@@ -61,16 +61,5 @@ impl MeshRef {
             name,
             ..self.clone()
         }
-    }
-}
-
-/// Equal names and equal geometry.
-impl PartialEq for MeshRef {
-    fn eq(&self, other: &MeshRef) -> bool {
-        let (a, b) = (&self.mesh, &other.mesh);
-        self.name == other.name
-            && self.path == other.path
-            && (Arc::ptr_eq(a, b)
-                || (a.vertices() == b.vertices() && a.triangles() == b.triangles()))
     }
 }

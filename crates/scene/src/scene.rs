@@ -11,7 +11,7 @@ use crate::scene_file::{self, MeshSource};
 use crate::{MeshRef, SceneError};
 
 /// The description of a world: its bodies and how time passes in it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Name in the gallery, or of the file without its extension.
     pub name: String,
@@ -50,17 +50,6 @@ pub struct SceneBody {
     pub mass: f64,
     /// Colour as sRGB-encoded red, green and blue from 0 to 1, if the scene chooses one.
     pub colour: Option<[f32; 3]>,
-}
-
-/// Methods are equal by name.
-impl PartialEq for Scene {
-    fn eq(&self, other: &Scene) -> bool {
-        (&self.name, &self.title, &self.about) == (&other.name, &other.title, &other.about)
-            && self.dt == other.dt
-            && self.method.name == other.method.name
-            && self.collision == other.collision
-            && self.bodies == other.bodies
-    }
 }
 
 impl Scene {

@@ -68,5 +68,8 @@ fn bake(body: &SceneBody) -> Result<Arc<Mesh>, sim_core::MeshError> {
     // Fixed axes in the order x, y, z are moving axes in the order z, y, x.
     let [x, y, z] = body.rotation.to_array().map(f64::to_radians);
     let rotation = DQuat::from_euler(EulerRot::ZYX, z, y, x);
-    body.mesh.mesh().transformed(rotation, body.scale).map(Arc::new)
+    body.mesh
+        .mesh()
+        .transformed(rotation, body.scale)
+        .map(Arc::new)
 }

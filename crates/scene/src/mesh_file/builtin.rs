@@ -8,7 +8,7 @@ use sim_core::Mesh;
 use super::{Format, read};
 
 /// The built-in meshes, by the file name that scenes use.
-pub static BUILTIN_MESHES: &[BuiltinMesh] = &[
+pub static BUILTIN_MESHES: [BuiltinMesh; 2] = [
     BuiltinMesh {
         name: "cube.obj",
         bytes: include_bytes!("../../../../assets/meshes/cube.obj"),

@@ -11,9 +11,9 @@ use std::io::{self, BufRead, Read};
 use glam::Vec3;
 use tobj::LoadOptions;
 
+use super::Format;
 use super::polygon::{MAX_CONCAVE_CORNERS, triangulate};
 use super::soup::{MAX_TRIANGLES, ReadError, Soup};
-use super::Format;
 
 /// Wavefront OBJ.
 pub(super) const FORMAT: Format = Format {
@@ -241,7 +241,8 @@ impl<'a> Sieve<'a> {
                 self.highest_index = (number, line);
             }
             self.statement.push(b' ');
-            self.statement.extend_from_slice(number.to_string().as_bytes());
+            self.statement
+                .extend_from_slice(number.to_string().as_bytes());
             corners += 1;
         }
         if corners < 3 {
@@ -263,11 +264,11 @@ impl Read for Sieve<'_> {
 
 impl BufRead for Sieve<'_> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        if self.consumed == self.statement.len() {
-            if let Err(error) = self.next_statement() {
-                self.error = Some(error);
-                return Err(io::ErrorKind::InvalidData.into());
-            }
+        if self.consumed == self.statement.len()
+            && let Err(error) = self.next_statement()
+        {
+            self.error = Some(error);
+            return Err(io::ErrorKind::InvalidData.into());
         }
         Ok(&self.statement[self.consumed..])
     }

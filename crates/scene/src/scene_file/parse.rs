@@ -21,18 +21,19 @@ use crate::scene::{Scene, SceneBody};
 /// The ways to search for collisions, by the names in scene files.
 const COLLISIONS: [(&str, Collision); 2] = [("naive", Collision::Naive), ("bvh", Collision::Bvh)];
 
+/// The largest number of a body, as a [`World`](sim_core::World) has it.
+const LARGEST: f64 = 1e100;
+
 /// The name of a way to search for collisions.
 pub(super) fn collision_name(collision: Collision) -> &'static str {
     let mut known = COLLISIONS.iter();
-    known.find(|known| known.1 == collision).map_or("bvh", |known| known.0)
+    known
+        .find(|known| known.1 == collision)
+        .map_or("bvh", |known| known.0)
 }
 
 /// Parses a scene file. The stem of `file` becomes the name of the scene.
-pub(crate) fn parse(
-    text: &str,
-    file: &Path,
-    mut meshes: MeshSource,
-) -> Result<Scene, SceneError> {
+pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<Scene, SceneError> {
     let source = Source { text, file };
     let table = DeTable::parse(text).map_err(|error| source.toml_error(&error, None, &[]))?;
     let span = table.span();
@@ -95,7 +96,12 @@ impl Source<'_> {
         let fields: Fields = entries
             .into_iter()
             .flatten()
-            .map(|(key, value)| (key.get_ref().to_string(), key.span().start..value.span().end))
+            .map(|(key, value)| {
+                (
+                    key.get_ref().to_string(),
+                    key.span().start..value.span().end,
+                )
+            })
             .collect();
         T::deserialize(ValueDeserializer::from(table))
             .map_err(|error| self.toml_error(&error, body, &fields))
@@ -140,17 +146,14 @@ impl<'a> Place<'a> {
         }
     }
 
-    fn vector(
-        &self,
-        field: &str,
-        value: Option<Spanned<Triple>>,
-    ) -> Result<DVec3, SceneError> {
+    fn vector(&self, field: &str, value: Option<Spanned<Triple>>) -> Result<DVec3, SceneError> {
         let Some(value) = value else {
             return Ok(DVec3::ZERO);
         };
         let v = vector(*value.get_ref());
-        if !v.is_finite() {
-            let what = format!("must be three finite numbers, is {v}");
+        // NaN is not below anything.
+        if !v.abs().cmple(DVec3::splat(LARGEST)).all() {
+            let what = format!("must be three numbers within ±1e100, is {v}");
             return Err(self.error(value.span(), field, what));
         }
         Ok(v)
@@ -217,16 +220,17 @@ fn dt(source: &Source, header: &Header) -> Result<f64, SceneError> {
     Ok(dt)
 }
 
-fn method(
-    source: &Source,
-    name: Option<Spanned<String>>,
-) -> Result<&'static Method, SceneError> {
+fn method(source: &Source, name: Option<Spanned<String>>) -> Result<&'static Method, SceneError> {
     let Some(name) = name else {
         return Ok(Settings::default().method);
     };
     Method::named(name.get_ref()).ok_or_else(|| {
         let known: Vec<&str> = METHODS.iter().map(|method| method.name).collect();
-        let what = format!("must be one of {}, is `{}`", known.join(", "), name.get_ref());
+        let what = format!(
+            "must be one of {}, is `{}`",
+            known.join(", "),
+            name.get_ref()
+        );
         Place::new(source, None).error(name.span(), "method", what)
     })
 }
@@ -266,8 +270,8 @@ fn scene_body(
     let mut mass = 1.0;
     if let Some(value) = body.mass {
         Number(mass) = *value.get_ref();
-        if !(mass > 0.0 && mass.is_finite()) {
-            let what = format!("must be a finite number of kg above 0, is {mass}");
+        if !(1.0 / LARGEST..=LARGEST).contains(&mass) {
+            let what = format!("must be a mass in kg above 0 (from 1e-100 to 1e100), is {mass}");
             return Err(place.error(value.span(), "mass", what));
         }
     }

@@ -59,19 +59,15 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
 /// From the document's unit and up axis to metres and y up.
 fn into_metres_y_up(document: &Document) -> Result<DMat4, ReadError> {
     let asset = child(document.root, "asset");
+    let unit = asset.and_then(|asset| child(asset, "unit"));
     let mut metres = 1.0;
-    if let Some(unit) = asset.and_then(|asset| child(asset, "unit")) {
-        if let Some(text) = unit.attribute("meter") {
-            metres = text
-                .trim()
-                .parse()
-                .ok()
-                .filter(|metres: &f64| *metres > 0.0 && metres.is_finite())
-                .ok_or_else(|| {
-                    let what = format!("meter is `{text}`: it must be a number above 0");
-                    document.error(unit, what)
-                })?;
-        }
+    if let Some((unit, text)) = unit.and_then(|unit| Some((unit, unit.attribute("meter")?))) {
+        let number = text.trim().parse().ok();
+        let valid = number.filter(|metres: &f64| *metres > 0.0 && metres.is_finite());
+        metres = valid.ok_or_else(|| {
+            let what = format!("meter is `{text}`: it must be a number above 0");
+            document.error(unit, what)
+        })?;
     }
     let axes = match asset.and_then(|asset| child(asset, "up_axis")) {
         None => DMat3::IDENTITY,

@@ -16,7 +16,7 @@ const MAX_DEPTH: usize = 128;
 
 /// How many parts (elements and the text between them) the nodes may expand to, so that instances
 /// of instances end even where they show nothing.
-const MAX_PARTS: usize = 10_000_000;
+const MAX_PARTS: usize = 1_000_000;
 
 /// Everything gathered so far from one document.
 pub(super) struct Assembly<'r, 'd, 'x> {
@@ -167,7 +167,11 @@ impl<'r, 'd, 'x> Assembly<'r, 'd, 'x> {
         }
         for &[a, b, c] in &geometry.triangles {
             // A mirror turns the triangles inside out.
-            let corners = if determinant > 0.0 { [a, b, c] } else { [a, c, b] };
+            let corners = if determinant > 0.0 {
+                [a, b, c]
+            } else {
+                [a, c, b]
+            };
             soup.triangles.push(corners.map(|corner| first + corner));
         }
         Ok(())
