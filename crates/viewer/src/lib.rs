@@ -1,4 +1,5 @@
 //! The window on a world: what is drawn, from where, and how.
 
 pub mod camera;
-//pub mod picture;
+pub mod picture;
+pub mod render;
