@@ -90,7 +90,9 @@ fn main() -> anyhow::Result<()> {
             model(&shape, at + lift, index as usize)
         })
         .collect();
-    picture.camera.frame(DVec3::new(30.0, 1.0, 30.0) * radius, 30.0 * radius);
+    picture
+        .camera
+        .frame(DVec3::new(30.0, 1.0, 30.0) * radius, 30.0 * radius);
     take("herd", &picture, SIZE)?;
 
     for (name, distance) in [("far-30m", 30.0), ("far-200m", 200.0), ("far-3km", 3e3)] {
@@ -126,7 +128,11 @@ fn arrow(from: DVec3, to: DVec3) -> Arrow {
 fn box_lines(min: DVec3, max: DVec3) -> Vec<Line> {
     let corner = |index: usize| {
         let pick = |bit: usize, low, high| if index & bit == 0 { low } else { high };
-        DVec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z))
+        DVec3::new(
+            pick(1, min.x, max.x),
+            pick(2, min.y, max.y),
+            pick(4, min.z, max.z),
+        )
     };
     let ends = (0..8).flat_map(|from| [1, 2, 4].map(|bit| (from, from | bit)));
     ends.filter(|(from, to)| from != to)
@@ -146,8 +152,18 @@ fn cuboid(half: Vec3) -> anyhow::Result<Mesh> {
             half * Vec3::new(sign(1), sign(2), sign(4))
         })
         .collect();
-    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-    let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let faces = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    let triangles = faces
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+        .collect();
     Ok(Mesh::new(vertices, triangles)?)
 }
 
@@ -157,7 +173,8 @@ fn torus(around: u32, across: u32) -> anyhow::Result<Mesh> {
     let mut triangles = Vec::new();
     for u in 0..around {
         for v in 0..across {
-            let ((sin_u, cos_u), (sin_v, cos_v)) = (angle(u, around).sin_cos(), angle(v, across).sin_cos());
+            let ((sin_u, cos_u), (sin_v, cos_v)) =
+                (angle(u, around).sin_cos(), angle(v, across).sin_cos());
             let reach = 1.0 + 0.4 * cos_v;
             vertices.push(Vec3::new(reach * cos_u, 0.4 * sin_v, reach * sin_u));
             let at = |u: u32, v: u32| (u % around) * across + v % across;
@@ -171,10 +188,17 @@ fn obj(path: &Path) -> anyhow::Result<Mesh> {
     let (mut v, mut t) = (vec![], vec![]);
     for l in std::fs::read_to_string(path)?.lines() {
         let w: Vec<&str> = l.split_whitespace().collect();
-        if w.first() == Some(&"v") { v.push(Vec3::new(w[1].parse()?, w[2].parse()?, w[3].parse()?)); }
+        if w.first() == Some(&"v") {
+            v.push(Vec3::new(w[1].parse()?, w[2].parse()?, w[3].parse()?));
+        }
         if w.first() == Some(&"f") {
-            let i: Vec<u32> = w[1..].iter().map(|s| s.split('/').next().unwrap().parse::<u32>().unwrap() - 1).collect();
-            for k in 1..i.len() - 1 { t.push([i[0], i[k], i[k + 1]]); }
+            let i: Vec<u32> = w[1..]
+                .iter()
+                .map(|s| s.split('/').next().unwrap().parse::<u32>().unwrap() - 1)
+                .collect();
+            for k in 1..i.len() - 1 {
+                t.push([i[0], i[k], i[k + 1]]);
+            }
         }
     }
     Ok(Mesh::repaired(v, t)?.0)
