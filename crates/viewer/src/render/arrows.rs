@@ -81,6 +81,7 @@ impl Arrows {
             ],
             topology: wgpu::PrimitiveTopology::TriangleList,
             blended: false,
+            culled: true,
             samples,
         };
         let corners = shape();

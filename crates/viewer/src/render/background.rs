@@ -23,6 +23,7 @@ impl Background {
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
             blended: false,
+            culled: false,
             samples,
         };
         Self {

@@ -7,7 +7,7 @@ use super::frame::FrameBinding;
 use super::growing::Growing;
 use super::meshes::Meshes;
 use super::pipeline::{Drawing, shader};
-use super::{lines, linear};
+use super::{linear, lines};
 use crate::picture::Model;
 
 const COLOUR: [f32; 3] = [0.10, 0.12, 0.16];
@@ -64,6 +64,7 @@ impl Edges {
             })],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             blended: true,
+            culled: false,
             samples,
         };
         let buffer = Growing::new(device, "edges", wgpu::BufferUsages::UNIFORM);

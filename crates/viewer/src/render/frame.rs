@@ -1,7 +1,7 @@
 //! What every pipeline knows of the picture: camera, light, and the places of grid and shadow.
 
 use egui_wgpu::wgpu;
-use glam::{DVec3, DVec2};
+use glam::{DVec2, DVec3};
 
 use crate::camera::Camera;
 
@@ -44,7 +44,7 @@ impl Frame {
 
         // From over the viewer's left shoulder, so that no side is ever seen in the dark.
         let level = right.cross(DVec3::Y);
-        let light = (-0.45 * right + 0.8 * DVec3::Y - 0.55 * level).normalize();
+        let light = (-0.45 * right + 0.8 * DVec3::Y + 0.55 * level).normalize();
 
         let grid_step = grid_step(camera);
         let within = |at: f64| {
@@ -117,7 +117,11 @@ impl FrameBinding {
                 resource: buffer.as_entire_binding(),
             }],
         });
-        Self { buffer, layout, group }
+        Self {
+            buffer,
+            layout,
+            group,
+        }
     }
 
     pub(super) fn write(&self, queue: &wgpu::Queue, frame: &Frame) {

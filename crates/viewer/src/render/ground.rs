@@ -29,6 +29,7 @@ impl Ground {
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             blended: true,
+            culled: false,
             samples,
         };
         Self {

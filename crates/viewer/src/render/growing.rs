@@ -14,7 +14,11 @@ pub(super) struct Growing<T> {
 }
 
 impl<T: Pod> Growing<T> {
-    pub(super) fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages) -> Self {
+    pub(super) fn new(
+        device: &wgpu::Device,
+        label: &'static str,
+        usage: wgpu::BufferUsages,
+    ) -> Self {
         let usage = usage | wgpu::BufferUsages::COPY_DST;
         Self {
             label,
@@ -35,7 +39,11 @@ impl<T: Pod> Growing<T> {
             self.buffer = room(device, self.label, self.usage, roomy);
         }
         if count > 0 {
-            queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(&items[..count as usize]));
+            queue.write_buffer(
+                &self.buffer,
+                0,
+                bytemuck::cast_slice(&items[..count as usize]),
+            );
         }
         count as u32
     }

@@ -51,6 +51,7 @@ impl Lines {
             })],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             blended: true,
+            culled: false,
             samples,
         };
         Self {
@@ -70,9 +71,8 @@ impl Lines {
         eye: DVec3,
     ) {
         self.instances.clear();
-        let drawn = lines.filter(|line| {
-            line.from.is_finite() && line.to.is_finite() && line.width > 0.0
-        });
+        let drawn =
+            lines.filter(|line| line.from.is_finite() && line.to.is_finite() && line.width > 0.0);
         self.instances.extend(drawn.map(|line| {
             let [red, green, blue, opacity] = line.colour;
             let [red, green, blue] = linear([red, green, blue]);

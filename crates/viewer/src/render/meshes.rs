@@ -52,6 +52,8 @@ struct DeviceMesh {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     index_count: u32,
+    /// Whether it has no inside to be seen.
+    solid: bool,
     /// Half the diagonal of its bounds, m.
     radius: f32,
     edges: Option<(wgpu::Buffer, u32)>,
@@ -121,10 +123,14 @@ impl Meshes {
         }
     }
 
-    /// Draws every mesh at all its places, with a pipeline of [`layouts`].
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    /// Draws at all their places the meshes that are solid, or else the others, with a pipeline of [`layouts`].
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, solid: bool) {
         pass.set_vertex_buffer(1, self.buffer.buffer().slice(..));
-        for mesh in self.order.iter().filter_map(|address| self.known.get(address)) {
+        let meshes = self
+            .order
+            .iter()
+            .filter_map(|address| self.known.get(address));
+        for mesh in meshes.filter(|mesh| mesh.solid == solid) {
             pass.set_vertex_buffer(0, mesh.vertices.slice(..));
             pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(0..mesh.index_count, 0, mesh.range.clone());
@@ -172,6 +178,7 @@ impl DeviceMesh {
                 usage: wgpu::BufferUsages::INDEX,
             }),
             index_count: indices.len() as u32,
+            solid: mesh.volume().is_some_and(|volume| volume > 0.0),
             radius: (bounds.half_extent().length() as f32).max(f32::MIN_POSITIVE),
             edges: None,
             instances: Vec::new(),

@@ -50,11 +50,7 @@ pub struct Renderer {
 impl Renderer {
     /// A renderer onto targets of a format, sRGB or not, with so many samples per pixel:
     /// 1, or what [`supported_samples`] says.
-    pub fn new(
-        device: &wgpu::Device,
-        target: wgpu::TextureFormat,
-        samples: u32,
-    ) -> Self {
+    pub fn new(device: &wgpu::Device, target: wgpu::TextureFormat, samples: u32) -> Self {
         let frame = frame::FrameBinding::new(device);
         let shadow = shadow::Shadow::new(device, &frame);
         Self {
@@ -93,16 +89,26 @@ impl Renderer {
         self.frame.write(queue, &frame);
         let eye = picture.camera.eye();
         self.meshes.gather(device, queue, &picture.models, eye);
-        self.edges.gather(device, queue, &mut self.meshes, &picture.models, eye);
-        let axis = if picture.grid { axes::upright(&picture.camera) } else { Vec::new() };
-        self.lines.gather(device, queue, axis.iter().chain(&picture.lines), eye);
+        self.edges
+            .gather(device, queue, &mut self.meshes, &picture.models, eye);
+        let axis = if picture.grid {
+            axes::upright(&picture.camera)
+        } else {
+            Vec::new()
+        };
+        self.lines
+            .gather(device, queue, axis.iter().chain(&picture.lines), eye);
         self.arrows.gather(device, queue, &picture.arrows, eye);
 
         if picture.grid {
             self.shadow.draw(encoder, &self.frame, &self.meshes);
         }
         let samples = self.samples;
-        if self.targets.as_ref().is_none_or(|targets| targets.size() != size) {
+        if self
+            .targets
+            .as_ref()
+            .is_none_or(|targets| targets.size() != size)
+        {
             self.targets = Some(Targets::new(device, size, samples, &self.finish));
         }
         let Some(targets) = &self.targets else { return };
@@ -118,7 +124,8 @@ impl Renderer {
             self.edges.draw(&mut pass);
             self.lines.draw(&mut pass);
         }
-        self.finish.draw(encoder, target_view, targets.finish_group());
+        self.finish
+            .draw(encoder, target_view, targets.finish_group());
     }
 }
 

@@ -133,7 +133,10 @@ impl Fan {
         self.groups.clear();
         let normal = |corner: u32| faces[corner as usize / 3].normal;
         let first = corners.first().map_or(Vec3::ZERO, |&corner| normal(corner));
-        if corners.iter().all(|&corner| normal(corner).dot(first) > GENTLE) {
+        if corners
+            .iter()
+            .all(|&corner| normal(corner).dot(first) > GENTLE)
+        {
             self.groups.resize(corners.len(), 0);
             return;
         }

@@ -73,17 +73,17 @@ pub struct Offscreen {
 impl Offscreen {
     /// The fastest adapter there is, one that draws in software if there is no other.
     pub fn new() -> Result<Self, ShotError> {
-        let instance = wgpu::Instance::new(
-            wgpu::InstanceDescriptor::new_without_display_handle().with_env(),
-        );
+        let instance =
+            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle().with_env());
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             ..Default::default()
         };
         let adapter = pollster::block_on(instance.request_adapter(&options))
             .map_err(|_| ShotError::NoAdapter)?;
-        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
-            .map_err(ShotError::Device)?;
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
+                .map_err(ShotError::Device)?;
         let renderer = Renderer::new(&device, FORMAT, supported_samples(&adapter));
         Ok(Self {
             device,
@@ -97,8 +97,8 @@ impl Offscreen {
         let [width, height] = size;
         let limits = self.device.limits();
         let most = limits.max_texture_dimension_2d;
-        let padded_row = (width.saturating_mul(PIXEL))
-            .next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let padded_row =
+            (width.saturating_mul(PIXEL)).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let bytes = u64::from(padded_row) * u64::from(height);
         if size.contains(&0) || width.max(height) > most {
             return Err(ShotError::Size { size, most });

@@ -17,6 +17,8 @@ pub(super) struct Drawing<'a> {
     pub topology: wgpu::PrimitiveTopology,
     /// Over what is there, and without hiding what comes later; else opaque.
     pub blended: bool,
+    /// Without the faces that are seen from behind.
+    pub culled: bool,
     pub samples: u32,
 }
 
@@ -38,6 +40,7 @@ impl Drawing<'_> {
             },
             primitive: wgpu::PrimitiveState {
                 topology: self.topology,
+                cull_mode: self.culled.then_some(wgpu::Face::Back),
                 ..Default::default()
             },
             depth_stencil: Some(wgpu::DepthStencilState {

@@ -7,7 +7,7 @@ use super::meshes::{self, Meshes};
 use super::pipeline::shader;
 
 /// Texels along a side.
-const SIZE: u32 = 1024;
+const SIZE: u32 = 512;
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 pub(super) struct Shadow {
@@ -108,7 +108,8 @@ impl Shadow {
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, frame.group(), &[]);
-        meshes.draw(&mut pass);
+        meshes.draw(&mut pass, true);
+        meshes.draw(&mut pass, false);
     }
 
     /// For whoever receives the shadow.

@@ -7,7 +7,9 @@ use super::meshes::{self, Meshes};
 use super::pipeline::{Drawing, shader};
 
 pub(super) struct Surface {
-    pipeline: wgpu::RenderPipeline,
+    /// For meshes with no inside to be seen: the far half of their faces is not worth drawing.
+    solid: wgpu::RenderPipeline,
+    open: wgpu::RenderPipeline,
 }
 
 impl Surface {
@@ -17,23 +19,30 @@ impl Surface {
             include_str!("shaders/light.wgsl"),
             include_str!("shaders/surface.wgsl")
         );
-        let drawing = Drawing {
+        let module = shader(device, "surface", wgsl);
+        let groups = [Some(frame.layout())];
+        let buffers = meshes::layouts();
+        let drawing = |solid| Drawing {
             label: "surface",
-            shader: &shader(device, "surface", wgsl),
+            shader: &module,
             vertex: "vs_main",
-            groups: &[Some(frame.layout())],
-            buffers: &meshes::layouts(),
+            groups: &groups,
+            buffers: &buffers,
             topology: wgpu::PrimitiveTopology::TriangleList,
             blended: false,
+            culled: solid,
             samples,
         };
         Self {
-            pipeline: drawing.pipeline(device),
+            solid: drawing(true).pipeline(device),
+            open: drawing(false).pipeline(device),
         }
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, meshes: &Meshes) {
-        pass.set_pipeline(&self.pipeline);
-        meshes.draw(pass);
+        pass.set_pipeline(&self.solid);
+        meshes.draw(pass, true);
+        pass.set_pipeline(&self.open);
+        meshes.draw(pass, false);
     }
 }

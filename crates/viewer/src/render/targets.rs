@@ -19,7 +19,12 @@ pub(super) struct Targets {
 }
 
 impl Targets {
-    pub(super) fn new(device: &wgpu::Device, size: [u32; 2], samples: u32, finish: &Finish) -> Self {
+    pub(super) fn new(
+        device: &wgpu::Device,
+        size: [u32; 2],
+        samples: u32,
+        finish: &Finish,
+    ) -> Self {
         let view = |label, format, sample_count, usage| {
             device
                 .create_texture(&wgpu::TextureDescriptor {
@@ -39,7 +44,12 @@ impl Targets {
                 .create_view(&Default::default())
         };
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let colour = view("colour", COLOUR, 1, attachment | wgpu::TextureUsages::TEXTURE_BINDING);
+        let colour = view(
+            "colour",
+            COLOUR,
+            1,
+            attachment | wgpu::TextureUsages::TEXTURE_BINDING,
+        );
         Self {
             size,
             multisampled: (samples > 1).then(|| view("samples", COLOUR, samples, attachment)),
@@ -57,7 +67,10 @@ impl Targets {
         &self.finish_group
     }
 
-    pub(super) fn begin<'a>(&'a self, encoder: &'a mut wgpu::CommandEncoder) -> wgpu::RenderPass<'a> {
+    pub(super) fn begin<'a>(
+        &'a self,
+        encoder: &'a mut wgpu::CommandEncoder,
+    ) -> wgpu::RenderPass<'a> {
         let (view, resolve_target, store) = match &self.multisampled {
             Some(samples) => (samples, Some(&self.colour), wgpu::StoreOp::Discard),
             None => (&self.colour, None, wgpu::StoreOp::Store),

@@ -15,7 +15,7 @@ fn vs_main(@builtin(vertex_index) index: u32) -> Varying {
 
 const ZENITH = vec3f(0.47, 0.57, 0.69);
 const HORIZON = vec3f(0.84, 0.87, 0.90);
-const NADIR = vec3f(0.60, 0.62, 0.64);
+const NADIR = vec3f(0.66, 0.69, 0.72);
 
 @fragment
 fn fs_main(in: Varying) -> @location(0) vec4f {

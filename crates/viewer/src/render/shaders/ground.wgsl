@@ -26,12 +26,9 @@ fn coverage(distance: vec2f, pixel: vec2f, width: f32) -> vec2f {
     return clamp(vec2f(0.5 * width + 0.5) - abs(distance) / pixel, vec2f(0.0), vec2f(min(width, 1.0)));
 }
 
-// Lines at whole cells; they fade away before they would crowd into moire.
-fn lines(cells: vec2f, pixel: vec2f, width: f32) -> f32 {
-    let covered = coverage(fract(cells + 0.5) - 0.5, pixel, width);
-    let apart = 1.0 - smoothstep(vec2f(0.06), vec2f(0.30), pixel);
-    let shown = covered * apart;
-    return max(shown.x, shown.y);
+// How clearly lines a cell apart are told from each other; they fade before they would crowd into moire.
+fn clarity(pixel: vec2f) -> vec2f {
+    return 1.0 - smoothstep(vec2f(0.05), vec2f(0.28), pixel);
 }
 
 // The shadow map about a place, blurred.
@@ -61,9 +58,11 @@ fn fs_main(in: Varying) -> @location(0) vec4f {
     var cell = frame.grid_step;
     for (var level = 0; level < 4; level++) {
         let cells = at / cell + vec2f(frame.grid_x[level], frame.grid_z[level]);
-        let weight = select(0.55, 0.26, level == 0);
-        let width = select(1.5, 1.0, level == 0);
-        ink = max(ink, weight * lines(cells, pixel / cell, width));
+        // Heavier than the next finer lines, for as long as those are seen.
+        let finer = select(clarity(10.0 * pixel / cell), vec2f(0.0), level == 0);
+        let covered = coverage(fract(cells + 0.5) - 0.5, pixel / cell, 1.3);
+        let inks = covered * clarity(pixel / cell) * mix(vec2f(0.28), vec2f(0.6), finer);
+        ink = max(ink, max(inks.x, inks.y));
         cell *= 10.0;
     }
     // x runs where z is zero and the other way round; the negative halves are paler.
@@ -75,7 +74,7 @@ fn fs_main(in: Varying) -> @location(0) vec4f {
 
     let fade = 1.0 - smoothstep(0.25, 1.0, length(at) / frame.grid_reach);
     ink *= fade;
-    let dark = 0.42 * shadow(at);
+    let dark = 0.5 * shadow(at);
     // The lines over the shadow.
     let opacity = ink + dark * (1.0 - ink);
     return vec4f(colour * ink, opacity);

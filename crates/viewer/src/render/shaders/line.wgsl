@@ -37,8 +37,10 @@ fn segment(index: u32, from_eye: vec3f, to_eye: vec3f, colour: vec4f, width: f32
     let last = index > 1u;
     let shift = select(-reach, reach, last);
     let corner = select(start, end, last) + along * shift + across * side;
-    // A little nearer than it is, not to sink into the surface it lies on.
-    let depth = select(a.z / a.w, b.z / b.w, last) * (1.0 + 2.5 * frame.pixel);
+    // A little nearer than it is, not to sink into the surface it lies on; the ends go on at its slope.
+    let beyond = min(reach / max(length, 1e-3), 0.5);
+    let ends = vec2f(a.z / a.w, b.z / b.w);
+    let depth = mix(ends.x, ends.y, select(-beyond, 1.0 + beyond, last)) * (1.0 + 3.0 * frame.pixel);
     // Dividing here makes everything below vary evenly over the screen.
     out.clip = vec4f(corner / frame.half_size, min(depth, 1.0), 1.0);
     out.place = vec2f(select(0.0, length, last) + shift, side);

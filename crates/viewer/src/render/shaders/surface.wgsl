@@ -35,8 +35,6 @@ fn fs_main(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4
     let normal = normalize(select(-in.normal, in.normal, front));
     var colour = lit(in.colour, in.position, normal);
     let grazing = 1.0 - abs(dot(normal, normalize(in.position)));
-    colour += in.selected * SELECTED * (0.04 + 0.5 * pow(grazing, 2.5));
+    colour = mix(colour, vec3f(1.0), in.selected * (0.06 + 0.3 * pow(grazing, 3.0)));
     return vec4f(colour, 1.0);
 }
-
-const SELECTED = vec3f(0.95, 0.55, 0.12);
