@@ -3,7 +3,7 @@
 use scene::Scene;
 
 use crate::cli::{Depth, Failure, ShotArgs};
-use crate::render::offscreen;
+use crate::render::offscreen::{self, ShotError};
 use crate::session::Session;
 use crate::stopwatch::Stopwatch;
 
@@ -31,8 +31,7 @@ pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
             return Err(Failure::Run(notice.text.clone()));
         }
     }
-    let image = offscreen::shot(&session.picture(), args.size)
-        .map_err(|error| Failure::NoDisplay(error.to_string()))?;
+    let image = offscreen::shot(&session.picture(), args.size).map_err(failure)?;
     image
         .save_with_format(&args.output, image::ImageFormat::Png)
         .map_err(|error| {
@@ -45,6 +44,15 @@ pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
         args.size[1],
         session.world().steps()
     ))
+}
+
+fn failure(error: ShotError) -> Failure {
+    let message = error.to_string();
+    match error {
+        ShotError::NoAdapter | ShotError::Device(_) => Failure::NoDisplay(message),
+        ShotError::Size { .. } => Failure::Refused(message),
+        ShotError::Drawing(_) => Failure::Run(message),
+    }
 }
 
 fn no_such_body(scene: &Scene, name: &str) -> Failure {

@@ -22,7 +22,7 @@ static SHORTCUTS: [Shortcut; 9] = [
     },
     Shortcut {
         keys: &[Key::ArrowRight, Key::Period],
-        label: "→ .",
+        label: "Right",
         meaning: "single step",
         act: |ui, session| ui.step(session),
     },
@@ -70,11 +70,12 @@ static SHORTCUTS: [Shortcut; 9] = [
     },
 ];
 
-static GESTURES: [(&str, &str); 6] = [
+static GESTURES: [(&str, &str); 7] = [
     ("Click", "select a body"),
     ("Drag left or right", "orbit"),
     ("Drag middle, Shift + drag", "pan"),
     ("Wheel", "zoom"),
+    (".", "single step too"),
     ("Drop a file", "add a mesh or open a scene"),
     ("Drag a number", "change it; click to type"),
 ];
