@@ -239,9 +239,15 @@ fn event_loop() -> Result<EventLoop<Redraw>, Failure> {
 }
 
 fn no_display(reason: &str) -> Failure {
+    // winit says in which line of its source it failed: nothing to a person.
+    let reason = match reason.split_once(".rs:") {
+        Some((_, place)) => place.split_once(": ").map_or(place, |(_, reason)| reason),
+        None => reason,
+    };
     Failure::NoDisplay(format!(
-        "no window: {reason}. Start it on a desktop with X11 (libx11, libxkbcommon-x11) or \
-         Wayland, or do without a window: cowbell run cube-cow"
+        "no window: {}. Start it on a desktop with X11 (libx11, libxkbcommon-x11) or Wayland, \
+         or do without a window: cowbell run cube-cow",
+        reason.trim_end_matches('.')
     ))
 }
 

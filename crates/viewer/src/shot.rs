@@ -20,7 +20,16 @@ pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
     session.display.bvh.shown = args.bvh.is_some();
     session.display.bvh.every_body = args.select.is_none();
     match args.bvh {
-        Some(Depth::Level(depth)) => session.display.bvh.depth = depth,
+        Some(Depth::Level(depth)) => {
+            let levels = session.bvh_depth();
+            if depth >= levels {
+                return Err(Failure::Refused(format!(
+                    "--bvh {depth}: the hierarchies of {} have depths below {levels}",
+                    session.scene().name
+                )));
+            }
+            session.display.bvh.depth = depth;
+        }
         Some(Depth::All) => session.display.bvh.every_depth = true,
         None => {}
     }

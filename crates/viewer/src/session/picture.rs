@@ -124,16 +124,10 @@ impl Session {
     fn add_boxes(&self, i: usize, lines: &mut Vec<Line>) {
         let Some(bvh) = self.world.bvh(i) else { return };
         let view = self.display.bvh;
-        let levels = bvh.depth();
-        let depths = if view.every_depth {
-            0..levels
-        } else {
-            view.depth..view.depth + 1
-        };
         let origin = self.shown_position(i);
-        for depth in depths {
-            let colour = depth_colour(depth, levels);
-            for aabb in bvh.boxes_at(depth) {
+        for (depth, aabb) in bvh.boxes() {
+            if view.every_depth || depth == view.depth {
+                let colour = depth_colour(depth, bvh.depth());
                 lines.extend(edges(aabb).map(|(from, to)| Line {
                     from: origin + from,
                     to: origin + to,

@@ -9,11 +9,15 @@ const LABEL: f32 = 76.0;
 /// A label of the common width, with what it means on hovering.
 pub(super) fn label(ui: &mut egui::Ui, text: &str, meaning: &str) {
     let size = egui::vec2(LABEL, ui.spacing().interact_size.y);
-    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-        ui.set_min_width(LABEL);
-        ui.add(egui::Label::new(text).truncate())
-            .on_hover_text(meaning);
-    });
+    ui.allocate_ui_with_layout(
+        size,
+        egui::Layout::left_to_right(egui::Align::Center),
+        |ui| {
+            ui.set_min_width(LABEL);
+            ui.add(egui::Label::new(text).truncate())
+                .on_hover_text(meaning);
+        },
+    );
 }
 
 /// A row of three numbers; the new value if one was changed.

@@ -7,15 +7,16 @@ use crate::number;
 use crate::session::Session;
 
 pub(super) fn show(ui: &mut egui::Ui, session: &Session) {
-    ui.spacing_mut().item_spacing.y = 2.0;
+    ui.spacing_mut().item_spacing.y = 1.0;
+    ui.spacing_mut().interact_size.y = 17.0;
     let (world, figures, drift) = (session.world(), session.figures(), session.drift());
-    let none = || "–".to_owned();
+    let none = || "-".to_owned();
     field::figure(ui, "Time", "Simulated time", format!("{:.3} s", world.time()));
     field::figure(
         ui,
         "Steps",
         "Steps since the start, and those taken in the last frame",
-        format!("{}   {} a frame", world.steps(), figures.steps_per_frame),
+        format!("{}  ({} a frame)", world.steps(), figures.steps_per_frame),
     );
     field::figure(
         ui,
@@ -81,7 +82,7 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
             "  last",
             "The last collision: when, between which bodies, and the impulse exchanged",
             format!(
-                "{:.3} s  {} – {}  {} N s",
+                "{:.3} s  {} and {}  {} N s",
                 impact.time,
                 name(a),
                 name(b),

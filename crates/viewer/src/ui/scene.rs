@@ -43,7 +43,7 @@ fn gallery(ui: &mut egui::Ui, session: &mut Session) {
         field::label(ui, "Gallery", "Scenes that come with the program");
         let mut chosen = None;
         ComboBox::from_id_salt("gallery")
-            .selected_text(&session.scene().title)
+            .selected_text(&session.scene().name)
             .width(ui.available_width() - 8.0)
             .show_ui(ui, |ui| {
                 for entry in scene::SCENES {
@@ -117,21 +117,28 @@ fn bodies(ui: &mut egui::Ui, session: &mut Session) {
         ui.label(RichText::new("No bodies. Add a mesh by its path or by dropping it here.").weak());
     }
     let mut chosen = None;
-    for i in 0..session.scene().bodies.len() {
-        ui.horizontal(|ui| {
-            let [r, g, b] = session.colour(i).map(|part| (255.0 * part) as u8);
-            let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
-            ui.painter()
-                .rect_filled(rect, 3.0, egui::Color32::from_rgb(r, g, b));
-            let selected = session.selection() == Some(i);
-            if ui
-                .selectable_label(selected, &session.scene().bodies[i].name)
-                .clicked()
-            {
-                chosen = Some((!selected).then_some(i));
-            }
+    egui::ScrollArea::vertical()
+        .max_height(120.0)
+        .auto_shrink([false, true])
+        .show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                for (i, body) in session.scene().bodies.iter().enumerate() {
+                    let [r, g, b] = session.colour(i).map(|part| (255.0 * part) as u8);
+                    let selected = session.selection() == Some(i);
+                    let mut text = egui::text::LayoutJob::default();
+                    let font = egui::TextStyle::Button.resolve(ui.style());
+                    let mut part = |what: &str, colour| {
+                        let format = egui::TextFormat::simple(font.clone(), colour);
+                        text.append(what, 0.0, format);
+                    };
+                    part("⏺ ", egui::Color32::from_rgb(r, g, b));
+                    part(&body.name, ui.visuals().strong_text_color());
+                    if ui.selectable_label(selected, text).clicked() {
+                        chosen = Some((!selected).then_some(i));
+                    }
+                }
+            });
         });
-    }
     if let Some(chosen) = chosen {
         session.select(chosen);
     }

@@ -1,0 +1,271 @@
+//! The program from outside: answers, exit codes, and what happens where there is no display.
+
+use std::fs;
+use std::io::Read;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+fn cowbell(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cowbell"));
+    command.args(arguments).stdin(Stdio::null());
+    command
+}
+
+fn answer(arguments: &[&str]) -> Output {
+    cowbell(arguments).output().expect("the program starts")
+}
+
+/// Runs a command that must succeed; its JSON.
+fn json(arguments: &[&str]) -> Value {
+    let output = answer(arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {stderr}");
+    let text = String::from_utf8(output.stdout).expect("JSON is UTF-8");
+    assert_eq!(text.matches('\n').count(), 1, "one line");
+    serde_json::from_str(&text).expect("the answer is JSON")
+}
+
+/// Runs a command that must fail with `code`; its one line on stderr.
+fn refusal(mut command: Command, code: i32) -> String {
+    let output = command.output().expect("the program starts");
+    let text = String::from_utf8(output.stderr).expect("messages are UTF-8");
+    assert_eq!(output.status.code(), Some(code), "{text}");
+    assert!(output.stdout.is_empty());
+    assert_eq!(text.lines().count(), 1, "{text}");
+    assert!(text.starts_with("cowbell: "), "{text}");
+    assert!(!text.contains("panicked"), "{text}");
+    text
+}
+
+/// A file in the folder for temporary files; `name` keeps tests apart.
+fn file(name: &str, text: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("cowbell-{}-{name}", std::process::id()));
+    fs::write(&path, text).expect("a file can be written");
+    path
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    let mut keys: Vec<&str> = value
+        .as_object()
+        .map(|object| object.keys().map(String::as_str).collect())
+        .unwrap_or_default();
+    keys.sort_unstable();
+    keys
+}
+
+#[test]
+fn run_prints_the_final_state() {
+    let state = json(&["run", "parabola", "--steps", "60", "--json"]);
+    assert_eq!(
+        keys(&state),
+        [
+            "bodies",
+            "impacts",
+            "kinetic_energy",
+            "momentum",
+            "steps",
+            "time"
+        ]
+    );
+    assert_eq!(state["steps"], 60);
+    assert_eq!(state["time"].as_f64(), Some(60.0 / 60.0));
+    assert_eq!(state["momentum"].as_array().map(Vec::len), Some(3));
+    let body = &state["bodies"][0];
+    assert_eq!(keys(body), ["mass", "name", "position", "velocity"]);
+    assert_eq!(body["position"].as_array().map(Vec::len), Some(3));
+}
+
+#[test]
+fn numbers_survive_json_bit_for_bit() {
+    let steps = 1234;
+    let scene = scene::Scene::load("cube-cow").expect("it is in the gallery");
+    let mut world = scene.world().expect("it makes a world");
+    for _ in 0..steps {
+        world.step().expect("nothing grows in it");
+    }
+    let state = json(&["run", "cube-cow", "--steps", "1234", "--json"]);
+    for (i, body) in state["bodies"].as_array().into_iter().flatten().enumerate() {
+        for (field, vector) in [
+            ("position", world.position(i)),
+            ("velocity", world.velocity(i)),
+        ] {
+            for (axis, exact) in vector.to_array().into_iter().enumerate() {
+                let written = body[field][axis].to_string();
+                let read: f64 = written.parse().expect("a number");
+                assert_eq!(read.to_bits(), exact.to_bits(), "{field} of body {i}");
+            }
+        }
+    }
+    assert_eq!(state["impacts"], world.impacts());
+}
+
+#[test]
+fn run_obeys_its_options() {
+    let run = |more: &[&str]| json(&[&["run", "five-hertz", "--json"], more].concat());
+    let end = |state: &Value| state["bodies"][0]["position"][1].as_f64();
+    let forward = run(&["--steps", "20", "--method", "forward-euler"]);
+    let backward = run(&["--steps", "20", "--method", "backward-euler"]);
+    assert_ne!(end(&forward), end(&backward));
+    let finer = run(&["--steps", "20", "--rate", "100"]);
+    assert_eq!(finer["time"].as_f64().map(|t| (t * 1e9).round()), Some(2e8));
+    assert_eq!(run(&["--steps", "2", "--dt", "0.5"])["time"], 1.0);
+    assert_eq!(run(&["--steps", "0"])["steps"], 0);
+    let naive = json(&["run", "two-cubes", "--collision", "naive", "--json"]);
+    let bvh = json(&["run", "two-cubes", "--collision", "bvh", "--json"]);
+    assert_eq!(naive, bvh);
+}
+
+#[test]
+fn run_prints_a_table_with_speed_and_error() {
+    let output = answer(&["run", "two-cubes"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    for word in ["µs a step", "drift", "Impacts", "heavy", "J"] {
+        assert!(text.contains(word), "{word} is not in\n{text}");
+    }
+}
+
+#[test]
+fn bad_arguments_give_one_line_and_code_2() {
+    let cases: &[&[&str]] = &[
+        &["run"],
+        &["run", "no-such-scene"],
+        &["no-such-scene"],
+        &["run", "no-such-file.toml"],
+        &["run", "cube-cow", "--method", "magic"],
+        &["run", "cube-cow", "--dt", "0"],
+        &["run", "cube-cow", "--dt", "-1"],
+        &["run", "cube-cow", "--dt", "nan"],
+        &["run", "cube-cow", "--rate", "inf"],
+        &["run", "cube-cow", "--dt", "1", "--rate", "1"],
+        &["run", "cube-cow", "--steps", "-1"],
+        &["run", "cube-cow", "--collision", "maybe"],
+        &["run", "cube-cow", "--frobnicate"],
+        &["check"],
+        &["check", "no-such-file.obj"],
+        &["check", "/"],
+        &["shot", "cube-cow"],
+        &["shot", "cube-cow", "-o", "x.png", "--size", "0x10"],
+        &["shot", "cube-cow", "-o", "x.png", "--size", "wide"],
+        &["shot", "cube-cow", "-o", "x.png", "--bvh", "deep"],
+        &["shot", "cube-cow", "-o", "x.png", "--bvh", "9999"],
+        &["shot", "cube-cow", "-o", "x.png", "--select", "nobody"],
+    ];
+    for arguments in cases {
+        refusal(cowbell(arguments), 2);
+    }
+}
+
+#[test]
+fn refusals_name_the_choices() {
+    let text = refusal(cowbell(&["run", "cube-cow", "--method", "magic"]), 2);
+    for method in sim_core::METHODS {
+        assert!(text.contains(method.name), "{text}");
+    }
+    let text = refusal(cowbell(&["run", "nothing"]), 2);
+    for entry in scene::SCENES {
+        assert!(text.contains(entry.name), "{text}");
+    }
+}
+
+#[test]
+fn run_out_of_numbers_ends_with_code_1_body_and_step() {
+    let path = file(
+        "overflow.toml",
+        "title = \"Too much\"\nrate = 60\n[[body]]\nname = \"runaway\"\nmesh = \"cube.obj\"\n\
+         velocity = [1e100, 0, 0]\nforce = [1e100, 0, 0]\nmass = 1e-100\n",
+    );
+    let path_text = path.to_string_lossy();
+    let command = cowbell(&["run", &path_text, "--dt", "1e60", "--json"]);
+    let text = refusal(command, 1);
+    assert!(text.contains("runaway") && text.contains("step 1"), "{text}");
+    fs::remove_file(path).expect("the file is removed");
+}
+
+#[test]
+fn check_describes_a_mesh() {
+    let path = file(
+        "square.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 9 9 9\nf 1 2 3 4\nf 1 2 3\n",
+    );
+    let report = json(&["check", &path.to_string_lossy(), "--json"]);
+    assert_eq!(
+        keys(&report),
+        [
+            "closed",
+            "format",
+            "oriented",
+            "repairs",
+            "triangles",
+            "vertices",
+            "volume"
+        ]
+    );
+    assert_eq!(report["format"], "obj");
+    assert_eq!(report["closed"], false);
+    assert_eq!(report["volume"], Value::Null);
+    let repairs = report["repairs"].as_array().expect("an array");
+    assert!(!repairs.is_empty());
+    assert!(repairs.iter().all(|r| keys(r) == ["count", "kind"]));
+    assert!(
+        answer(&["check", &path.to_string_lossy()])
+            .status
+            .success()
+    );
+    fs::remove_file(path).expect("the file is removed");
+}
+
+#[test]
+fn check_refuses_what_makes_no_mesh() {
+    let path = file("broken.obj", "v 0 0 0\nf 1 2 3\n");
+    let path_text = path.to_string_lossy();
+    let text = refusal(cowbell(&["check", &path_text, "--json"]), 2);
+    assert!(text.contains("broken.obj"), "{text}");
+    fs::remove_file(path).expect("the file is removed");
+}
+
+#[test]
+fn closed_stdout_is_no_failure() {
+    for arguments in [
+        &["run", "cube-cow", "--steps", "1"][..],
+        &["run", "cube-cow", "--steps", "1", "--json"],
+        &["--help"],
+        &["--version"],
+    ] {
+        let mut child = cowbell(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        drop(child.stdout.take());
+        let mut complaint = String::new();
+        if let Some(mut stderr) = child.stderr.take() {
+            stderr.read_to_string(&mut complaint).expect("text");
+        }
+        let status = child.wait().expect("the program ends");
+        assert_eq!(status.code(), Some(0), "{arguments:?}: {complaint}");
+        assert_eq!(complaint, "");
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_display_says_so() {
+    let displays: [&[(&str, &str)]; 4] = [
+        &[],
+        &[("DISPLAY", ":4242")],
+        &[("WAYLAND_DISPLAY", "nowhere")],
+        &[("DISPLAY", "no.such.host:0")],
+    ];
+    for display in displays {
+        let mut command = cowbell(&[]);
+        command
+            .env_remove("DISPLAY")
+            .env_remove("WAYLAND_DISPLAY")
+            .env_remove("WAYLAND_SOCKET")
+            .envs(display.iter().copied());
+        let text = refusal(command, 3);
+        assert!(text.contains("cowbell run cube-cow"), "{text}");
+    }
+}
