@@ -1,5 +1,6 @@
 //! The mesh of a body: what the scene file calls it, and the mesh itself.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use sim_core::Mesh;
 use crate::mesh_file::{self, MeshFileError};
 
 /// A mesh by its name in the scene, loaded: neither rotated nor scaled.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct MeshRef {
     name: String,
     path: Option<PathBuf>,
@@ -61,5 +62,12 @@ impl MeshRef {
             name,
             ..self.clone()
         }
+    }
+}
+
+/// The name alone: a mesh is too much to look at.
+impl fmt::Debug for MeshRef {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_tuple("MeshRef").field(&self.name).finish()
     }
 }

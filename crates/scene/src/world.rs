@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3, EulerRot};
-use sim_core::{Body, Mesh, Settings, World};
+use sim_core::{Body, Mesh, MeshError, Settings, World};
 
 use crate::SceneError;
 use crate::scene::{Scene, SceneBody};
@@ -26,8 +26,13 @@ impl Scene {
             let mut earlier = self.bodies[..i].iter();
             let mesh = match earlier.position(|other| same_shape(body, other)) {
                 Some(twin) => baked[twin].clone(),
-                None => bake(body)
-                    .map_err(|error| self.world_error(Some(body), Some("scale"), error))?,
+                None => bake(body).map_err(|error| {
+                    let field = match error {
+                        MeshError::Rotation => "rotation",
+                        _ => "scale",
+                    };
+                    self.world_error(Some(body), Some(field), error)
+                })?,
             };
             baked.push(mesh.clone());
             let added = world.add(Body {
@@ -61,7 +66,7 @@ fn same_shape(a: &SceneBody, b: &SceneBody) -> bool {
     Arc::ptr_eq(a.mesh.mesh(), b.mesh.mesh()) && a.rotation == b.rotation && a.scale == b.scale
 }
 
-fn bake(body: &SceneBody) -> Result<Arc<Mesh>, sim_core::MeshError> {
+fn bake(body: &SceneBody) -> Result<Arc<Mesh>, MeshError> {
     if body.rotation == DVec3::ZERO && body.scale == DVec3::ONE {
         return Ok(body.mesh.mesh().clone());
     }

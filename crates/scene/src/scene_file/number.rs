@@ -10,17 +10,6 @@ use serde::ser::{Serialize, Serializer};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Number(pub(super) f64);
 
-/// Three numbers.
-pub(super) type Triple = [Number; 3];
-
-pub(super) fn triple(v: DVec3) -> Triple {
-    v.to_array().map(Number)
-}
-
-pub(super) fn vector(triple: Triple) -> DVec3 {
-    DVec3::from(triple.map(|number| number.0))
-}
-
 impl<'de> Deserialize<'de> for Number {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Number, D::Error> {
         deserializer.deserialize_any(NumberVisitor)
@@ -61,11 +50,50 @@ impl Serialize for Number {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         // A whole number of up to 15 digits is exact and short; -0 is not a whole number.
         let whole = self.0 as i64;
-        if whole.abs() < 1_000_000_000_000_000 && (whole as f64).to_bits() == self.0.to_bits() {
+        if self.0.abs() < 1e15 && (whole as f64).to_bits() == self.0.to_bits() {
             serializer.serialize_i64(whole)
         } else {
             serializer.serialize_f64(self.0)
         }
+    }
+}
+
+/// Three numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Triple(pub(super) DVec3);
+
+impl<'de> Deserialize<'de> for Triple {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Triple, D::Error> {
+        deserializer.deserialize_seq(TripleVisitor)
+    }
+}
+
+struct TripleVisitor;
+
+impl<'de> Visitor<'de> for TripleVisitor {
+    type Value = Triple;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("three numbers")
+    }
+
+    /// Unlike serde's own arrays, refuses a fourth number.
+    fn visit_seq<A: SeqAccess<'de>>(self, mut values: A) -> Result<Triple, A::Error> {
+        let mut triple = [0.0; 3];
+        for (i, component) in triple.iter_mut().enumerate() {
+            let next: Option<Number> = values.next_element()?;
+            *component = next.ok_or_else(|| Error::invalid_length(i, &self))?.0;
+        }
+        match values.next_element::<Number>()? {
+            Some(_) => Err(Error::invalid_length(4, &self)),
+            None => Ok(Triple(DVec3::from(triple))),
+        }
+    }
+}
+
+impl Serialize for Triple {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.to_array().map(Number).serialize(serializer)
     }
 }
 
@@ -96,16 +124,8 @@ impl<'de> Visitor<'de> for ScaleVisitor {
         self.visit_f64(value as f64)
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut values: A) -> Result<Scale, A::Error> {
-        let mut scale = [0.0; 3];
-        for (i, axis) in scale.iter_mut().enumerate() {
-            let next: Option<Number> = values.next_element()?;
-            *axis = next.ok_or_else(|| Error::invalid_length(i, &self))?.0;
-        }
-        match values.next_element::<Number>()? {
-            Some(_) => Err(Error::invalid_length(4, &self)),
-            None => Ok(Scale(DVec3::from(scale))),
-        }
+    fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> Result<Scale, A::Error> {
+        Ok(Scale(TripleVisitor.visit_seq(values)?.0))
     }
 }
 
@@ -115,7 +135,7 @@ impl Serialize for Scale {
         if x == y && y == z {
             Number(x).serialize(serializer)
         } else {
-            triple(self.0).serialize(serializer)
+            Triple(self.0).serialize(serializer)
         }
     }
 }

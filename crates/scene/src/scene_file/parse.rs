@@ -12,7 +12,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use super::meshes::MeshSource;
-use super::number::{Number, Triple, vector};
+use super::number::{Number, Triple};
 use super::text::{Body, Header};
 use crate::colour;
 use crate::error::SceneError;
@@ -150,7 +150,7 @@ impl<'a> Place<'a> {
         let Some(value) = value else {
             return Ok(DVec3::ZERO);
         };
-        let v = vector(*value.get_ref());
+        let Triple(v) = *value.get_ref();
         // NaN is not below anything.
         if !v.abs().cmple(DVec3::splat(LARGEST)).all() {
             let what = format!("must be three numbers within ±1e100, is {v}");

@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::number::{Number, Scale, triple};
+use super::number::{Number, Scale, Triple};
 use super::parse::collision_name;
 use super::text::{Body, File, Header};
 use crate::colour;
@@ -32,11 +32,11 @@ fn body(body: &SceneBody) -> Body {
     Body {
         name: spanned(body.name.clone()),
         mesh: spanned(body.mesh.name().to_owned()),
-        position: Some(spanned(triple(body.position))),
-        rotation: Some(spanned(triple(body.rotation))),
+        position: Some(spanned(Triple(body.position))),
+        rotation: Some(spanned(Triple(body.rotation))),
         scale: Some(spanned(Scale(body.scale))),
-        velocity: Some(spanned(triple(body.velocity))),
-        force: Some(spanned(triple(body.force))),
+        velocity: Some(spanned(Triple(body.velocity))),
+        force: Some(spanned(Triple(body.force))),
         mass: Some(spanned(Number(body.mass))),
         colour: body.colour.map(|c| spanned(colour::format(c))),
     }
