@@ -120,9 +120,7 @@ impl App {
             let context = open.egui.egui_ctx().clone();
             let mut place = egui::Rect::ZERO;
             let output = context.run_ui(input, |root| {
-                place = self
-                    .ui
-                    .show(root, &mut self.session, open.gpu.picture_id());
+                place = self.ui.show(root, &mut self.session, open.gpu.picture_id());
             });
             open.egui
                 .handle_platform_output(&open.window, output.platform_output);
@@ -158,7 +156,7 @@ impl ApplicationHandler<Redraw> for App {
         }
         let attributes = Window::default_attributes()
             .with_title("Cowbell")
-            .with_inner_size(LogicalSize::new(1280.0, 800.0));
+            .with_inner_size(LogicalSize::new(1360.0, 880.0));
         let opened = match event_loop.create_window(attributes) {
             Ok(window) => Open::new(event_loop, Arc::new(window), &self.proxy),
             Err(error) => Err(no_display(&error.to_string())),

@@ -50,7 +50,19 @@ pub struct UiFrame {
 impl Gpu {
     /// Opens a device that can show pictures in `window`.
     pub fn new(event_loop: &ActiveEventLoop, window: Arc<Window>) -> Result<Self> {
-        let (instance, surface, adapter) = Self::find_adapter(event_loop, &window)?;
+        let display = Box::new(event_loop.owned_display_handle());
+        let instance = wgpu::Instance::new(
+            wgpu::InstanceDescriptor::new_with_display_handle_from_env(display),
+        );
+        let surface = instance
+            .create_surface(window.clone())
+            .context("no surface in the window")?;
+        let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            compatible_surface: Some(&surface),
+            ..Default::default()
+        }))
+        .context("no graphics adapter")?;
         let (device, queue) =
             pollster::block_on(adapter.request_device(&render::device_descriptor(&adapter)))
                 .context("no graphics device")?;
@@ -67,11 +79,7 @@ impl Gpu {
         config.present_mode = wgpu::PresentMode::AutoVsync;
 
         let mut ui = egui_wgpu::Renderer::new(&device, format, Default::default());
-        let scene = Renderer::new(
-            &device,
-            PICTURE,
-            render::supported_samples(&adapter),
-        );
+        let scene = Renderer::new(&device, PICTURE, render::supported_samples(&adapter));
         let picture_view = picture_texture(&device, [1, 1]);
         let picture_id =
             ui.register_native_texture(&device, &picture_view, wgpu::FilterMode::Linear);
@@ -91,39 +99,6 @@ impl Gpu {
         };
         gpu.configure();
         Ok(gpu)
-    }
-
-    /// An adapter that can draw in the window. Vulkan and its like come first; OpenGL is asked
-    /// only if they are missing, since asking it alone makes some drivers complain.
-    fn find_adapter(
-        event_loop: &ActiveEventLoop,
-        window: &Arc<Window>,
-    ) -> Result<(wgpu::Instance, wgpu::Surface<'static>, wgpu::Adapter)> {
-        let mut failure = anyhow::anyhow!("no graphics adapter");
-        for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::GL] {
-            let display = Box::new(event_loop.owned_display_handle());
-            let mut descriptor = wgpu::InstanceDescriptor::new_with_display_handle(display);
-            descriptor.backends = backends;
-            let instance = wgpu::Instance::new(descriptor.with_env());
-            let found = instance
-                .create_surface(window.clone())
-                .context("no surface in the window")
-                .and_then(|surface| {
-                    let options = wgpu::RequestAdapterOptions {
-                        power_preference: wgpu::PowerPreference::HighPerformance,
-                        compatible_surface: Some(&surface),
-                        ..Default::default()
-                    };
-                    let adapter = pollster::block_on(instance.request_adapter(&options))
-                        .context("no graphics adapter")?;
-                    Ok((surface, adapter))
-                });
-            match found {
-                Ok((surface, adapter)) => return Ok((instance, surface, adapter)),
-                Err(error) => failure = error,
-            }
-        }
-        Err(failure)
     }
 
     /// The texture that holds the picture.

@@ -179,7 +179,10 @@ fn run_out_of_numbers_ends_with_code_1_body_and_step() {
     let path_text = path.to_string_lossy();
     let command = cowbell(&["run", &path_text, "--dt", "1e60", "--json"]);
     let text = refusal(command, 1);
-    assert!(text.contains("runaway") && text.contains("step 1"), "{text}");
+    assert!(
+        text.contains("runaway") && text.contains("step 1"),
+        "{text}"
+    );
     fs::remove_file(path).expect("the file is removed");
 }
 
@@ -208,11 +211,7 @@ fn check_describes_a_mesh() {
     let repairs = report["repairs"].as_array().expect("an array");
     assert!(!repairs.is_empty());
     assert!(repairs.iter().all(|r| keys(r) == ["count", "kind"]));
-    assert!(
-        answer(&["check", &path.to_string_lossy()])
-            .status
-            .success()
-    );
+    assert!(answer(&["check", &path.to_string_lossy()]).status.success());
     fs::remove_file(path).expect("the file is removed");
 }
 

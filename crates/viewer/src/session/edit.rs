@@ -137,11 +137,7 @@ impl Session {
     }
 
     /// Makes the world anew from a changed scene, or takes the change back. Whether it worked.
-    fn rebuild(
-        &mut self,
-        about: &'static str,
-        take_back: impl FnOnce(&mut scene::Scene),
-    ) -> bool {
+    fn rebuild(&mut self, about: &'static str, take_back: impl FnOnce(&mut scene::Scene)) -> bool {
         match self.scene.world() {
             Ok(world) => {
                 self.notices.dismiss(about);

@@ -117,7 +117,7 @@ impl Session {
             from,
             to: from + velocity * self.display.arrow_time,
             colour: BLUE,
-            radius: (0.04 * half.max_element()) as f32,
+            radius: (0.07 * half.max_element()) as f32,
         })
     }
 
@@ -178,12 +178,7 @@ fn depth_colour(depth: usize, levels: usize) -> [f32; 4] {
         (2.0 - (h - 3.0).abs()).clamp(0.0, 1.0)
     };
     // Channels peak at hue 0 (red), 2 (green) and 4 (blue).
-    [
-        channel(3.0),
-        channel(1.0),
-        channel(5.0),
-        1.0 - 0.5 * t,
-    ]
+    [channel(3.0), channel(1.0), channel(5.0), 1.0 - 0.5 * t]
 }
 
 /// The twelve edges of a box.

@@ -403,6 +403,10 @@ fn opens_imports_and_saves() {
     assert!(complaint(&mut other, "open").is_some());
     other.take_in(Path::new("no such mesh.obj"));
     assert!(complaint(&mut other, "import").is_some());
-    assert_eq!(positions(&other), positions(&session), "the old scene stays");
+    assert_eq!(
+        positions(&other),
+        positions(&session),
+        "the old scene stays"
+    );
     std::fs::remove_dir_all(&folder).expect("the folder is removed");
 }

@@ -13,7 +13,11 @@ pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session)
         .fixed_pos(over.center_top() + egui::vec2(0.0, 12.0))
         .show(ctx, |ui| {
             for notice in session.notices().iter() {
-                let colour = if notice.error { style::RED } else { style::GREEN };
+                let colour = if notice.error {
+                    style::RED
+                } else {
+                    style::GREEN
+                };
                 Frame::popup(ui.style())
                     .stroke(Stroke::new(1.0, colour))
                     .show(ui, |ui| {

@@ -7,7 +7,8 @@ use crate::number;
 use crate::session::{Session, State};
 
 pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
-    let frame = egui::Frame::side_top_panel(root.style()).inner_margin(egui::Margin::symmetric(10, 7));
+    let frame =
+        egui::Frame::side_top_panel(root.style()).inner_margin(egui::Margin::symmetric(10, 7));
     Panel::top("bar").frame(frame).show(root, |ui| {
         ui.horizontal(|ui| {
             buttons(ui, state, session);
@@ -16,10 +17,8 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.toggle_value(&mut state.help, "Keys")
                     .on_hover_text("All keys and mouse gestures (H)");
-                let mut shown = !state.panel_hidden;
-                ui.toggle_value(&mut shown, "Panel")
-                    .on_hover_text("Show or hide the side panel (P)");
-                state.panel_hidden = !shown;
+                hiding(ui, &mut state.panel_hidden, "Panel", "Side panel (P)");
+                hiding(ui, &mut state.live_hidden, "Live", "Live figures (L)");
                 ui.add_space(6.0);
                 ui.add(egui::Label::new(RichText::new(&session.scene().title).weak()).truncate())
                     .on_hover_text(&session.scene().about);
@@ -55,6 +54,13 @@ fn buttons(ui: &mut egui::Ui, state: &Ui, session: &mut Session) {
     {
         session.reset();
     }
+}
+
+/// A button that shows and hides something.
+fn hiding(ui: &mut egui::Ui, hidden: &mut bool, name: &str, meaning: &str) {
+    let mut shown = !*hidden;
+    ui.toggle_value(&mut shown, name).on_hover_text(meaning);
+    *hidden = !shown;
 }
 
 fn status(ui: &mut egui::Ui, session: &Session) {

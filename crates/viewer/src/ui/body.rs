@@ -79,13 +79,13 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
 
 /// Colour, name and mesh.
 fn heading(ui: &mut egui::Ui, session: &mut Session, i: usize) {
-    let mut colour = session.colour(i);
+    let mut colour = session.colour(i).map(|part| (255.0 * part).round() as u8);
     ui.horizontal(|ui| {
-        if egui::color_picker::color_edit_button_rgb(ui, &mut colour)
+        if egui::color_picker::color_edit_button_srgb(ui, &mut colour)
             .on_hover_text("Colour of the body")
             .changed()
         {
-            session.set_colour(colour);
+            session.set_colour(colour.map(|part| f32::from(part) / 255.0));
         }
         let body = &session.scene().bodies[i];
         ui.add(egui::Label::new(RichText::new(&body.name).strong()).truncate());

@@ -13,7 +13,7 @@ struct Shortcut {
     act: fn(&mut Ui, &mut Session),
 }
 
-static SHORTCUTS: [Shortcut; 9] = [
+static SHORTCUTS: [Shortcut; 10] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
@@ -61,6 +61,12 @@ static SHORTCUTS: [Shortcut; 9] = [
         label: "P",
         meaning: "side panel",
         act: |ui, _| ui.panel_hidden ^= true,
+    },
+    Shortcut {
+        keys: &[Key::L],
+        label: "L",
+        meaning: "live figures",
+        act: |ui, _| ui.live_hidden ^= true,
     },
     Shortcut {
         keys: &[Key::H],

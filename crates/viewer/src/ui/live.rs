@@ -1,17 +1,41 @@
-//! Figures of the running world.
+//! Figures of the running world, over the picture.
 
-use egui::RichText;
+use egui::{Align2, Area, Color32, Frame, RichText};
 
 use super::{field, style};
 use crate::number;
 use crate::session::Session;
 
-pub(super) fn show(ui: &mut egui::Ui, session: &Session) {
-    ui.spacing_mut().item_spacing.y = 1.0;
-    ui.spacing_mut().interact_size.y = 17.0;
+/// Shows the figures in the lower left corner of the picture.
+pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &Session) {
+    Area::new(egui::Id::unique("live"))
+        .pivot(Align2::LEFT_BOTTOM)
+        .fixed_pos(over.left_bottom() + egui::vec2(10.0, -10.0))
+        .interactable(true)
+        .show(ctx, |ui| {
+            Frame::NONE
+                .fill(Color32::from_black_alpha(185))
+                .corner_radius(6)
+                .inner_margin(egui::Margin::symmetric(10, 8))
+                .show(ui, |ui| {
+                    ui.set_width(330.0_f32.min(over.width() - 40.0));
+                    ui.spacing_mut().item_spacing.y = 1.0;
+                    ui.spacing_mut().interact_size.y = 17.0;
+                    figures(ui, session);
+                    impacts(ui, session);
+                });
+        });
+}
+
+fn figures(ui: &mut egui::Ui, session: &Session) {
     let (world, figures, drift) = (session.world(), session.figures(), session.drift());
     let none = || "-".to_owned();
-    field::figure(ui, "Time", "Simulated time", format!("{:.3} s", world.time()));
+    field::figure(
+        ui,
+        "Time",
+        "Simulated time",
+        format!("{:.3} s", world.time()),
+    );
     field::figure(
         ui,
         "Steps",
@@ -63,7 +87,6 @@ pub(super) fn show(ui: &mut egui::Ui, session: &Session) {
          taken into account",
         number::relative(drift.momentum),
     );
-    impacts(ui, session);
 }
 
 fn impacts(ui: &mut egui::Ui, session: &Session) {
@@ -74,7 +97,13 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
         "Collisions answered since the start",
         world.impacts().to_string(),
     );
-    let name = |i: usize| session.scene().bodies.get(i).map_or("?", |b| b.name.as_str());
+    let name = |i: usize| {
+        session
+            .scene()
+            .bodies
+            .get(i)
+            .map_or("?", |b| b.name.as_str())
+    };
     if let Some(impact) = world.last_impact() {
         let (a, b) = impact.bodies;
         field::figure(

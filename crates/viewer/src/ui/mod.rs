@@ -28,6 +28,7 @@ pub use style::apply as apply_style;
 pub struct Ui {
     help: bool,
     panel_hidden: bool,
+    live_hidden: bool,
     files: scene::Files,
     /// Reads real time, to measure steps taken by hand.
     stopwatch: Option<Stopwatch>,
@@ -57,6 +58,9 @@ impl Ui {
             self.side_panel(root, session);
         }
         let rect = viewport::show(root, session, picture);
+        if !self.live_hidden {
+            live::show(root.ctx(), rect, session);
+        }
         banner::show(root.ctx(), rect, session);
         keys::show_help(root.ctx(), &mut self.help);
         rect
@@ -74,7 +78,6 @@ impl Ui {
                         section(ui, "Scene", |ui| scene::show(ui, &mut self.files, session));
                         section(ui, "Simulation", |ui| simulation::show(ui, session));
                         section(ui, "Selected body", |ui| body::show(ui, session));
-                        section(ui, "Live", |ui| live::show(ui, session));
                         section(ui, "Display", |ui| display::show(ui, session));
                     });
             });

@@ -108,7 +108,12 @@ fn paths(ui: &mut egui::Ui, files: &mut Files, session: &mut Session) {
             "Choose a scene to open or a mesh to add",
             Purpose::Read,
         );
-        ask(ui, "Save as…", "Choose where to save the scene", Purpose::Save);
+        ask(
+            ui,
+            "Save as…",
+            "Choose where to save the scene",
+            Purpose::Save,
+        );
     });
 }
 

@@ -10,7 +10,11 @@ use crate::session::{MAX_RATE, MIN_RATE, Session};
 pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     let now = *session.world().settings();
     ui.horizontal(|ui| {
-        field::label(ui, "Integrator", "How velocities and positions go from step to step");
+        field::label(
+            ui,
+            "Integrator",
+            "How velocities and positions go from step to step",
+        );
         ComboBox::from_id_salt("integrator")
             .selected_text(now.method.title)
             .width(ui.available_width() - 8.0)
