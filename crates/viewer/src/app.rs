@@ -184,6 +184,9 @@ impl ApplicationHandler<Redraw> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        if event == WindowEvent::RedrawRequested {
+            return self.frame(event_loop);
+        }
         let Some(open) = &mut self.open else { return };
         let response = open.egui.on_window_event(&open.window, &event);
         if response.repaint {
@@ -191,7 +194,6 @@ impl ApplicationHandler<Redraw> for App {
         }
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
-            WindowEvent::RedrawRequested => self.frame(event_loop),
             WindowEvent::Resized(_) | WindowEvent::Occluded(false) => open.window.request_redraw(),
             WindowEvent::DroppedFile(path) => {
                 self.session.take_in(&path);
