@@ -169,16 +169,17 @@ impl Session {
     }
 }
 
-/// From red at the root over green to violet at the deepest level; the deeper, the fainter.
+/// From red at the root over green to violet at the deepest level, dark enough for the light
+/// background; the deeper, the fainter.
 fn depth_colour(depth: usize, levels: usize) -> [f32; 4] {
     let t = depth as f32 / levels.saturating_sub(1).max(1) as f32;
     let hue = 4.8 * t;
-    let channel = |shift: f32| {
-        let h = (hue + shift).rem_euclid(6.0);
-        (2.0 - (h - 3.0).abs()).clamp(0.0, 1.0)
+    // Red, green and blue peak at the hues 0, 2 and 4 of a circle of 6.
+    let channel = |peak: f32| {
+        let away = (hue - peak + 3.0).rem_euclid(6.0) - 3.0;
+        0.8 * (2.0 - away.abs()).clamp(0.0, 1.0)
     };
-    // Channels peak at hue 0 (red), 2 (green) and 4 (blue).
-    [channel(3.0), channel(1.0), channel(5.0), 1.0 - 0.5 * t]
+    [channel(0.0), channel(2.0), channel(4.0), 1.0 - 0.5 * t]
 }
 
 /// The twelve edges of a box.

@@ -1,6 +1,6 @@
 //! Messages over the picture, until dismissed.
 
-use egui::{Align2, Area, Button, Frame, RichText, Stroke};
+use egui::{Area, Button, Frame, RichText, Stroke};
 
 use super::style;
 use crate::session::Session;
@@ -9,8 +9,7 @@ pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session)
     let mut dismissed = None;
     Area::new(egui::Id::unique("notices"))
         .order(egui::Order::Foreground)
-        .pivot(Align2::CENTER_TOP)
-        .fixed_pos(over.center_top() + egui::vec2(0.0, 12.0))
+        .fixed_pos(over.left_top() + egui::vec2(10.0, 10.0))
         .show(ctx, |ui| {
             for notice in session.notices().iter() {
                 let colour = if notice.error {

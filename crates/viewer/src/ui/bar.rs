@@ -82,15 +82,15 @@ fn status(ui: &mut egui::Ui, session: &Session) {
     let world = session.world();
     ui.label(RichText::new(format!("{:.3} s", world.time())).monospace())
         .on_hover_text("Simulated time");
-    if session.figures().is_behind() {
+    if session.state() == State::Running && session.figures().is_behind() {
         let behind = session.figures().behind.as_secs_f64();
         ui.label(
             RichText::new(format!("behind real time by {}", number::seconds(behind)))
                 .color(style::AMBER),
         )
         .on_hover_text(
-            "Steps take longer than the time they stand for, so the rest was given up. \
-             Lower the rate, or test collisions through the BVH.",
+            "Steps or pictures took longer than the time they stand for, so the rest was given \
+             up. If steps are slow, lower the rate or test collisions through the BVH.",
         );
     }
 }

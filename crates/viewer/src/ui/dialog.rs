@@ -3,8 +3,11 @@
 use std::future::Future;
 use std::path::PathBuf;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use rfd::{AsyncFileDialog, FileHandle};
+
+use crate::stopwatch::Stopwatch;
 
 /// What a dialog asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,14 +18,13 @@ pub(super) enum Purpose {
     Save,
 }
 
-/// An answer closer than this to the question came from no person, s.
-const TOO_FAST: f64 = 0.4;
+/// An answer that comes faster than this came from no person.
+const TOO_FAST: Duration = Duration::from_millis(400);
 
 /// A dialog that the person has before them.
 pub(super) struct Dialog {
     purpose: Purpose,
-    opened: f64,
-    thread: JoinHandle<Option<FileHandle>>,
+    thread: JoinHandle<(Option<FileHandle>, Duration)>,
 }
 
 /// How a dialog ended.
@@ -67,28 +69,24 @@ impl Dialog {
     ) -> Option<Self> {
         let redraw = ctx.clone();
         let thread = std::thread::Builder::new().spawn(move || {
+            let stopwatch = Stopwatch::start();
             let file = pollster::block_on(file);
             redraw.request_repaint();
-            file
+            (file, stopwatch.read())
         });
         Some(Self {
             purpose,
-            opened: ctx.time(),
             thread: thread.ok()?,
         })
     }
 
     /// The answer, once there is one.
-    pub(super) fn answer(dialog: &mut Option<Self>, now: f64) -> Option<Answer> {
-        let Dialog {
-            purpose,
-            opened,
-            thread,
-        } = dialog.take_if(|dialog| dialog.thread.is_finished())?;
+    pub(super) fn answer(dialog: &mut Option<Self>) -> Option<Answer> {
+        let Dialog { purpose, thread } = dialog.take_if(|dialog| dialog.thread.is_finished())?;
         Some(match thread.join() {
-            Ok(Some(file)) => Answer::Chosen(purpose, file.path().to_path_buf()),
-            Ok(None) if now - opened > TOO_FAST => Answer::Cancelled,
-            Ok(None) | Err(_) => Answer::Unavailable,
+            Ok((Some(file), _)) => Answer::Chosen(purpose, file.path().to_path_buf()),
+            Ok((None, time)) if time > TOO_FAST => Answer::Cancelled,
+            Ok((None, _)) | Err(_) => Answer::Unavailable,
         })
     }
 }

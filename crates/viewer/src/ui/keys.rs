@@ -22,7 +22,7 @@ static SHORTCUTS: [Shortcut; 10] = [
     },
     Shortcut {
         keys: &[Key::ArrowRight, Key::Period],
-        label: "Right",
+        label: "Right or .",
         meaning: "single step",
         act: |ui, session| ui.step(session),
     },
@@ -76,12 +76,11 @@ static SHORTCUTS: [Shortcut; 10] = [
     },
 ];
 
-static GESTURES: [(&str, &str); 7] = [
+static GESTURES: [(&str, &str); 6] = [
     ("Click", "select a body"),
     ("Drag left or right", "orbit"),
     ("Drag middle, Shift + drag", "pan"),
     ("Wheel", "zoom"),
-    (".", "single step too"),
     ("Drop a file", "add a mesh or open a scene"),
     ("Drag a number", "change it; click to type"),
 ];

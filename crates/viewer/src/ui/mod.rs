@@ -50,7 +50,7 @@ impl Ui {
         session: &mut Session,
         picture: egui::TextureId,
     ) -> egui::Rect {
-        self.files.poll(root.ctx(), session);
+        self.files.poll(session);
         keys::handle(root.ctx(), self, session);
         bar::show(root, self, session);
         keys::show_line(root);

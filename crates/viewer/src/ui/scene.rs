@@ -17,8 +17,8 @@ pub(super) struct Files {
 
 impl Files {
     /// Takes the answer of a dialog, once there is one.
-    pub(super) fn poll(&mut self, ctx: &egui::Context, session: &mut Session) {
-        match Dialog::answer(&mut self.dialog, ctx.time()) {
+    pub(super) fn poll(&mut self, session: &mut Session) {
+        match Dialog::answer(&mut self.dialog) {
             None | Some(Answer::Cancelled) => {}
             Some(Answer::Chosen(Purpose::Read, path)) => session.take_in(&path),
             // The dialog has asked before overwriting.

@@ -29,6 +29,7 @@ pub fn apply(ctx: &egui::Context) {
         spacing.interact_size.y = 22.0;
         spacing.slider_width = 150.0;
         spacing.tooltip_width = 320.0;
+        spacing.scroll = egui::style::ScrollStyle::thin();
         let visuals = &mut style.visuals;
         visuals.panel_fill = Color32::from_rgb(29, 31, 35);
         visuals.window_fill = Color32::from_rgb(36, 38, 43);
