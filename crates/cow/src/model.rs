@@ -72,10 +72,11 @@ impl Model {
     /// A cow of only the parts that shape the surface within `reach`, m, of `p`.
     pub fn near(&self, p: Vec3, reach: f32) -> Self {
         let half = Vec3::new(p.x, p.y, p.z.abs());
-        // Where the surface passes, it feels parts within its widest blend, and
-        // their distances may be blended down by a quarter of it. On the way
-        // from `p` both the cow's and the part's distance change by `reach`.
-        let limit = self.distance(p).abs() + 2.0 * reach + 1.25 * WIDEST_BLEND;
+        // Where the surface passes, it feels parts within the widest blend; on
+        // the way there the cow's and the part's distance change by `reach`.
+        // Both count twice, since blends add up and the distances to ellipsoids
+        // change faster than the position.
+        let limit = self.distance(p).abs() + 4.0 * reach + 2.0 * WIDEST_BLEND;
         let close = |part: &&Part| part.shape.distance(half) <= limit;
         Self {
             parts: self.parts.iter().filter(close).copied().collect(),
