@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
 
 /// The most corners of a polygon that is not convex: cutting ears takes quadratic time.
-pub(super) const MAX_CONCAVE_CORNERS: usize = 2000;
+pub(super) const MAX_CONCAVE_CORNERS: usize = 1000;
 
 /// Cuts a polygon into `corners.len() - 2` triangles of corner numbers and appends them to `out`.
 ///

@@ -7,6 +7,7 @@
 
 mod document;
 mod geometry;
+mod guard;
 mod node;
 mod transform;
 
@@ -31,6 +32,7 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
         let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
         ReadError::at(line, "is not UTF-8 text: save the COLLADA file as UTF-8")
     })?;
+    guard::check(text)?;
     // The default options refuse document type definitions, and with them entity expansion.
     let xml = roxmltree::Document::parse(text).map_err(|error| {
         let line = error.pos().row as usize;
