@@ -73,14 +73,7 @@ pub struct Offscreen {
 impl Offscreen {
     /// The fastest adapter there is, one that draws in software if there is no other.
     pub fn new() -> Result<Self, ShotError> {
-        let instance =
-            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle().with_env());
-        let options = wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            ..Default::default()
-        };
-        let adapter = pollster::block_on(instance.request_adapter(&options))
-            .map_err(|_| ShotError::NoAdapter)?;
+        let adapter = adapter().ok_or(ShotError::NoAdapter)?;
         let (device, queue) =
             pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
                 .map_err(ShotError::Device)?;
@@ -192,4 +185,23 @@ impl Offscreen {
         self.queue.submit([encoder.finish()]);
         readback
     }
+}
+
+/// An adapter of the backends that the environment asks for, else of the platform's own, and OpenGL's as the last.
+fn adapter() -> Option<wgpu::Adapter> {
+    let choices = match wgpu::Backends::from_env() {
+        Some(backends) => vec![backends],
+        None => vec![wgpu::Backends::PRIMARY, wgpu::Backends::GL],
+    };
+    choices.into_iter().find_map(|backends| {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends,
+            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+        });
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        pollster::block_on(instance.request_adapter(&options)).ok()
+    })
 }
