@@ -67,6 +67,6 @@ fn fs_edged(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec
     let ink = max(inks.x, max(inks.y, inks.z));
     let normal = normalize(in.normal);
     let grazing = 1.0 - abs(dot(normal, normalize(in.position)));
-    let bright = mix(surface(in, front), vec3f(1.0), 0.06 + 0.3 * grazing * grazing * grazing);
+    let bright = 1.1 * surface(in, front) + vec3f(0.012 + 0.12 * grazing * grazing * grazing);
     return vec4f(mix(bright, EDGE, ink), 1.0);
 }
