@@ -32,7 +32,7 @@ pub struct FixedStep {
     /// One nanosecond is `1 << shift` units.
     shift: u32,
     step: u128,
-    cap: u128,
+    most_steps: u128,
     waiting: u128,
     dropped: Duration,
 }
@@ -65,12 +65,12 @@ impl FixedStep {
         let exponent = (bits >> 52) as i32 - 1075;
         let shift = (-exponent).unsigned_abs();
         let step = mantissa * 1_000_000_000;
-        let cap = catch_up.as_nanos().min(LONGEST_NS) << shift;
+        let most_steps = (catch_up.as_nanos().min(LONGEST_NS) << shift) / step;
         Ok(FixedStep {
             dt,
             shift,
             step,
-            cap: cap.max(step),
+            most_steps: most_steps.max(1),
             waiting: 0,
             dropped: Duration::ZERO,
         })
@@ -83,7 +83,7 @@ impl FixedStep {
         let counted_ns = total_ns.min(LONGEST_NS);
         self.waiting += counted_ns << self.shift;
         // Whole steps above the limit go; the fraction stays, so that drawing does not jump.
-        let excess = self.waiting.saturating_sub(self.cap).div_ceil(self.step) * self.step;
+        let excess = (self.waiting / self.step).saturating_sub(self.most_steps);
         self.give_up(excess, total_ns - counted_ns)
     }
 
@@ -98,7 +98,7 @@ impl FixedStep {
 
     /// Gives up the whole steps still waiting, for a caller that has no time for them.
     pub fn drop_backlog(&mut self) -> Duration {
-        self.give_up(self.waiting - self.waiting % self.step, 0)
+        self.give_up(self.waiting / self.step, 0)
     }
 
     /// What is left over, in steps: 0 draws the previous state, 1 the current one.
@@ -117,7 +117,8 @@ impl FixedStep {
         self.dropped
     }
 
-    fn give_up(&mut self, units: u128, uncounted_ns: u128) -> Duration {
+    fn give_up(&mut self, steps: u128, uncounted_ns: u128) -> Duration {
+        let units = steps * self.step;
         self.waiting -= units;
         let time = duration((units >> self.shift) + uncounted_ns);
         self.dropped = self.dropped.saturating_add(time);
@@ -182,9 +183,9 @@ mod tests {
 
     #[test]
     fn a_stall_is_capped_and_reported() {
-        let mut clock = FixedStep::new(0.01, Duration::from_millis(250)).unwrap();
+        let mut clock = FixedStep::new(1.0 / 128.0, Duration::from_millis(250)).unwrap();
         let dropped = clock.advance(Duration::from_secs(10));
-        assert_eq!(steps(&mut clock), 25);
+        assert_eq!(steps(&mut clock), 32);
         assert!((dropped.as_secs_f64() - 9.75).abs() < 1e-9);
         assert_eq!(clock.dropped(), dropped);
         assert!(clock.fraction() < 1.0);
@@ -203,9 +204,9 @@ mod tests {
 
     #[test]
     fn at_least_one_step_may_wait_however_small_the_cap() {
-        let mut clock = FixedStep::new(0.2, Duration::ZERO).unwrap();
-        for _ in 0..10 {
-            clock.advance(Duration::from_millis(100));
+        let mut clock = FixedStep::new(0.25, Duration::ZERO).unwrap();
+        for _ in 0..11 {
+            clock.advance(Duration::from_millis(125));
         }
         assert_eq!(steps(&mut clock), 1);
     }

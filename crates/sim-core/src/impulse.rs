@@ -34,8 +34,14 @@ mod tests {
             let (w1, w2) = (u1 - j / m1, u2 + j / m2);
             let exact1 = ((m1 - m2) * u1 + 2.0 * m2 * u2) / (m1 + m2);
             let exact2 = ((m2 - m1) * u2 + 2.0 * m1 * u1) / (m1 + m2);
-            assert!((w1 - exact1).abs() <= 1e-12 * exact1.abs().max(1.0), "{m1} {m2}");
-            assert!((w2 - exact2).abs() <= 1e-12 * exact2.abs().max(1.0), "{m1} {m2}");
+            assert!(
+                (w1 - exact1).abs() <= 1e-12 * exact1.abs().max(1.0),
+                "{m1} {m2}"
+            );
+            assert!(
+                (w2 - exact2).abs() <= 1e-12 * exact2.abs().max(1.0),
+                "{m1} {m2}"
+            );
         }
     }
 

@@ -1,4 +1,51 @@
 //! Rigid triangle meshes that move and collide.
+//!
+//! `no_std` with `alloc`, no I/O, no clock, no threads, no `unsafe`. Quantities are in SI units.
+//! State is `f64`, geometry `f32`; decisions about geometry are exact.
+//!
+//! # A step, in the order in which it happens
+//!
+//! 1. [`FixedStep`] turns the time since the last frame into whole steps of `dt`.
+//! 2. [`World::step`] keeps the state as the previous one and moves every [`Body`] by a
+//!    [`Method`] of the table [`METHODS`].
+//! 3. Each pair of bodies is asked whether their [`Mesh`]es meet: [`collide::naive`] tries every
+//!    edge against every triangle, [`collide::tree`] goes through a [`Bvh`] of each. Both
+//!    rest on the exact [`collide::predicates`] and always agree.
+//! 4. Where two meet, [`collide::touch`] finds the feature that touched first and with it the
+//!    contact normal, [`impulse::elastic`] the impulse. Velocities change, and both bodies go
+//!    back to where the step began, so that no two meshes are ever left inside each other.
+//! 5. [`World::interpolated`] gives positions between the last two states to draw.
+//!
+//! ```
+//! use core::time::Duration;
+//! use std::sync::Arc;
+//! use sim_core::{Body, DVec3, FixedStep, Mesh, Settings, Vec3, World};
+//!
+//! let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+//! let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+//! let mesh = Some(Arc::new(Mesh::new(corners, faces)?));
+//!
+//! let mut world = World::new(Settings::default())?;
+//! let position = DVec3::new(-3.0, 0.0, 0.0);
+//! world.add(Body { mesh: mesh.clone(), ..Body::default() })?;
+//! world.add(Body { mesh, position, velocity: -position, ..Body::default() })?;
+//!
+//! let mut clock = FixedStep::new(world.settings().dt, Duration::from_millis(250))?;
+//! for _frame in 0..100 {
+//!     clock.advance(Duration::from_millis(20));
+//!     while clock.take() {
+//!         world.step()?;
+//!     }
+//! }
+//! assert_eq!(world.impacts(), 1);
+//! assert!((world.kinetic_energy() - 4.5).abs() < 1e-14);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Limits
+//!
+//! Bodies translate and do not turn. Overlap is looked for at the end of each step: what is
+//! through a body within one step is not seen.
 #![no_std]
 #![forbid(unsafe_code)]
 

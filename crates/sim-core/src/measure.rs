@@ -14,6 +14,8 @@ impl World {
 
     /// Momentum of all bodies, kg m/s.
     pub fn momentum(&self) -> DVec3 {
-        (0..self.len()).map(|i| self.mass(i) * self.velocity(i)).sum()
+        (0..self.len())
+            .map(|i| self.mass(i) * self.velocity(i))
+            .sum()
     }
 }

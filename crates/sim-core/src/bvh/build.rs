@@ -50,7 +50,9 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
     let mut pending = vec![(0, 0..items.len(), 0)];
     while let Some((node, run, level)) = pending.pop() {
         depth = depth.max(level + 1);
-        let bounds = run.clone().fold(Aabb::EMPTY, |b, i| b.union(items[i].bounds));
+        let bounds = run
+            .clone()
+            .fold(Aabb::EMPTY, |b, i| b.union(items[i].bounds));
         match split(&mut items[run.clone()], &bounds, level) {
             Some(left) => {
                 let first = nodes.len();
@@ -86,7 +88,9 @@ fn split(items: &mut [Item], bounds: &Aabb, level: usize) -> Option<usize> {
     if items.len() == 1 {
         return None;
     }
-    let by_area = (level < HALVE_FROM).then(|| best_plane(items, bounds)).flatten();
+    let by_area = (level < HALVE_FROM)
+        .then(|| best_plane(items, bounds))
+        .flatten();
     match by_area {
         Some(plane) if items.len() > MAX_LEAF || plane.cost < items.len() as f64 => {
             Some(partition(items, |item| plane.bin(item) <= plane.last_left))
@@ -171,7 +175,11 @@ fn best_plane(items: &[Item], bounds: &Aabb) -> Option<Plane> {
 }
 
 fn weigh(bounds: Aabb, count: usize) -> f64 {
-    if count == 0 { 0.0 } else { bounds.half_area() * count as f64 }
+    if count == 0 {
+        0.0
+    } else {
+        bounds.half_area() * count as f64
+    }
 }
 
 /// Brings the items that go left to the front, and counts them. The order within either part
@@ -191,7 +199,12 @@ fn partition(items: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
 fn owners(mesh: &Mesh, faces: impl Iterator<Item = u32>) -> Vec<Triangle> {
     let mut owner_of_vertex = vec![u32::MAX; mesh.vertices().len()];
     let mut owner_of_edge = vec![u32::MAX; mesh.edges().len()];
-    for (face, (corners, edges)) in mesh.triangles().iter().zip(mesh.triangle_edges()).enumerate() {
+    for (face, (corners, edges)) in mesh
+        .triangles()
+        .iter()
+        .zip(mesh.triangle_edges())
+        .enumerate()
+    {
         for &v in corners {
             let owner = &mut owner_of_vertex[v as usize];
             *owner = (*owner).min(face as u32);

@@ -93,7 +93,8 @@ impl Bvh {
 
     /// The boxes of one level.
     pub fn boxes_at(&self, depth: usize) -> impl Iterator<Item = Aabb> {
-        self.boxes().filter_map(move |(level, bounds)| (level == depth).then_some(bounds))
+        self.boxes()
+            .filter_map(move |(level, bounds)| (level == depth).then_some(bounds))
     }
 
     pub(crate) fn node(&self, index: usize) -> &Node {
@@ -112,5 +113,105 @@ impl Node {
 
     pub(crate) fn children(&self) -> [usize; 2] {
         [self.first as usize, self.first as usize + 1]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::{cube, sphere};
+    use alloc::vec;
+
+    /// Every triangle in one leaf, every box around what is below it, no level too deep.
+    fn check(mesh: &Mesh) -> Bvh {
+        let bvh = Bvh::build(mesh);
+        let mut seen = vec![0; mesh.triangles().len()];
+        let mut pending = vec![(0, 1, None::<Aabb>)];
+        let mut reached = 0;
+        while let Some((index, level, parent)) = pending.pop() {
+            reached += 1;
+            let node = bvh.node(index);
+            assert!(level <= bvh.depth() && bvh.depth() <= MAX_DEPTH);
+            if let Some(parent) = parent {
+                assert_eq!(parent.union(node.bounds), parent);
+            }
+            if node.is_leaf() {
+                let mut tight = Aabb::EMPTY;
+                for t in bvh.leaf(node) {
+                    seen[t.face as usize] += 1;
+                    assert_eq!(t.corners, mesh.corners(t.face as usize));
+                    tight = tight.union(Aabb::around(t.corners));
+                }
+                assert_eq!(tight, node.bounds);
+            } else {
+                pending.extend(node.children().map(|c| (c, level + 1, Some(node.bounds))));
+            }
+        }
+        assert!(seen.iter().all(|&n| n == 1));
+        assert_eq!(reached, bvh.node_count());
+        assert_eq!(bvh.boxes().count(), reached);
+        assert_eq!(
+            (0..bvh.depth())
+                .map(|d| bvh.boxes_at(d).count())
+                .sum::<usize>(),
+            reached
+        );
+        // Each edge and vertex has one owner.
+        let owned = |owns: fn(&Triangle) -> [bool; 3]| {
+            let all = bvh.triangles.iter().flat_map(owns);
+            all.filter(|&o| o).count()
+        };
+        assert_eq!(owned(|t| t.owns_edge), mesh.edges().len());
+        assert_eq!(owned(|t| t.owns_vertex), mesh.vertices().len());
+        bvh
+    }
+
+    fn soup(corners: impl Iterator<Item = [Vec3; 3]>) -> Mesh {
+        let vertices: Vec<Vec3> = corners.flatten().collect();
+        let n = vertices.len() as u32 / 3;
+        Mesh::new(
+            vertices,
+            (0..n).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn trees_hold_their_mesh() {
+        check(&cube());
+        let bvh = check(&sphere(60));
+        assert!(bvh.depth() < 30, "{}", bvh.depth());
+    }
+
+    #[test]
+    fn any_input_makes_a_tree() {
+        let t = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        check(&soup([t].into_iter()));
+        check(&soup([t, t].into_iter()));
+        check(&soup([t; 1000].into_iter()));
+        // All centres equal, all sizes different.
+        check(&soup((1..500).map(|i| {
+            t.map(|v| (v - Vec3::new(0.5, 0.5, 0.0)) * i as f32)
+        })));
+        check(&soup((0..500).map(|_| [Vec3::ONE; 3])));
+        check(&soup((0..500).map(|i| [Vec3::X * i as f32; 3])));
+        check(&soup(
+            (0..100).map(|i| t.map(|v| v * 1e-38 + Vec3::Y * i as f32 * 1e-38)),
+        ));
+        check(&soup(
+            (0..100).map(|i| t.map(|v| v * 1e38 + Vec3::Y * i as f32 * 2e36)),
+        ));
+        // Each twice as far as the last: area would split off one triangle at a time.
+        let row = (0..120).map(|i| t.map(|v| (v + 1.0) * libm::exp2f(i as f32 - 60.0)));
+        check(&soup(row));
+    }
+
+    #[test]
+    fn a_million_triangles_in_a_line() {
+        let t = [Vec3::ZERO, Vec3::X * 0.5, Vec3::Y];
+        let bvh = check(&soup(
+            (0..1_000_000).map(|i| t.map(|v| v + Vec3::X * i as f32)),
+        ));
+        assert!(bvh.depth() < 40, "{}", bvh.depth());
     }
 }

@@ -103,7 +103,10 @@ fn slab(bounds: &Aabb, origin: DVec3, direction: DVec3, nearest: f64) -> bool {
             }
             continue;
         }
-        let (near, far) = ((min - origin[axis]) * inverse, (max - origin[axis]) * inverse);
+        let (near, far) = (
+            (min - origin[axis]) * inverse,
+            (max - origin[axis]) * inverse,
+        );
         enter = enter.max(near.min(far));
         leave = leave.min(near.max(far) * (1.0 + 8.0 * f64::EPSILON));
     }
@@ -129,7 +132,12 @@ mod tests {
     #[test]
     fn rays_through_edges_and_corners_are_hits() {
         let bvh = Bvh::build(&test_meshes::cube());
-        for target in [(0.5, 0.5, 0.5), (-0.5, 0.5, 0.2), (0.5, 0.1, -0.5), (0.5, 0.0, 0.0)] {
+        for target in [
+            (0.5, 0.5, 0.5),
+            (-0.5, 0.5, 0.2),
+            (0.5, 0.1, -0.5),
+            (0.5, 0.0, 0.0),
+        ] {
             let target = DVec3::from(target);
             for origin in [target * 3.0, target + DVec3::new(2.0, 2.0, 2.0)] {
                 let hit = bvh.ray(origin, target - origin);
@@ -147,7 +155,9 @@ mod tests {
                 let aim = v.as_dvec3().lerp(w.as_dvec3(), 0.5);
                 let nearest = bvh.ray(DVec3::new(0.01, 0.02, 0.03), v.as_dvec3());
                 assert!(nearest.is_some());
-                assert!(bvh.ray(DVec3::new(0.01, 0.02, 0.03), aim).is_some() || aim.length() < 1e-9);
+                assert!(
+                    bvh.ray(DVec3::new(0.01, 0.02, 0.03), aim).is_some() || aim.length() < 1e-9
+                );
             }
         }
     }

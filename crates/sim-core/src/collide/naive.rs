@@ -46,11 +46,26 @@ fn each_hit(
     mut found: impl FnMut(Pair) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let first_vertices: Vec<DVec3> = first.vertices().iter().map(|v| v.as_dvec3()).collect();
-    let second_vertices: Vec<DVec3> =
-        second.vertices().iter().map(|&v| place(v, offset)).collect();
+    let second_vertices: Vec<DVec3> = second
+        .vertices()
+        .iter()
+        .map(|&v| place(v, offset))
+        .collect();
     let ways = [
-        (Side::First, first, &first_vertices, second, &second_vertices),
-        (Side::Second, second, &second_vertices, first, &first_vertices),
+        (
+            Side::First,
+            first,
+            &first_vertices,
+            second,
+            &second_vertices,
+        ),
+        (
+            Side::Second,
+            second,
+            &second_vertices,
+            first,
+            &first_vertices,
+        ),
     ];
     for (side, edges_of, edge_vertices, faces_of, face_vertices) in ways {
         for (edge, ends) in edges_of.edges().iter().enumerate() {

@@ -153,7 +153,13 @@ impl Search {
         }
         let moving = matches!(feature, Feature::FaceVertex { .. });
         let place = |t: f64| if moving { x + t * d } else { x };
-        self.add((-height, height_error), (fall, fall_error), normal, place, feature);
+        self.add(
+            (-height, height_error),
+            (fall, fall_error),
+            normal,
+            place,
+            feature,
+        );
     }
 
     fn edge_edge(&mut self, [a, b, c, e]: [DVec3; 4], feature: Feature) {
@@ -170,7 +176,13 @@ impl Search {
             return;
         }
         let place = |_| a + (on_first / det).clamp(0.0, 1.0) * u;
-        self.add((time, time_error), (det, det_error), u.cross(w), place, feature);
+        self.add(
+            (time, time_error),
+            (det, det_error),
+            u.cross(w),
+            place,
+            feature,
+        );
     }
 
     /// Notes the contact at time `numerator / denominator`, if it may be the earliest.
@@ -196,7 +208,11 @@ impl Search {
         };
         let time = time.clamp(0.0, 1.0);
         self.earliest = self.earliest.min(time + error);
-        let against = if normal.dot(self.motion) < 0.0 { normal } else { -normal };
+        let against = if normal.dot(self.motion) < 0.0 {
+            normal
+        } else {
+            -normal
+        };
         let touch = Touch {
             time,
             point: place(time),
@@ -208,7 +224,8 @@ impl Search {
 
     fn best(mut self) -> Option<Touch> {
         let earliest = self.earliest;
-        self.found.retain(|(touch, error)| touch.time - error <= earliest);
+        self.found
+            .retain(|(touch, error)| touch.time - error <= earliest);
         let rank = |touch: &Touch| {
             let edges = matches!(touch.feature, Feature::EdgeEdge { .. });
             (edges, touch.normal.dot(self.direction), touch.feature)
@@ -234,4 +251,108 @@ fn triple(a: DVec3, b: DVec3, c: DVec3) -> (f64, f64) {
         + a.y * (b.z * c.x + b.x * c.z)
         + a.z * (b.x * c.y + b.y * c.x);
     (value, TRIPLE_ERROR * size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collide::tree;
+    use crate::test_meshes::{cube, sphere};
+    use glam::DQuat;
+
+    fn cubes(offset: DVec3, motion: DVec3) -> Option<Touch> {
+        let cube = Bvh::build(&cube());
+        first_touch(&cube, &cube, offset, motion)
+    }
+
+    fn v(x: f64, y: f64, z: f64) -> DVec3 {
+        DVec3::new(x, y, z)
+    }
+
+    #[test]
+    fn cubes_face_on_touch_along_the_face_normal() {
+        // Aligned, offset, overhanging, and not quite straight on.
+        for (y, z) in [
+            (0.0, 0.0),
+            (0.3, 0.2),
+            (0.5, -0.5),
+            (0.999, 0.0),
+            (-0.25, 1e-9),
+            (1e-17, 0.0),
+        ] {
+            for slant in [0.0, 1e-3, -0.2] {
+                let touch = cubes(v(3.0, y, z), v(-4.0, slant, 0.0)).unwrap();
+                assert_eq!(touch.normal, DVec3::X, "{y} {z} {slant}: {touch:?}");
+                assert!((touch.time - 0.5).abs() < 1e-15);
+                assert!((touch.point.x - 0.5).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn a_corner_gets_the_normal_of_the_face_it_meets() {
+        let corner_first = DQuat::from_rotation_arc(v(1.0, 1.0, 1.0).normalize(), DVec3::NEG_X);
+        let tilted = Bvh::build(&cube().transformed(corner_first, DVec3::ONE).unwrap());
+        let straight = Bvh::build(&cube());
+        let touch = first_touch(&straight, &tilted, v(3.0, 0.1, 0.2), v(-4.0, 0.3, 0.0)).unwrap();
+        assert!(
+            matches!(touch.feature, Feature::FaceVertex { .. }),
+            "{touch:?}"
+        );
+        assert_eq!(touch.normal, DVec3::X);
+        let back = first_touch(&tilted, &straight, v(-3.0, -0.1, -0.2), v(4.0, -0.3, 0.0)).unwrap();
+        assert!(matches!(back.feature, Feature::VertexFace { .. }));
+        assert_eq!(back.normal, DVec3::NEG_X);
+        assert!((back.time - touch.time).abs() < 1e-15);
+    }
+
+    #[test]
+    fn crossing_edges_get_their_common_perpendicular() {
+        let turn = |axis, angle| {
+            let turned = cube().transformed(DQuat::from_axis_angle(axis, angle), DVec3::ONE);
+            Bvh::build(&turned.unwrap())
+        };
+        let eighth = core::f64::consts::FRAC_PI_4;
+        // One cube has an edge along z in front, the other one along y.
+        let (first, second) = (turn(DVec3::Z, eighth), turn(DVec3::Y, eighth));
+        let touch = first_touch(&first, &second, v(3.0, 0.1, 0.05), v(-3.0, 0.0, 0.0)).unwrap();
+        assert!(
+            matches!(touch.feature, Feature::EdgeEdge { .. }),
+            "{touch:?}"
+        );
+        assert!((touch.normal - DVec3::X).length() < 1e-7);
+        let gap = 3.0 - 2.0 * core::f64::consts::FRAC_1_SQRT_2;
+        assert!((touch.time - gap / 3.0).abs() < 1e-7);
+    }
+
+    #[test]
+    fn no_touch_without_way_or_motion() {
+        assert_eq!(cubes(v(3.0, 0.0, 0.0), DVec3::ZERO), None);
+        assert_eq!(cubes(v(3.0, 0.0, 0.0), v(-1.9, 0.0, 0.0)), None);
+        assert_eq!(cubes(v(3.0, 1.1, 0.0), v(-6.0, 0.0, 0.0)), None);
+        assert_eq!(cubes(v(3.0, 0.0, 0.0), v(5.0, 0.0, 0.0)), None);
+    }
+
+    #[test]
+    fn bodies_are_apart_before_the_touch_and_meet_after() {
+        let (ball, cube) = (Bvh::build(&sphere(12)), Bvh::build(&cube()));
+        for i in 0..200 {
+            let angle = f64::from(i) * 0.7;
+            let offset = v(
+                4.0 * libm::cos(angle),
+                4.0 * libm::sin(angle),
+                0.013 * f64::from(i) - 1.3,
+            );
+            let motion = v(-0.9, 0.1, -0.05) * offset;
+            let touch = first_touch(&ball, &cube, offset, motion);
+            let at = |t: f64| tree::intersect(&ball, &cube, offset + t * motion);
+            match touch {
+                Some(t) => {
+                    assert!(!at(t.time - 1e-9) && at(t.time + 1e-9), "{i} {t:?}");
+                    assert!(t.normal.dot(motion) < 0.0 && (t.normal.length() - 1.0).abs() < 1e-15);
+                }
+                None => assert!((0..=1000).all(|s| !at(f64::from(s) * 1e-3)), "{i}"),
+            }
+        }
+    }
 }

@@ -63,7 +63,8 @@ pub(super) fn each_pair(
             continue;
         }
         // Opens the larger box, so that both stay of a size.
-        let open_first = b.is_leaf() || !a.is_leaf() && a.bounds.half_area() >= b.bounds.half_area();
+        let open_first =
+            b.is_leaf() || !a.is_leaf() && a.bounds.half_area() >= b.bounds.half_area();
         let pairs = if open_first {
             a.children().map(|i| (i, j))
         } else {

@@ -94,3 +94,81 @@ pub(crate) struct Forces<'a> {
     pub(crate) force: &'a [DVec3],
     pub(crate) mass: &'a [f64],
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Body, Settings, World};
+
+    /// A 2 kg point from the origin at (1, 2, 3) m/s under (0, -1, 4) N, after `steps`.
+    fn fall(method: &'static Method, dt: f64, steps: u32) -> (DVec3, DVec3) {
+        let settings = Settings {
+            dt,
+            method,
+            ..Settings::default()
+        };
+        let mut world = World::new(settings).unwrap();
+        let body = world.add(Body {
+            velocity: DVec3::new(1.0, 2.0, 3.0),
+            force: DVec3::new(0.0, -1.0, 4.0),
+            mass: 2.0,
+            ..Body::default()
+        });
+        let body = body.unwrap();
+        for _ in 0..steps {
+            world.step().unwrap();
+        }
+        (world.position(body), world.velocity(body))
+    }
+
+    #[test]
+    fn names_are_unique_and_found() {
+        for method in METHODS {
+            assert!(core::ptr::eq(Method::named(method.name).unwrap(), method));
+        }
+        assert_eq!(Method::named("euler"), None);
+    }
+
+    #[test]
+    fn each_method_meets_its_own_exact_discrete_solution() {
+        let (v, a) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.0, -0.5, 2.0));
+        for method in METHODS {
+            // After n steps x = n dt v + k dt² a, with k the sum of the weights of a.
+            let weight = |n: f64| match method.name {
+                "forward-euler" => n * (n - 1.0) / 2.0,
+                "backward-euler" | "symplectic-euler" => n * (n + 1.0) / 2.0,
+                _ => n * n / 2.0,
+            };
+            for (dt, steps) in [(0.2, 20), (1.0 / 60.0, 240), (1.0 / 240.0, 960)] {
+                let n = f64::from(steps);
+                let (x, w) = fall(method, dt, steps);
+                let exact = n * dt * v + weight(n) * dt * dt * a;
+                assert!(
+                    (x - exact).length() < 1e-12,
+                    "{} {dt}: {x} {exact}",
+                    method.name
+                );
+                assert!(
+                    (w - (v + n * dt * a)).length() < 1e-12,
+                    "{} {dt}",
+                    method.name
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn order_one_methods_halve_their_error_with_dt_and_rk4_has_none() {
+        let exact = DVec3::new(1.0, 2.0 - 0.25, 3.0 + 1.0);
+        for method in METHODS {
+            let error = |n: u32| (fall(method, 1.0 / f64::from(n), n).0 - exact).length();
+            match method.order {
+                1 => {
+                    let order = libm::log2(error(64) / error(128));
+                    assert!((order - 1.0).abs() < 1e-9, "{} {order}", method.name);
+                }
+                _ => assert!(error(64) < 1e-13),
+            }
+        }
+    }
+}

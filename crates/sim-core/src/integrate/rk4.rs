@@ -39,7 +39,9 @@ mod tests {
         for _ in 0..steps {
             (x, v) = step(x, v, dt, |x, _| -x);
         }
-        (x.x - libm::cos(1.0)).abs().max((v.x + libm::sin(1.0)).abs())
+        (x.x - libm::cos(1.0))
+            .abs()
+            .max((v.x + libm::sin(1.0)).abs())
     }
 
     #[test]

@@ -133,3 +133,132 @@ impl Mesh {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::{cube, sphere};
+    use alloc::vec;
+
+    #[test]
+    fn a_cube_is_closed_outward_and_one_cubic_metre() {
+        let mesh = cube();
+        assert!(mesh.is_closed() && mesh.is_oriented());
+        assert_eq!(mesh.volume(), Some(1.0));
+        assert_eq!(
+            (
+                mesh.vertices().len(),
+                mesh.edges().len(),
+                mesh.triangles().len()
+            ),
+            (8, 18, 12)
+        );
+        for (triangle, edges) in mesh.triangles().iter().zip(mesh.triangle_edges()) {
+            for i in 0..3 {
+                let (a, b) = (triangle[i], triangle[(i + 1) % 3]);
+                assert_eq!(mesh.edges()[edges[i] as usize], [a.min(b), a.max(b)]);
+            }
+        }
+    }
+
+    #[test]
+    fn openness_and_winding_are_seen() {
+        let all = cube().triangles().to_vec();
+        let with = |triangles| Mesh::new(cube().vertices().to_vec(), triangles).unwrap();
+        let open = with(all[1..].to_vec());
+        assert!(!open.is_closed() && open.is_oriented() && open.volume().is_none());
+        let mut turned = all.clone();
+        turned[3].swap(0, 1);
+        let turned = with(turned);
+        assert!(turned.is_closed() && !turned.is_oriented() && turned.volume().is_none());
+        let inward = with(all.iter().map(|&[a, b, c]| [a, c, b]).collect());
+        assert_eq!(inward.volume(), Some(-1.0));
+    }
+
+    #[test]
+    fn transformed_meshes_stay_outward() {
+        let turn = DQuat::from_rotation_z(core::f64::consts::FRAC_PI_2);
+        let scaled = cube()
+            .transformed(turn, DVec3::new(-2.0, 3.0, 0.5))
+            .unwrap();
+        assert!((scaled.volume().unwrap() - 3.0).abs() < 1e-6);
+        assert!((scaled.bounds().half_extent() - DVec3::new(1.5, 1.0, 0.25)).length() < 1e-6);
+        let rebuilt = Mesh::new(scaled.vertices().to_vec(), scaled.triangles().to_vec());
+        assert_eq!(rebuilt.as_ref(), Ok(&scaled));
+        for scale in [
+            DVec3::new(1.0, 0.0, 1.0),
+            DVec3::splat(f64::NAN),
+            DVec3::splat(1e300),
+        ] {
+            assert!(
+                cube().transformed(DQuat::IDENTITY, scale).is_err(),
+                "{scale}"
+            );
+        }
+        assert!(
+            cube()
+                .transformed(DQuat::from_xyzw(1.0, 1.0, 0.0, 0.0), DVec3::ONE)
+                .is_err()
+        );
+    }
+
+    #[test]
+    fn what_is_not_a_mesh_is_refused_by_name() {
+        let points = || vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        assert_eq!(Mesh::new(points(), vec![]), Err(MeshError::Empty));
+        let far = Mesh::new(points(), vec![[0, 1, 2], [0, 1, 3]]);
+        assert_eq!(
+            far,
+            Err(MeshError::IndexOutOfRange {
+                triangle: 1,
+                index: 3,
+                vertices: 3
+            })
+        );
+        let twice = Mesh::new(points(), vec![[0, 1, 1]]);
+        assert_eq!(twice, Err(MeshError::RepeatedCorner { triangle: 0 }));
+        for bad in [f32::NAN, f32::INFINITY] {
+            let broken = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::splat(bad)], vec![[0, 1, 2]]);
+            assert_eq!(broken, Err(MeshError::NotFinite { vertex: 2 }));
+        }
+        // Nothing is left of a triangle that has shrunk to a segment.
+        let gone = Mesh::repaired(vec![Vec3::ZERO, Vec3::X, Vec3::X], vec![[0, 1, 2]]);
+        assert_eq!(gone.unwrap_err(), MeshError::Empty);
+    }
+
+    #[test]
+    fn a_soup_of_separate_triangles_becomes_the_mesh() {
+        for mesh in [cube(), sphere(9)] {
+            let corners = (0..mesh.triangles().len()).flat_map(|i| mesh.corners(i));
+            let mut vertices: Vec<Vec3> = corners.collect();
+            let faces = mesh.triangles().len() as u32;
+            let mut triangles: Vec<_> = (0..faces).map(|i| [3 * i, 3 * i + 2, 3 * i + 1]).collect();
+            triangles.push([0, 1, 1]);
+            triangles.push([1, 0, 2]);
+            vertices.push(Vec3::ONE);
+            let (made, repairs) = Mesh::repaired(vertices, triangles).unwrap();
+            assert!((made.volume().unwrap() - mesh.volume().unwrap()).abs() < 1e-6);
+            assert!(made.is_closed() && made.is_oriented());
+            assert_eq!(
+                repairs,
+                Repairs {
+                    welded_vertices: 3 * faces as usize - mesh.vertices().len(),
+                    degenerate_triangles: 1,
+                    duplicate_triangles: 1,
+                    unreferenced_vertices: 1,
+                    reversed_winding: true,
+                }
+            );
+            let (again, none) =
+                Mesh::repaired(made.vertices().to_vec(), made.triangles().to_vec()).unwrap();
+            assert!(none.is_empty() && again == made);
+        }
+    }
+
+    #[test]
+    fn minus_zero_is_zero_to_the_weld() {
+        let vertices = vec![Vec3::ZERO, Vec3::X, Vec3::Y, -Vec3::ZERO, -Vec3::X];
+        let (mesh, repairs) = Mesh::repaired(vertices, vec![[0, 1, 2], [3, 2, 4]]).unwrap();
+        assert_eq!((repairs.welded_vertices, mesh.edges().len()), (1, 5));
+    }
+}

@@ -30,7 +30,9 @@ impl Topology {
         };
         for run in sides.chunk_by(|x, y| x.0 == y.0) {
             let edge = topology.edges.len() as u32;
-            topology.edges.push([(run[0].0 >> 32) as u32, run[0].0 as u32]);
+            topology
+                .edges
+                .push([(run[0].0 >> 32) as u32, run[0].0 as u32]);
             let mut upward = 0;
             for &(_, place) in run {
                 let (triangle, side) = (place as usize / 3, place as usize % 3);

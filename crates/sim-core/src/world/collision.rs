@@ -87,7 +87,7 @@ impl World {
     }
 
     /// Whether the surfaces of two bodies meet where they are now.
-    fn meet(&mut self, i: usize, j: usize) -> bool {
+    pub(super) fn meet(&mut self, i: usize, j: usize) -> bool {
         let offset = self.current.position[j] - self.current.position[i];
         let Some((first, second)) = self.mesh(i).zip(self.mesh(j)) else {
             return false;
@@ -152,7 +152,10 @@ impl World {
     /// moving closer: an elastic impulse along the line of their centres, nothing put back.
     fn part_overlapping(&mut self) {
         let pairs = core::mem::take(&mut self.overlapping);
-        let still: Vec<_> = pairs.into_iter().filter(|&(i, j)| self.meet(i, j)).collect();
+        let still: Vec<_> = pairs
+            .into_iter()
+            .filter(|&(i, j)| self.meet(i, j))
+            .collect();
         for &(i, j) in &still {
             let (from, to) = (self.centre(i), self.centre(j));
             let normal = (to - from).try_normalize().unwrap_or(DVec3::X);
@@ -164,7 +167,9 @@ impl World {
 
     /// Middle of a body's box, m.
     fn centre(&self, body: usize) -> DVec3 {
-        let middle = self.mesh(body).map_or(DVec3::ZERO, |mesh| mesh.bounds().centre());
+        let middle = self
+            .mesh(body)
+            .map_or(DVec3::ZERO, |mesh| mesh.bounds().centre());
         self.current.position[body] + middle
     }
 

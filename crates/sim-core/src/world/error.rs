@@ -53,7 +53,11 @@ pub enum StepError {
 const LARGEST: f64 = 1e100;
 const POSITIVE: core::ops::RangeInclusive<f64> = 1e-100..=LARGEST;
 
-pub(super) fn check_vector(body: usize, field: &'static str, value: DVec3) -> Result<(), WorldError> {
+pub(super) fn check_vector(
+    body: usize,
+    field: &'static str,
+    value: DVec3,
+) -> Result<(), WorldError> {
     // NaN is not below anything.
     if value.abs().cmple(DVec3::splat(LARGEST)).all() {
         Ok(())

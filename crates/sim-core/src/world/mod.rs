@@ -2,6 +2,8 @@
 
 mod collision;
 mod error;
+#[cfg(test)]
+mod tests;
 
 use alloc::{sync::Arc, vec::Vec};
 use glam::DVec3;
@@ -206,7 +208,8 @@ impl World {
 
     /// Position between the last two states, m: 0 gives the previous one, 1 the current one.
     pub fn interpolated(&self, body: usize, fraction: f64) -> DVec3 {
-        self.previous_position(body).lerp(self.position(body), fraction)
+        self.previous_position(body)
+            .lerp(self.position(body), fraction)
     }
 
     /// Velocity of a body, m/s.

@@ -1,0 +1,160 @@
+//! Exact contact, from predicates to meshes: against rational arithmetic, and naive against BVH.
+
+mod oracle;
+
+use proptest::prelude::*;
+use sim_core::collide::predicates::{segment_meets_triangle, triangles_meet};
+use sim_core::collide::{naive, tree};
+use sim_core::{Bvh, DVec3, Mesh, Vec3};
+
+/// Points that touch, coincide and lie in planes more often than not: a small lattice, some of
+/// it moved by an ulp, scaled by a power of two and moved far away.
+fn hard_points<const N: usize>() -> impl Strategy<Value = [DVec3; N]> {
+    let coordinate = (0..5i32, -1..=1i32);
+    let points = prop::array::uniform::<_, N>(prop::array::uniform3(coordinate));
+    let offset = prop_oneof![Just(0.0), Just(1e8), Just(-0.1)];
+    (points, -60..60i32, offset, any::<bool>()).prop_map(|(points, exponent, offset, nudge)| {
+        let scale = 2.0_f64.powi(exponent);
+        points.map(|p| {
+            DVec3::from_array(p.map(|(cell, ulps)| {
+                let x = f64::from(cell) + offset;
+                let x = match ulps {
+                    1 if nudge => x.next_up(),
+                    -1 if nudge => x.next_down(),
+                    _ => x,
+                };
+                x * scale
+            }))
+        })
+    })
+}
+
+/// A soup of triangles on a lattice, with degenerate ones, shared corners and coplanar faces.
+fn lattice_soup(most: usize) -> impl Strategy<Value = Mesh> {
+    let vertex = prop::array::uniform3(0..6i32);
+    let vertices = prop::collection::vec(vertex, 3..40);
+    (
+        vertices,
+        prop::collection::vec(prop::array::uniform3(0..1000u32), 1..most),
+    )
+        .prop_filter_map("a mesh", |(vertices, triangles)| {
+            let count = vertices.len() as u32;
+            let vertices = vertices
+                .iter()
+                .map(|v| Vec3::from_array(v.map(|x| x as f32)))
+                .collect();
+            let triangles = triangles.iter().map(|t| t.map(|v| v % count)).collect();
+            Mesh::repaired(vertices, triangles)
+                .ok()
+                .map(|(mesh, _)| mesh)
+        })
+}
+
+/// A soup of small random triangles.
+fn random_soup() -> impl Strategy<Value = Mesh> {
+    let corner = prop::array::uniform3(-1.0f32..1.0);
+    let triangle = (corner.clone(), prop::array::uniform2(corner));
+    prop::collection::vec(triangle, 1..60).prop_map(|soup| {
+        let corners = soup.iter().flat_map(|&(at, arms)| {
+            let at = Vec3::from_array(at);
+            [
+                at,
+                at + Vec3::from_array(arms[0]) * 0.3,
+                at + Vec3::from_array(arms[1]) * 0.3,
+            ]
+        });
+        let triangles = (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+        Mesh::new(corners.collect(), triangles.collect()).expect("three corners each")
+    })
+}
+
+/// Naive and BVH give the same answer and the same hits, to the bit.
+fn assert_same(first: &Mesh, second: &Mesh, offset: DVec3) -> Result<bool, TestCaseError> {
+    let (a, b) = (Bvh::build(first), Bvh::build(second));
+    let hits = naive::hits(first, second, offset);
+    prop_assert_eq!(&hits, &tree::hits(&a, &b, offset));
+    prop_assert_eq!(!hits.is_empty(), naive::intersect(first, second, offset));
+    prop_assert_eq!(!hits.is_empty(), tree::intersect(&a, &b, offset));
+    prop_assert_eq!(!hits.is_empty(), tree::intersect(&b, &a, -offset));
+    Ok(!hits.is_empty())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4000))]
+
+    #[test]
+    fn segments_and_triangles_agree_with_rational_arithmetic(
+        [p, q, a, b, c] in hard_points(),
+    ) {
+        let exact = oracle::segment_meets_triangle(p, q, [a, b, c]);
+        prop_assert_eq!(segment_meets_triangle(p, q, [a, b, c]), exact);
+        prop_assert_eq!(segment_meets_triangle(q, p, [c, b, a]), exact);
+    }
+
+    #[test]
+    fn triangles_agree_with_rational_arithmetic([a, b, c, d, e, f] in hard_points()) {
+        let (s, t) = ([a, b, c], [d, e, f]);
+        let crosses = |s: [DVec3; 3], t: [DVec3; 3]| {
+            (0..3).any(|i| oracle::segment_meets_triangle(s[i], s[(i + 1) % 3], t))
+        };
+        let exact = crosses(s, t) || crosses(t, s);
+        prop_assert_eq!(triangles_meet(s, t), exact);
+        prop_assert_eq!(triangles_meet(t, s), exact);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn naive_and_bvh_agree_on_lattices(
+        first in lattice_soup(40),
+        second in lattice_soup(40),
+        offset in prop::array::uniform3(-6..6i32),
+        scale in prop_oneof![Just(1.0), Just(1e-10), Just(1e10)],
+    ) {
+        let scaled = |mesh: &Mesh| mesh.transformed(sim_core::DQuat::IDENTITY, DVec3::splat(scale));
+        let (first, second) = (scaled(&first).unwrap(), scaled(&second).unwrap());
+        assert_same(&first, &second, DVec3::from_array(offset.map(f64::from)) * scale)?;
+    }
+
+    #[test]
+    fn naive_and_bvh_agree_on_random_soups(
+        first in random_soup(),
+        second in random_soup(),
+        offset in prop::array::uniform3(-2.0..2.0),
+    ) {
+        assert_same(&first, &second, DVec3::from_array(offset))?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    #[test]
+    fn hits_are_those_of_rational_arithmetic(
+        first in lattice_soup(9),
+        second in lattice_soup(9),
+        offset in prop::array::uniform3(-3..3i32),
+    ) {
+        let offset = DVec3::from_array(offset.map(f64::from));
+        let (a, b) = (Bvh::build(&first), Bvh::build(&second));
+        let mut exact = Vec::new();
+        let at = |mesh: &Mesh, v: u32, offset: DVec3| mesh.vertices()[v as usize].as_dvec3() + offset;
+        let zero = DVec3::ZERO;
+        for (edges, edges_at, faces, faces_at) in
+            [(&first, zero, &second, offset), (&second, offset, &first, zero)]
+        {
+            for (edge, ends) in edges.edges().iter().enumerate() {
+                for (face, corners) in faces.triangles().iter().enumerate() {
+                    let [p, q] = ends.map(|v| at(edges, v, edges_at));
+                    if oracle::segment_meets_triangle(p, q, corners.map(|v| at(faces, v, faces_at))) {
+                        exact.push((edge as u32, face as u32));
+                    }
+                }
+            }
+        }
+        let found = tree::hits(&a, &b, offset);
+        prop_assert_eq!(found.iter().map(|h| (h.edge, h.face)).collect::<Vec<_>>(), exact);
+    }
+}
