@@ -21,7 +21,7 @@ fn main() -> anyhow::Result<()> {
     std::fs::create_dir_all(folder)?;
     let cube = Arc::new(cuboid(Vec3::splat(0.5))?);
     let shape = Arc::new(match arguments.next() {
-        Some(path) => obj(Path::new(&path))?,
+        Some(path) => scene::mesh_file::load(Path::new(&path))?.mesh,
         None => torus(96, 48)?,
     });
     let mut offscreen = Offscreen::new()?;
@@ -183,23 +183,4 @@ fn torus(around: u32, across: u32) -> anyhow::Result<Mesh> {
         }
     }
     Ok(Mesh::repaired(vertices, triangles)?.0)
-}
-fn obj(path: &Path) -> anyhow::Result<Mesh> {
-    let (mut v, mut t) = (vec![], vec![]);
-    for l in std::fs::read_to_string(path)?.lines() {
-        let w: Vec<&str> = l.split_whitespace().collect();
-        if w.first() == Some(&"v") {
-            v.push(Vec3::new(w[1].parse()?, w[2].parse()?, w[3].parse()?));
-        }
-        if w.first() == Some(&"f") {
-            let i: Vec<u32> = w[1..]
-                .iter()
-                .map(|s| s.split('/').next().unwrap().parse::<u32>().unwrap() - 1)
-                .collect();
-            for k in 1..i.len() - 1 {
-                t.push([i[0], i[k], i[k + 1]]);
-            }
-        }
-    }
-    Ok(Mesh::repaired(v, t)?.0)
 }

@@ -181,8 +181,10 @@ mod tests {
     #[test]
     fn projection_agrees_with_the_matrix() {
         for aspect in ASPECTS {
-            let mut camera = Camera::default();
-            camera.target = DVec3::new(1e8, 3.0, -1e8);
+            let camera = Camera {
+                target: DVec3::new(1e8, 3.0, -1e8),
+                ..Camera::default()
+            };
             let point = camera.target + DVec3::new(0.5, 1.0, -0.7);
             let clip =
                 camera.view_projection(aspect) * (point - camera.eye()).as_vec3().extend(1.0);

@@ -66,6 +66,7 @@ impl Arrows {
             label: "arrows",
             shader: &shader(device, "arrows", wgsl),
             vertex: "vs_main",
+            fragment: "fs_main",
             groups: &[Some(frame.layout())],
             buffers: &[
                 Some(wgpu::VertexBufferLayout {

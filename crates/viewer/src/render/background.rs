@@ -19,6 +19,7 @@ impl Background {
             label: "background",
             shader: &shader(device, "background", wgsl),
             vertex: "vs_main",
+            fragment: "fs_main",
             groups: &[Some(frame.layout())],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,

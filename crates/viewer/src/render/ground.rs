@@ -25,6 +25,7 @@ impl Ground {
             label: "ground",
             shader: &shader(device, "ground", wgsl),
             vertex: "vs_main",
+            fragment: "fs_main",
             groups: &[Some(frame.layout()), Some(shadow.layout())],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleStrip,

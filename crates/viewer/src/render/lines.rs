@@ -9,11 +9,6 @@ use super::linear;
 use super::pipeline::{Drawing, shader};
 use crate::picture::Line;
 
-pub(super) const WGSL: &str = concat!(
-    include_str!("shaders/frame.wgsl"),
-    include_str!("shaders/line.wgsl")
-);
-
 /// As `shaders/line.wgsl` has it.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -39,10 +34,15 @@ pub(super) struct Lines {
 
 impl Lines {
     pub(super) fn new(device: &wgpu::Device, frame: &FrameBinding, samples: u32) -> Self {
+        let wgsl = concat!(
+            include_str!("shaders/frame.wgsl"),
+            include_str!("shaders/line.wgsl")
+        );
         let drawing = Drawing {
             label: "lines",
-            shader: &shader(device, "lines", WGSL),
-            vertex: "vs_line",
+            shader: &shader(device, "lines", wgsl),
+            vertex: "vs_main",
+            fragment: "fs_main",
             groups: &[Some(frame.layout())],
             buffers: &[Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<Instance>() as u64,

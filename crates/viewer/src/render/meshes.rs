@@ -5,13 +5,13 @@ use std::ops::Range;
 use std::sync::{Arc, Weak};
 
 use egui_wgpu::wgpu;
-use egui_wgpu::wgpu::util::DeviceExt;
 use glam::DVec3;
 use sim_core::Mesh;
 
 use super::growing::Growing;
 use super::linear;
-use super::normals::{Shaded, Vertex};
+use super::normals::Vertex;
+use super::triangles::Triangles;
 use crate::picture::Model;
 
 /// One place a mesh is drawn at, as `shaders/surface.wgsl` has it.
@@ -22,12 +22,11 @@ struct Instance {
     offset: [f32; 3],
     radius: f32,
     colour: [f32; 3],
-    selected: f32,
 }
 
 const CORNER: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
-const INSTANCE: [wgpu::VertexAttribute; 4] =
-    wgpu::vertex_attr_array![2 => Float32x3, 3 => Float32, 4 => Float32x3, 5 => Float32];
+const INSTANCE: [wgpu::VertexAttribute; 3] =
+    wgpu::vertex_attr_array![2 => Float32x3, 3 => Float32, 4 => Float32x3];
 
 /// The layouts of the two vertex buffers that [`Meshes::draw`] sets.
 pub(super) fn layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
@@ -45,22 +44,34 @@ pub(super) fn layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
     ]
 }
 
-/// One mesh on the device.
-struct DeviceMesh {
-    /// Keeps the address that the mesh is known by from being used again; its geometry may go.
-    _mesh: Weak<Mesh>,
-    vertices: wgpu::Buffer,
-    indices: wgpu::Buffer,
-    index_count: u32,
-    /// Whether it has no inside to be seen.
-    solid: bool,
-    /// Half the diagonal of its bounds, m.
-    radius: f32,
-    edges: Option<(wgpu::Buffer, u32)>,
-    /// Where this picture draws it, while that is gathered.
-    instances: Vec<Instance>,
-    /// Where those are among all.
-    range: Range<u32>,
+/// Which of the meshes and their places to draw.
+#[derive(Clone, Copy)]
+pub(super) struct Which {
+    /// Those that have no inside to be seen, or else the others.
+    pub solid: bool,
+    /// The selected, with the corners of triangles in order, or else the others.
+    pub selected: bool,
+}
+
+impl Which {
+    pub(super) const ALL: [Which; 4] = [
+        Which {
+            solid: true,
+            selected: false,
+        },
+        Which {
+            solid: false,
+            selected: false,
+        },
+        Which {
+            solid: true,
+            selected: true,
+        },
+        Which {
+            solid: false,
+            selected: true,
+        },
+    ];
 }
 
 /// Meshes known by the address of their [`Arc`].
@@ -92,118 +103,105 @@ impl Meshes {
     ) {
         self.order.clear();
         for model in models.iter().filter(|model| model.position.is_finite()) {
-            let address = address(&model.mesh);
+            let address = Arc::as_ptr(&model.mesh).addr();
             let mesh = self
                 .known
                 .entry(address)
                 .or_insert_with(|| DeviceMesh::new(device, &model.mesh));
-            if mesh.instances.is_empty() {
+            if mesh.places.iter().all(|places| places.instances.is_empty()) {
                 self.order.push(address);
             }
-            mesh.instances.push(Instance {
-                offset: (model.position - eye).as_vec3().to_array(),
-                radius: mesh.radius,
-                colour: linear(model.colour),
-                selected: if model.selected { 1.0 } else { 0.0 },
-            });
+            if model.selected && mesh.apart.is_none() {
+                mesh.apart = Some(Triangles::apart(device, &model.mesh));
+            }
+            mesh.places[usize::from(model.selected)]
+                .instances
+                .push(Instance {
+                    offset: (model.position - eye).as_vec3().to_array(),
+                    radius: mesh.radius,
+                    colour: linear(model.colour),
+                });
         }
-        self.known.retain(|_, mesh| !mesh.instances.is_empty());
+        self.known.retain(|_, mesh| {
+            mesh.places
+                .iter()
+                .any(|places| !places.instances.is_empty())
+        });
 
         self.instances.clear();
         for address in &self.order {
-            if let Some(mesh) = self.known.get_mut(address) {
+            for places in self
+                .known
+                .get_mut(address)
+                .into_iter()
+                .flat_map(|mesh| &mut mesh.places)
+            {
                 let start = self.instances.len() as u32;
-                self.instances.append(&mut mesh.instances);
-                mesh.range = start..self.instances.len() as u32;
+                self.instances.append(&mut places.instances);
+                places.range = start..self.instances.len() as u32;
             }
         }
         let written = self.buffer.write(device, queue, &self.instances);
-        for mesh in self.known.values_mut() {
-            mesh.range = mesh.range.start.min(written)..mesh.range.end.min(written);
+        for places in self.known.values_mut().flat_map(|mesh| &mut mesh.places) {
+            places.range = places.range.start.min(written)..places.range.end.min(written);
         }
     }
 
-    /// Draws at all their places the meshes that are solid, or else the others, with a pipeline of [`layouts`].
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, solid: bool) {
+    pub(super) fn is_empty(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// Draws some of the meshes, each at all its places at once, with a pipeline of [`layouts`].
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, which: Which) {
         pass.set_vertex_buffer(1, self.buffer.buffer().slice(..));
         let meshes = self
             .order
             .iter()
             .filter_map(|address| self.known.get(address));
-        for mesh in meshes.filter(|mesh| mesh.solid == solid) {
-            pass.set_vertex_buffer(0, mesh.vertices.slice(..));
-            pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..mesh.index_count, 0, mesh.range.clone());
+        for mesh in meshes.filter(|mesh| mesh.solid == which.solid) {
+            let range = mesh.places[usize::from(which.selected)].range.clone();
+            if range.is_empty() {
+                continue;
+            }
+            let apart = mesh.apart.as_ref().filter(|_| which.selected);
+            apart.unwrap_or(&mesh.shared).draw(pass, range);
         }
     }
+}
 
-    /// The edges of a gathered mesh, pairs of points, made when first asked for; and their number.
-    pub(super) fn edges(
-        &mut self,
-        device: &wgpu::Device,
-        mesh: &Arc<Mesh>,
-    ) -> Option<(wgpu::Buffer, u32)> {
-        let known = self.known.get_mut(&address(mesh))?;
-        let edges = known.edges.get_or_insert_with(|| edge_buffer(device, mesh));
-        Some(edges.clone())
-    }
+/// One mesh on the device.
+struct DeviceMesh {
+    /// Keeps the address that the mesh is known by from being used again; its geometry may go.
+    _mesh: Weak<Mesh>,
+    shared: Triangles,
+    /// Each corner by itself and in order, since the mesh was first selected.
+    apart: Option<Triangles>,
+    /// Whether it has no inside to be seen.
+    solid: bool,
+    /// Half the diagonal of its bounds, m.
+    radius: f32,
+    /// Where it is drawn, not selected and selected.
+    places: [Places; 2],
+}
+
+#[derive(Default)]
+struct Places {
+    /// Of this picture, while it is gathered.
+    instances: Vec<Instance>,
+    /// Where those are among all.
+    range: Range<u32>,
 }
 
 impl DeviceMesh {
     fn new(device: &wgpu::Device, mesh: &Arc<Mesh>) -> Self {
-        let shaded = Shaded::new(mesh);
-        // A mesh too large for the device's buffers is drawn in part.
-        let most_indices = device.limits().max_buffer_size / size_of::<u32>() as u64;
-        let mut indices = shaded.indices.as_slice();
-        indices = &indices[..indices.len().min((most_indices / 3 * 3) as usize)];
-        let most_vertices = device.limits().max_buffer_size / size_of::<Vertex>() as u64;
-        let mut vertices = shaded.vertices.as_slice();
-        if vertices.len() as u64 > most_vertices {
-            vertices = &vertices[..most_vertices as usize];
-            let beyond = |&index: &u32| u64::from(index) >= most_vertices;
-            let end = indices.iter().position(beyond).unwrap_or(indices.len());
-            indices = &indices[..end / 3 * 3];
-        }
-        let bounds = mesh.bounds();
+        let radius = mesh.bounds().half_extent().length() as f32;
         Self {
             _mesh: Arc::downgrade(mesh),
-            vertices: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("vertices"),
-                contents: bytemuck::cast_slice(vertices),
-                usage: wgpu::BufferUsages::VERTEX,
-            }),
-            indices: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("indices"),
-                contents: bytemuck::cast_slice(indices),
-                usage: wgpu::BufferUsages::INDEX,
-            }),
-            index_count: indices.len() as u32,
+            shared: Triangles::shared(device, mesh),
+            apart: None,
             solid: mesh.volume().is_some_and(|volume| volume > 0.0),
-            radius: (bounds.half_extent().length() as f32).max(f32::MIN_POSITIVE),
-            edges: None,
-            instances: Vec::new(),
-            range: 0..0,
+            radius: radius.max(f32::MIN_POSITIVE),
+            places: Default::default(),
         }
     }
-}
-
-fn address(mesh: &Arc<Mesh>) -> usize {
-    Arc::as_ptr(mesh).addr()
-}
-
-fn edge_buffer(device: &wgpu::Device, mesh: &Mesh) -> (wgpu::Buffer, u32) {
-    let most = device.limits().max_buffer_size as usize / size_of::<[[f32; 3]; 2]>();
-    let vertices = mesh.vertices();
-    let ends: Vec<[[f32; 3]; 2]> = mesh
-        .edges()
-        .iter()
-        .take(most)
-        .map(|edge| edge.map(|end| vertices[end as usize].to_array()))
-        .collect();
-    let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("edges"),
-        contents: bytemuck::cast_slice(&ends),
-        usage: wgpu::BufferUsages::VERTEX,
-    });
-    (buffer, ends.len() as u32)
 }

@@ -6,8 +6,8 @@
 mod arrows;
 mod axes;
 mod background;
+mod blur;
 mod device;
-mod edges;
 mod finish;
 mod frame;
 mod ground;
@@ -20,6 +20,7 @@ mod pipeline;
 mod shadow;
 mod surface;
 mod targets;
+mod triangles;
 
 pub use device::{device_descriptor, supported_samples};
 
@@ -41,7 +42,6 @@ pub struct Renderer {
     surface: surface::Surface,
     shadow: shadow::Shadow,
     ground: ground::Ground,
-    edges: edges::Edges,
     lines: lines::Lines,
     arrows: arrows::Arrows,
     finish: finish::Finish,
@@ -60,7 +60,6 @@ impl Renderer {
             background: background::Background::new(device, &frame, samples),
             surface: surface::Surface::new(device, &frame, samples),
             ground: ground::Ground::new(device, &frame, &shadow, samples),
-            edges: edges::Edges::new(device, &frame, samples),
             lines: lines::Lines::new(device, &frame, samples),
             arrows: arrows::Arrows::new(device, &frame, samples),
             finish: finish::Finish::new(device, target),
@@ -89,8 +88,6 @@ impl Renderer {
         self.frame.write(queue, &frame);
         let eye = picture.camera.eye();
         self.meshes.gather(device, queue, &picture.models, eye);
-        self.edges
-            .gather(device, queue, &mut self.meshes, &picture.models, eye);
         let axis = if picture.grid {
             axes::upright(&picture.camera)
         } else {
@@ -121,7 +118,6 @@ impl Renderer {
             if picture.grid {
                 self.ground.draw(&mut pass, &self.shadow);
             }
-            self.edges.draw(&mut pass);
             self.lines.draw(&mut pass);
         }
         self.finish

@@ -174,3 +174,112 @@ impl Fan {
         self.groups[a.max(b)] = a.min(b);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shaded(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Shaded {
+        Shaded::new(&Mesh::new(vertices, triangles).expect("a mesh"))
+    }
+
+    /// The corners' normals in the order of the triangles.
+    fn normals(shaded: &Shaded) -> Vec<Vec3> {
+        let normal = |&index: &u32| Vec3::from(shaded.vertices[index as usize].normal);
+        shaded.indices.iter().map(normal).collect()
+    }
+
+    /// A strip of two squares along `x`, folded by an angle at `x = 0`.
+    fn folded(degrees: f32) -> Shaded {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let xs = [Vec3::NEG_X, Vec3::ZERO, Vec3::new(cos, sin, 0.0)];
+        let vertices = xs.into_iter().flat_map(|x| [x, x + Vec3::Z]).collect();
+        let triangles = vec![[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]];
+        shaded(vertices, triangles)
+    }
+
+    #[test]
+    fn cube_is_flat() {
+        let vertices = (0..8u8)
+            .map(|index| Vec3::from([1, 2, 4].map(|bit| if index & bit == 0 { -1.0 } else { 1.0 })))
+            .collect();
+        let faces = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let triangles = faces
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect();
+        let cube = shaded(vertices, triangles);
+        assert_eq!(cube.vertices.len(), 24);
+        let outward = [
+            Vec3::NEG_X,
+            Vec3::X,
+            Vec3::NEG_Y,
+            Vec3::Y,
+            Vec3::NEG_Z,
+            Vec3::Z,
+        ];
+        for (corner, normal) in normals(&cube).into_iter().enumerate() {
+            assert!(normal.distance(outward[corner / 6]) < 1e-6);
+        }
+    }
+
+    #[test]
+    fn gentle_folds_are_smooth_and_sharp_ones_not() {
+        for degrees in [1.0, 10.0, 34.0] {
+            let smooth = folded(degrees);
+            assert_eq!(smooth.vertices.len(), 6);
+            let middle = Vec3::new(
+                -(0.5 * degrees).to_radians().sin(),
+                (0.5 * degrees).to_radians().cos(),
+                0.0,
+            );
+            assert!(
+                Vec3::from(smooth.vertices[2].normal).distance(middle) < 1e-3,
+                "{degrees}"
+            );
+        }
+        for degrees in [36.0, 90.0, 150.0] {
+            assert_eq!(folded(degrees).vertices.len(), 8, "{degrees}");
+        }
+    }
+
+    #[test]
+    fn triangles_about_a_corner_weigh_by_their_angles() {
+        // A quarter to one side of the fold is cut in two, which must not pull the normal there.
+        let mut vertices = vec![Vec3::ZERO, Vec3::Z, Vec3::NEG_X];
+        let (sin, cos) = 30f32.to_radians().sin_cos();
+        let far = Vec3::new(cos, sin, 0.0);
+        vertices.extend([far, 0.5 * (Vec3::Z + far)]);
+        let cut = shaded(vertices, vec![[0, 2, 1], [0, 1, 4], [0, 4, 3]]);
+        let middle = Vec3::new(-15f32.to_radians().sin(), 15f32.to_radians().cos(), 0.0);
+        assert!(
+            normals(&cut)[0].distance(middle) < 1e-3,
+            "{}",
+            normals(&cut)[0]
+        );
+    }
+
+    #[test]
+    fn faces_that_only_touch_at_a_corner_stay_apart() {
+        let up = [Vec3::ZERO, Vec3::Z, Vec3::X];
+        let steep = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(-1.0, -1.0, 1.0)];
+        let vertices = up.into_iter().chain(steep).collect();
+        let bow_tie = shaded(vertices, vec![[0, 1, 2], [0, 3, 4]]);
+        assert_eq!(bow_tie.vertices.len(), 6);
+    }
+
+    #[test]
+    fn faces_of_no_area_do_no_harm() {
+        let vertices = vec![Vec3::ZERO, Vec3::X, 2.0 * Vec3::X, Vec3::NEG_Z];
+        let flat = shaded(vertices, vec![[0, 1, 2], [0, 1, 3]]);
+        assert!(normals(&flat).iter().all(|normal| normal.is_finite()));
+        assert!(normals(&flat)[3].distance(Vec3::Y) < 1e-6);
+    }
+}

@@ -8,7 +8,7 @@ use image::RgbaImage;
 use super::{Renderer, device_descriptor, supported_samples};
 use crate::picture::Picture;
 
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Bytes.
 const PIXEL: u32 = 4;
 
 /// Why there is no picture.
@@ -67,27 +67,26 @@ pub fn shot(picture: &Picture, size: [u32; 2]) -> Result<RgbaImage, ShotError> {
 pub struct Offscreen {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    format: wgpu::TextureFormat,
     renderer: Renderer,
 }
 
 impl Offscreen {
-    /// The fastest adapter there is, one that draws in software if there is no other.
+    /// On the fastest adapter there is, one that draws in software if there is no other.
     pub fn new() -> Result<Self, ShotError> {
-        let instance =
-            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle().with_env());
-        let options = wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            ..Default::default()
-        };
-        let adapter = pollster::block_on(instance.request_adapter(&options))
-            .map_err(|_| ShotError::NoAdapter)?;
+        Self::with_format(wgpu::TextureFormat::Rgba8UnormSrgb)
+    }
+
+    fn with_format(format: wgpu::TextureFormat) -> Result<Self, ShotError> {
+        let adapter = adapter().ok_or(ShotError::NoAdapter)?;
         let (device, queue) =
             pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
                 .map_err(ShotError::Device)?;
-        let renderer = Renderer::new(&device, FORMAT, supported_samples(&adapter));
+        let renderer = Renderer::new(&device, format, supported_samples(&adapter));
         Ok(Self {
             device,
             queue,
+            format,
             renderer,
         })
     }
@@ -95,14 +94,12 @@ impl Offscreen {
     /// One picture of a size in pixels.
     pub fn shot(&mut self, picture: &Picture, size: [u32; 2]) -> Result<RgbaImage, ShotError> {
         let [width, height] = size;
-        let limits = self.device.limits();
-        let most = limits.max_texture_dimension_2d;
-        let padded_row =
-            (width.saturating_mul(PIXEL)).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let bytes = u64::from(padded_row) * u64::from(height);
+        let most = self.device.limits().max_texture_dimension_2d;
         if size.contains(&0) || width.max(height) > most {
             return Err(ShotError::Size { size, most });
         }
+        let padded_row = (width * PIXEL).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let bytes = u64::from(padded_row) * u64::from(height);
 
         // Without these a failure would end the program.
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -157,7 +154,7 @@ impl Offscreen {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
+            format: self.format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
@@ -191,5 +188,50 @@ impl Offscreen {
         );
         self.queue.submit([encoder.finish()]);
         readback
+    }
+}
+
+/// An adapter of the backends that the environment asks for, else of the platform's own, and OpenGL's as the last.
+fn adapter() -> Option<wgpu::Adapter> {
+    let choices = match wgpu::Backends::from_env() {
+        Some(backends) => vec![backends],
+        None => vec![wgpu::Backends::PRIMARY, wgpu::Backends::GL],
+    };
+    choices.into_iter().find_map(|backends| {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends,
+            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+        });
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        pollster::block_on(instance.request_adapter(&options)).ok()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn targets_with_and_without_srgb_get_the_same_bytes() -> Result<(), ShotError> {
+        let picture = Picture {
+            grid: true,
+            ..Picture::default()
+        };
+        let [encoded, plain] = [
+            wgpu::TextureFormat::Rgba8UnormSrgb,
+            wgpu::TextureFormat::Rgba8Unorm,
+        ]
+        .map(|format| Offscreen::with_format(format)?.shot(&picture, [90, 60]));
+        if let Err(ShotError::NoAdapter) = encoded {
+            println!("skipped: {}", ShotError::NoAdapter);
+            return Ok(());
+        }
+        for (encoded, plain) in encoded?.iter().zip(plain?.iter()) {
+            assert!(encoded.abs_diff(*plain) <= 1);
+        }
+        Ok(())
     }
 }

@@ -12,6 +12,7 @@ pub(super) struct Drawing<'a> {
     pub label: &'static str,
     pub shader: &'a wgpu::ShaderModule,
     pub vertex: &'static str,
+    pub fragment: &'static str,
     pub groups: &'a [Option<&'a wgpu::BindGroupLayout>],
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub topology: wgpu::PrimitiveTopology,
@@ -56,7 +57,7 @@ impl Drawing<'_> {
             },
             fragment: Some(wgpu::FragmentState {
                 module: self.shader,
-                entry_point: Some("fs_main"),
+                entry_point: Some(self.fragment),
                 compilation_options: Default::default(),
                 targets: &[Some(wgpu::ColorTargetState {
                     format: COLOUR,

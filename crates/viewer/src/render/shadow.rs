@@ -2,40 +2,30 @@
 
 use egui_wgpu::wgpu;
 
+use super::blur::Blur;
 use super::frame::FrameBinding;
-use super::meshes::{self, Meshes};
+use super::meshes::{self, Meshes, Which};
 use super::pipeline::shader;
 
-/// Texels along a side.
+/// Texels along a side, as drawn and once blurred.
 const SIZE: u32 = 512;
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+const BLURRED_SIZE: u32 = 256;
+pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 pub(super) struct Shadow {
     pipeline: wgpu::RenderPipeline,
+    blur: Blur,
     map: wgpu::TextureView,
+    map_group: wgpu::BindGroup,
+    blurred: wgpu::TextureView,
+    blurred_group: wgpu::BindGroup,
     layout: wgpu::BindGroupLayout,
-    group: wgpu::BindGroup,
 }
 
 impl Shadow {
     pub(super) fn new(device: &wgpu::Device, frame: &FrameBinding) -> Self {
-        let map = device
-            .create_texture(&wgpu::TextureDescriptor {
-                label: Some("shadow"),
-                size: wgpu::Extent3d {
-                    width: SIZE,
-                    height: SIZE,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: FORMAT,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                    | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            })
-            .create_view(&Default::default());
+        let map = texture(device, SIZE);
+        let blurred = texture(device, BLURRED_SIZE);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shadow"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -64,25 +54,30 @@ impl Shadow {
                 },
             ],
         });
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("shadow"),
-            layout: &layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(&map),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::Sampler(&sampler),
-                },
-            ],
-        });
+        let group = |map: &wgpu::TextureView| {
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("shadow"),
+                layout: &layout,
+                entries: &[
+                    wgpu::BindGroupEntry {
+                        binding: 0,
+                        resource: wgpu::BindingResource::TextureView(map),
+                    },
+                    wgpu::BindGroupEntry {
+                        binding: 1,
+                        resource: wgpu::BindingResource::Sampler(&sampler),
+                    },
+                ],
+            })
+        };
         Self {
             pipeline: pipeline(device, frame),
+            blur: Blur::new(device, &layout),
+            map_group: group(&map),
             map,
+            blurred_group: group(&blurred),
+            blurred,
             layout,
-            group,
         }
     }
 
@@ -93,23 +88,19 @@ impl Shadow {
         frame: &FrameBinding,
         meshes: &Meshes,
     ) {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("shadow"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.map,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, frame.group(), &[]);
-        meshes.draw(&mut pass, true);
-        meshes.draw(&mut pass, false);
+        {
+            let mut pass = begin(encoder, &self.map);
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, frame.group(), &[]);
+            for which in Which::ALL {
+                meshes.draw(&mut pass, which);
+            }
+        }
+        let mut pass = begin(encoder, &self.blurred);
+        // Without meshes the cleared texture will do.
+        if !meshes.is_empty() {
+            self.blur.draw(&mut pass, &self.map_group);
+        }
     }
 
     /// For whoever receives the shadow.
@@ -118,8 +109,46 @@ impl Shadow {
     }
 
     pub(super) fn group(&self) -> &wgpu::BindGroup {
-        &self.group
+        &self.blurred_group
     }
+}
+
+fn texture(device: &wgpu::Device, size: u32) -> wgpu::TextureView {
+    device
+        .create_texture(&wgpu::TextureDescriptor {
+            label: Some("shadow"),
+            size: wgpu::Extent3d {
+                width: size,
+                height: size,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        })
+        .create_view(&Default::default())
+}
+
+fn begin<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    view: &wgpu::TextureView,
+) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("shadow"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        ..Default::default()
+    })
 }
 
 fn pipeline(device: &wgpu::Device, frame: &FrameBinding) -> wgpu::RenderPipeline {

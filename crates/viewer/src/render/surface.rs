@@ -1,15 +1,13 @@
-//! Shaded meshes.
+//! Shaded meshes, the selected ones with their edges.
 
 use egui_wgpu::wgpu;
 
 use super::frame::FrameBinding;
-use super::meshes::{self, Meshes};
+use super::meshes::{self, Meshes, Which};
 use super::pipeline::{Drawing, shader};
 
 pub(super) struct Surface {
-    /// For meshes with no inside to be seen: the far half of their faces is not worth drawing.
-    solid: wgpu::RenderPipeline,
-    open: wgpu::RenderPipeline,
+    pipelines: Vec<(Which, wgpu::RenderPipeline)>,
 }
 
 impl Surface {
@@ -20,29 +18,39 @@ impl Surface {
             include_str!("shaders/surface.wgsl")
         );
         let module = shader(device, "surface", wgsl);
-        let groups = [Some(frame.layout())];
-        let buffers = meshes::layouts();
-        let drawing = |solid| Drawing {
-            label: "surface",
-            shader: &module,
-            vertex: "vs_main",
-            groups: &groups,
-            buffers: &buffers,
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            blended: false,
-            culled: solid,
-            samples,
+        let pipeline = |which: Which| {
+            let drawing = Drawing {
+                label: "surface",
+                shader: &module,
+                vertex: if which.selected {
+                    "vs_edged"
+                } else {
+                    "vs_plain"
+                },
+                fragment: if which.selected {
+                    "fs_edged"
+                } else {
+                    "fs_plain"
+                },
+                groups: &[Some(frame.layout())],
+                buffers: &meshes::layouts(),
+                topology: wgpu::PrimitiveTopology::TriangleList,
+                blended: false,
+                // With no inside to be seen, the far half of the faces is not worth drawing.
+                culled: which.solid,
+                samples,
+            };
+            (which, drawing.pipeline(device))
         };
         Self {
-            solid: drawing(true).pipeline(device),
-            open: drawing(false).pipeline(device),
+            pipelines: Which::ALL.map(pipeline).into(),
         }
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, meshes: &Meshes) {
-        pass.set_pipeline(&self.solid);
-        meshes.draw(pass, true);
-        pass.set_pipeline(&self.open);
-        meshes.draw(pass, false);
+        for (which, pipeline) in &self.pipelines {
+            pass.set_pipeline(pipeline);
+            meshes.draw(pass, *which);
+        }
     }
 }

@@ -31,23 +31,12 @@ fn clarity(pixel: vec2f) -> vec2f {
     return 1.0 - smoothstep(vec2f(0.05), vec2f(0.28), pixel);
 }
 
-// The shadow map about a place, blurred.
+// The shadow about a place, fading towards the border of the map.
 fn shadow(from_eye: vec2f) -> f32 {
     let middle = (from_eye - frame.shadow_centre) / (2.0 * frame.shadow_half);
-    if max(abs(middle.x), abs(middle.y)) > 0.5 {
-        return 0.0;
-    }
-    let spread = 0.0075;
-    var sum = 0.0;
-    for (var tap = 0; tap < 16; tap++) {
-        // A sunflower's spiral covers the disc evenly.
-        let turn = 2.39996 * f32(tap);
-        let reach = spread * sqrt((f32(tap) + 0.5) / 16.0);
-        let at = middle + reach * vec2f(cos(turn), sin(turn));
-        sum += textureSampleLevel(shadow_map, shadow_sampler, vec2f(at.x, -at.y) + 0.5, 0.0).r;
-    }
     let inside = 1.0 - smoothstep(0.4, 0.5, max(abs(middle.x), abs(middle.y)));
-    return inside * sum / 16.0;
+    let at = vec2f(middle.x, -middle.y) + 0.5;
+    return inside * textureSampleLevel(shadow_map, shadow_sampler, at, 0.0).r;
 }
 
 @fragment

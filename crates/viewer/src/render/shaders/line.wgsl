@@ -8,7 +8,14 @@ struct Varying {
 }
 
 // One corner of four of a rectangle on the screen that holds the line with its round ends.
-fn segment(index: u32, from_eye: vec3f, to_eye: vec3f, colour: vec4f, width: f32) -> Varying {
+@vertex
+fn vs_main(
+    @builtin(vertex_index) index: u32,
+    @location(0) from_eye: vec3f,
+    @location(1) to_eye: vec3f,
+    @location(2) colour: vec4f,
+    @location(3) width: f32,
+) -> Varying {
     var out: Varying;
     out.colour = colour;
     var a = frame.view_projection * vec4f(from_eye, 1.0);
@@ -45,37 +52,6 @@ fn segment(index: u32, from_eye: vec3f, to_eye: vec3f, colour: vec4f, width: f32
     out.clip = vec4f(corner / frame.half_size, min(depth, 1.0), 1.0);
     out.place = vec2f(select(0.0, length, last) + shift, side);
     out.extent = vec2f(length, half_width);
-    return out;
-}
-
-@vertex
-fn vs_line(
-    @builtin(vertex_index) index: u32,
-    @location(0) from_eye: vec3f,
-    @location(1) to_eye: vec3f,
-    @location(2) colour: vec4f,
-    @location(3) width: f32,
-) -> Varying {
-    return segment(index, from_eye, to_eye, colour, width);
-}
-
-struct Edges {
-    offset: vec3f,
-    width: f32,
-    colour: vec4f,
-}
-
-@group(1) @binding(0) var<uniform> edges: Edges;
-
-@vertex
-fn vs_edge(
-    @builtin(vertex_index) index: u32,
-    @location(0) start: vec3f,
-    @location(1) end: vec3f,
-) -> Varying {
-    var out = segment(index, start + edges.offset, end + edges.offset, edges.colour, edges.width);
-    // Edges that crowd together grow faint, so that a dense mesh still shows its surface.
-    out.colour.a *= mix(0.06, 1.0, smoothstep(1.0, 14.0, out.extent.x));
     return out;
 }
 
