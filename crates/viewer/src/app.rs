@@ -14,24 +14,25 @@ use winit::window::{Window, WindowId};
 
 use crate::cli::Failure;
 use crate::gpu::{Gpu, UiFrame};
-use crate::session::{Session, State};
+use crate::session::{STEP_BUDGET, Session, State};
 use crate::stopwatch::Stopwatch;
 use crate::ui::{self, Ui};
+use crate::worker::Worker;
 
 /// Frames follow each other no faster than this, should the display not hold them back.
 const SHORTEST_FRAME: Duration = Duration::from_millis(4);
-/// While the window takes no pictures, physics goes on at this pace.
+/// While the window takes no pictures, or a single step takes long, frames come at this pace.
 const UNSEEN_FRAME: Duration = Duration::from_millis(100);
 
 /// Opens the window on a scene and stays until it is closed.
 pub fn run(scene: Scene) -> Result<(), Failure> {
     let session = Session::new(scene).map_err(Failure::refused)?;
     let event_loop = event_loop()?;
-    let stopwatch = Stopwatch::start();
     let mut app = App {
         session,
-        ui: Ui::new(stopwatch),
-        stopwatch,
+        ui: Ui::default(),
+        worker: None,
+        stopwatch: Stopwatch::start(),
         proxy: event_loop.create_proxy(),
         open: None,
         failure: None,
@@ -51,6 +52,8 @@ struct Redraw(Duration);
 struct App {
     session: Session,
     ui: Ui,
+    /// Takes the steps; none while none is under way.
+    worker: Option<Worker>,
     stopwatch: Stopwatch,
     proxy: EventLoopProxy<Redraw>,
     open: Option<Open>,
@@ -105,15 +108,45 @@ impl App {
         event_loop.exit();
     }
 
+    /// Lets physics go on. Steps are waited for no longer than a frame can spare.
+    fn steps(&mut self, elapsed: Duration) {
+        if let Some(worker) = &mut self.worker {
+            if let Some(done) = worker.result(Duration::ZERO) {
+                self.session.accept(done);
+            } else if worker.is_gone() {
+                self.worker = None;
+                self.session.pause();
+                let text = "A step broke down. This is a fault of the program: please report it.";
+                self.session.notices().error("step", text.to_owned());
+            }
+        }
+        let Some(job) = self.session.due(elapsed) else {
+            return;
+        };
+        // A worker that is busy now has outdated steps, and ends by itself once it is let go.
+        self.worker = self.worker.take().filter(|worker| !worker.is_busy());
+        if self.worker.is_none() {
+            self.worker = Worker::start().ok();
+        }
+        let done = match &mut self.worker {
+            Some(worker) => {
+                worker.hand_over(job);
+                worker.result(2 * STEP_BUDGET)
+            }
+            None => Some(job.run(|| self.stopwatch.read())),
+        };
+        if let Some(done) = done {
+            self.session.accept(done);
+        }
+    }
+
     /// Lets physics go on, lays out the control panel and paints both.
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
-        let Some(open) = &mut self.open else { return };
         let now = self.stopwatch.read();
-        let stopwatch = self.stopwatch;
-        self.session
-            .advance(now.saturating_sub(self.last_frame), || stopwatch.read());
+        self.steps(now.saturating_sub(self.last_frame));
         self.last_frame = now;
 
+        let Some(open) = &mut self.open else { return };
         let size = open.window.inner_size();
         let shown = size.width > 0 && size.height > 0 && {
             let input = open.egui.take_egui_input(&open.window);
@@ -142,9 +175,10 @@ impl App {
                 Err(failure) => return self.fail(event_loop, failure),
             }
         }
-        if self.session.state() == State::Running {
-            let pace = if shown { SHORTEST_FRAME } else { UNSEEN_FRAME };
-            self.schedule(now + pace);
+        if self.session.state() == State::Running && shown {
+            self.schedule(now + SHORTEST_FRAME);
+        } else if self.session.state() == State::Running || self.session.awaits_steps() {
+            self.schedule(now + UNSEEN_FRAME);
         }
     }
 }

@@ -3,7 +3,8 @@
 //! [`cli`] reads the command line and calls one of [`app`] (the window), [`headless`] (runs and
 //! checks as text) and [`shot`] (one picture in a file). All of them look at a world through a
 //! [`session`], which knows neither windows nor graphics; it describes what is to be seen as a
-//! [`picture`], which [`render`] draws. [`ui`] is the control panel around it.
+//! [`picture`], which [`render`] draws. [`ui`] is the control panel around it, and a [`worker`]
+//! takes the steps.
 
 pub mod app;
 pub mod camera;
@@ -17,3 +18,4 @@ pub mod session;
 pub mod shot;
 pub mod stopwatch;
 pub mod ui;
+pub mod worker;

@@ -1,5 +1,7 @@
 //! A picture of a scene in a PNG file, drawn without a window.
 
+use std::time::Duration;
+
 use scene::Scene;
 
 use crate::cli::{Depth, Failure, ShotArgs};
@@ -35,7 +37,10 @@ pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
     }
     let stopwatch = Stopwatch::start();
     for _ in 0..args.step {
-        session.step_once(|| stopwatch.read());
+        session.step_once();
+        if let Some(job) = session.due(Duration::ZERO) {
+            session.accept(job.run(|| stopwatch.read()));
+        }
         if let Some(notice) = session.notices().iter().find(|notice| notice.error) {
             return Err(Failure::Run(notice.text.clone()));
         }

@@ -101,6 +101,7 @@ impl Session {
         match change(self, i) {
             Ok(keep) => {
                 self.notices.dismiss(field);
+                self.disown_jobs();
                 if self.state == State::Layout {
                     keep(&mut self.scene.bodies[i]);
                 }

@@ -14,9 +14,10 @@ impl Session {
         let opened = Scene::load(name_or_path).map_err(anyhow::Error::new);
         match opened.and_then(Session::new) {
             Ok(session) => {
-                let display = self.display;
+                let (display, edition) = (self.display, self.edition + 1);
                 *self = session;
                 self.display = display;
+                self.edition = edition;
                 let path = PathBuf::from(name_or_path);
                 self.file = path.extension().is_some().then_some(path);
             }

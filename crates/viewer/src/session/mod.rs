@@ -7,11 +7,12 @@
 //! than the bodies' and survives a reset.
 //!
 //! Nothing here draws, opens windows or reads a clock: see `picture` for what is drawn, and
-//! [`Session::advance`] for how time comes in.
+//! [`Session::due`] for how time comes in and steps are taken.
 
 mod edit;
 mod figures;
 mod files;
+mod job;
 mod notice;
 mod pick;
 mod picture;
@@ -24,11 +25,11 @@ use scene::{Scene, SceneBody};
 use sim_core::{Collision, FixedStep, Method, Settings, World};
 
 pub use figures::{Drift, Figures, Reference};
+pub use job::{Done, Job, STEP_BUDGET};
 pub use notice::{Notice, Notices};
 pub use picture::{BvhView, Display};
 
 use crate::camera::Camera;
-use crate::headless;
 
 /// Slowest rate offered, in steps per second of simulated time.
 pub const MIN_RATE: f64 = 5.0;
@@ -38,10 +39,6 @@ pub const MAX_RATE: f64 = 240.0;
 /// Real time of one frame that may be caught up with; what exceeds it is dropped, so that a
 /// window that was held still for ten seconds does not have to simulate ten seconds at once.
 const CATCH_UP: Duration = Duration::from_millis(250);
-
-/// Real time that the steps of one frame may take before the rest of them is given up: leaves
-/// half of a 60 Hz frame to the drawing.
-const STEP_BUDGET: Duration = Duration::from_millis(8);
 
 /// What the session is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +61,12 @@ pub struct Session {
     figures: Figures,
     notices: Notices,
     selection: Option<usize>,
+    /// Steps are being taken on a copy of the world.
+    under_way: bool,
+    /// One step has been asked for by hand.
+    step_wanted: bool,
+    /// Counts what makes results of earlier jobs outdated.
+    edition: u64,
     /// File that the scene was read from or last saved to.
     file: Option<std::path::PathBuf>,
     /// Where the person looks from.
@@ -86,6 +89,9 @@ impl Session {
             figures: Figures::default(),
             notices: Notices::default(),
             selection: None,
+            under_way: false,
+            step_wanted: false,
+            edition: 0,
             file: None,
             camera: Camera::default(),
             display: Display::default(),
@@ -151,6 +157,7 @@ impl Session {
     pub fn pause(&mut self) {
         if self.state == State::Running {
             self.state = State::Paused;
+            self.disown_jobs();
         }
     }
 
@@ -162,16 +169,15 @@ impl Session {
         }
     }
 
-    /// Goes one step ahead and holds still there. `stopwatch` reads real time.
-    pub fn step_once(&mut self, stopwatch: impl Fn() -> Duration) {
-        if self.state == State::Layout {
-            self.begin();
+    /// Holds still and makes one step due.
+    pub fn step_once(&mut self) {
+        match self.state {
+            State::Layout => self.begin(),
+            State::Running => self.pause(),
+            State::Paused => {}
         }
         self.state = State::Paused;
-        let before = stopwatch();
-        self.step();
-        self.figures.cost.add(stopwatch().saturating_sub(before));
-        self.figures.steps_per_frame = 1;
+        self.step_wanted = true;
     }
 
     /// Returns to the layout state: every body as it was set up, time 0.
@@ -179,48 +185,6 @@ impl Session {
         match self.scene.world() {
             Ok(world) => self.adopt(world),
             Err(error) => self.notices.error("reset", error.to_string()),
-        }
-    }
-
-    /// Lets `elapsed` real time pass: takes the whole steps that fit, as long as they do not take
-    /// more real time than a frame can spare; what is given up is reported, never caught up with.
-    /// `stopwatch` reads real time and is used only to measure. Does nothing unless running.
-    pub fn advance(&mut self, elapsed: Duration, stopwatch: impl Fn() -> Duration) {
-        if self.state != State::Running {
-            return;
-        }
-        self.figures.frame.add(elapsed);
-        let mut dropped = self.clock.advance(elapsed);
-        let mut steps = 0;
-        let began = stopwatch();
-        let mut before = began;
-        while self.clock.take() {
-            if !self.step() {
-                break;
-            }
-            steps += 1;
-            let now = stopwatch();
-            self.figures.cost.add(now.saturating_sub(before));
-            before = now;
-            if now.saturating_sub(began) > STEP_BUDGET {
-                dropped += self.clock.drop_backlog();
-                break;
-            }
-        }
-        self.figures.steps_per_frame = steps;
-        self.figures.fell_behind(dropped);
-    }
-
-    /// One step of the world; an error pauses and is shown. Whether the step was taken.
-    fn step(&mut self) -> bool {
-        match self.world.step() {
-            Ok(()) => true,
-            Err(error) => {
-                self.state = State::Paused;
-                self.notices
-                    .error("step", headless::step_error(&self.scene, &error));
-                false
-            }
         }
     }
 
@@ -263,6 +227,7 @@ impl Session {
     fn try_settings(&mut self, settings: Settings) -> anyhow::Result<()> {
         let clock = FixedStep::new(settings.dt, CATCH_UP)?;
         self.world.set_settings(settings)?;
+        self.disown_jobs();
         if settings.dt != self.clock.dt() {
             self.clock = clock;
         }
@@ -278,6 +243,7 @@ impl Session {
 
     /// Leaves the layout state: physics begins here.
     fn begin(&mut self) {
+        self.disown_jobs();
         self.reference = Reference::of(&self.world);
         self.figures = Figures::default();
     }

@@ -43,6 +43,13 @@ fn slow(cost: Duration) -> impl Fn() -> Duration {
     }
 }
 
+/// A frame of the window: the steps due are taken at once.
+fn advance(session: &mut Session, elapsed: Duration, stopwatch: impl Fn() -> Duration) {
+    if let Some(job) = session.due(elapsed) {
+        session.accept(job.run(stopwatch));
+    }
+}
+
 fn positions(session: &Session) -> Vec<DVec3> {
     let world = session.world();
     (0..world.len()).map(|i| world.position(i)).collect()
@@ -60,7 +67,7 @@ fn complaint(session: &mut Session, about: &str) -> Option<String> {
 fn begins_in_layout_and_stands_still_there() {
     let mut session = session();
     let before = positions(&session);
-    session.advance(Duration::from_secs(1), free());
+    advance(&mut session, Duration::from_secs(1), free());
     assert_eq!(session.state(), State::Layout);
     assert_eq!(positions(&session), before);
     session.pause();
@@ -74,7 +81,7 @@ fn frames_of_any_length_take_the_steps_that_fit() {
     let mut elapsed = Duration::ZERO;
     for ms in [17, 1, 40, 3, 90, 16, 33].into_iter().cycle().take(70) {
         let frame = Duration::from_millis(ms);
-        session.advance(frame, free());
+        advance(&mut session, frame, free());
         elapsed += frame;
     }
     let due = (elapsed.as_secs_f64() * 60.0).floor() as u64;
@@ -86,14 +93,14 @@ fn frames_of_any_length_take_the_steps_that_fit() {
 fn long_stall_is_dropped_and_told() {
     let mut session = session();
     session.start();
-    session.advance(Duration::from_secs(10), free());
+    advance(&mut session, Duration::from_secs(10), free());
     assert!(session.world().steps() <= 16, "caught up with the stall");
     let behind = session.figures().behind.as_secs_f64();
     let simulated = session.world().time();
     assert!((behind + simulated - 10.0).abs() < 2.0 / 60.0);
     assert!(session.figures().is_behind());
     for _ in 0..100 {
-        session.advance(FRAME, free());
+        advance(&mut session, FRAME, free());
     }
     assert!(!session.figures().is_behind(), "still told long after");
 }
@@ -104,7 +111,7 @@ fn slow_steps_leave_time_for_the_window() {
     session.start();
     let cost = STEP_BUDGET * 2;
     for frame in 1..=10 {
-        session.advance(Duration::from_millis(200), slow(cost));
+        advance(&mut session, Duration::from_millis(200), slow(cost));
         assert_eq!(session.world().steps(), frame, "one step a frame");
     }
     let figures = session.figures();
@@ -115,13 +122,78 @@ fn slow_steps_leave_time_for_the_window() {
 }
 
 #[test]
+fn window_goes_on_while_steps_are_under_way() {
+    let mut session = session();
+    session.start();
+    let job = session.due(FRAME).expect("a step is due");
+    assert!(session.awaits_steps());
+    for _ in 0..5 {
+        assert!(session.due(FRAME).is_none(), "one job at a time");
+    }
+    assert_eq!(session.figures().behind, FRAME * 5);
+    assert_eq!(session.world().steps(), 0);
+    session.accept(job.run(free()));
+    assert_eq!(session.world().steps(), 1);
+    assert!(session.due(FRAME).is_some());
+}
+
+#[test]
+fn late_steps_do_not_undo_what_the_person_did() {
+    type Act = fn(&mut Session);
+    let acts: [Act; 6] = [
+        Session::reset,
+        Session::pause,
+        |s| s.set_velocity(DVec3::Z),
+        |s| s.set_collision(Collision::Naive),
+        |s| s.open("two-cubes"),
+        |s| {
+            s.reset();
+            s.start();
+            assert!(s.due(FRAME).is_some());
+        },
+    ];
+    for act in acts {
+        let mut session = session();
+        session.select(Some(0));
+        session.start();
+        let late = session.due(FRAME).expect("a step is due").run(free());
+        act(&mut session);
+        let (state, positions_then) = (session.state(), positions(&session));
+        let velocity = session.world().velocity(0);
+        session.accept(late);
+        assert_eq!(session.state(), state);
+        assert_eq!(session.world().steps(), 0);
+        assert_eq!(positions(&session), positions_then);
+        assert_eq!(session.world().velocity(0), velocity);
+    }
+}
+
+#[test]
+fn step_by_hand_is_one_step() {
+    let mut session = session();
+    session.step_once();
+    advance(&mut session, Duration::from_secs(5), free());
+    advance(&mut session, Duration::from_secs(5), free());
+    assert_eq!(session.world().steps(), 1);
+    session.start();
+    advance(&mut session, Duration::from_millis(50), free());
+    session.step_once();
+    advance(&mut session, FRAME, free());
+    assert_eq!(session.world().steps(), 1 + 3 + 1);
+    assert_eq!(session.state(), State::Paused);
+}
+
+#[test]
 fn reset_returns_to_the_layout_in_every_order() {
     type Act = fn(&mut Session);
     let acts: [Act; 7] = [
         Session::start,
         Session::pause,
-        |s| s.advance(Duration::from_millis(100), || Duration::ZERO),
-        |s| s.step_once(|| Duration::ZERO),
+        |s| advance(s, Duration::from_millis(100), free()),
+        |s| {
+            s.step_once();
+            advance(s, Duration::ZERO, free());
+        },
         Session::toggle,
         |s| s.set_method(METHODS[3]),
         |s| s.set_rate(30.0),
@@ -149,7 +221,7 @@ fn reset_forgets_edits_made_after_the_start() {
     let mut session = session();
     session.select(Some(0));
     session.start();
-    session.advance(Duration::from_millis(100), free());
+    advance(&mut session, Duration::from_millis(100), free());
     session.pause();
     session.set_position(DVec3::new(7.0, 8.0, 9.0));
     session.set_velocity(DVec3::Y);
@@ -157,7 +229,7 @@ fn reset_forgets_edits_made_after_the_start() {
     session.set_mass(9.0);
     assert_eq!(session.world().position(0), DVec3::new(7.0, 8.0, 9.0));
     session.start();
-    session.advance(FRAME, free());
+    advance(&mut session, FRAME, free());
     session.reset();
     let world = session.world();
     assert_eq!(world.position(0), DVec3::new(-3.0, 0.0, 0.0));
@@ -177,7 +249,7 @@ fn reset_keeps_edits_of_the_layout() {
     session.set_rotation(DVec3::new(0.0, 45.0, 0.0));
     session.set_scale(DVec3::splat(2.0));
     session.start();
-    session.advance(Duration::from_millis(200), free());
+    advance(&mut session, Duration::from_millis(200), free());
     session.reset();
     let body = &session.scene().bodies[1];
     assert_eq!(body.position, DVec3::new(0.0, 5.0, 0.0));
@@ -242,7 +314,7 @@ fn senseless_rates_are_refused() {
         assert_eq!(session.world().settings().dt, 1.0 / 60.0);
     }
     session.start();
-    session.advance(FRAME, free());
+    advance(&mut session, FRAME, free());
     assert_eq!(session.world().steps(), 1);
 }
 
@@ -279,7 +351,7 @@ fn bodies_can_be_copied_and_deleted_to_the_last() {
     session.frame();
     session.pick(DVec3::Z, DVec3::NEG_Z);
     session.start();
-    session.advance(FRAME, free());
+    advance(&mut session, FRAME, free());
     assert!(session.picture().models.is_empty());
     assert_eq!(session.bvh_depth(), 0);
     session.reset();
@@ -322,7 +394,7 @@ fn velocity_arrow_of_the_selected_body_is_blue_and_outside() {
 fn picture_lies_between_the_last_two_states_while_running() {
     let mut session = session();
     session.start();
-    session.advance(Duration::from_millis(25), free());
+    advance(&mut session, Duration::from_millis(25), free());
     let world = session.world();
     let (before, after) = (world.previous_position(0).x, world.position(0).x);
     let drawn = session.picture().models[0].position.x;
@@ -356,7 +428,7 @@ fn drift_counts_errors_and_not_what_forces_do() {
     session.set_method(METHODS[3]);
     session.start();
     for _ in 0..20 {
-        session.advance(FRAME, free());
+        advance(&mut session, FRAME, free());
     }
     let drift = session.drift();
     assert!(drift.energy.abs() < 1e-12 && drift.momentum < 1e-12);
@@ -364,7 +436,7 @@ fn drift_counts_errors_and_not_what_forces_do() {
     session.set_method(METHODS[0]);
     session.start();
     for _ in 0..20 {
-        session.advance(FRAME, free());
+        advance(&mut session, FRAME, free());
     }
     assert!(session.drift().energy.abs() > 1e-4, "forward Euler errs");
 }

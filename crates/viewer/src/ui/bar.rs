@@ -11,7 +11,7 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
         egui::Frame::side_top_panel(root.style()).inner_margin(egui::Margin::symmetric(10, 7));
     Panel::top("bar").frame(frame).show(root, |ui| {
         ui.horizontal(|ui| {
-            buttons(ui, state, session);
+            buttons(ui, session);
             ui.add_space(6.0);
             status(ui, session);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -20,14 +20,17 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
                 hiding(ui, &mut state.panel_hidden, "Panel", "Side panel (P)");
                 hiding(ui, &mut state.live_hidden, "Live", "Live figures (L)");
                 ui.add_space(6.0);
-                ui.add(egui::Label::new(RichText::new(&session.scene().title).weak()).truncate())
-                    .on_hover_text(&session.scene().about);
+                if !behind(ui, session) {
+                    let title = RichText::new(&session.scene().title).weak();
+                    ui.add(egui::Label::new(title).truncate())
+                        .on_hover_text(&session.scene().about);
+                }
             });
         });
     });
 }
 
-fn buttons(ui: &mut egui::Ui, state: &Ui, session: &mut Session) {
+fn buttons(ui: &mut egui::Ui, session: &mut Session) {
     let running = session.state() == State::Running;
     let start = if running { "⏸ Pause" } else { "▶ Start" };
     let button = Button::new(RichText::new(start).strong()).min_size(egui::vec2(78.0, 26.0));
@@ -44,7 +47,7 @@ fn buttons(ui: &mut egui::Ui, state: &Ui, session: &mut Session) {
         .on_hover_text("Go one step ahead and hold there (right arrow or .)")
         .clicked()
     {
-        state.step(session);
+        session.step_once();
     }
     if ui
         .add_enabled(session.state() != State::Layout, small("⟲ Reset"))
@@ -82,23 +85,19 @@ fn status(ui: &mut egui::Ui, session: &Session) {
     let world = session.world();
     ui.label(RichText::new(format!("{:.3} s", world.time())).monospace())
         .on_hover_text("Simulated time");
-    if session.state() == State::Running && session.figures().is_behind() {
-        let behind = session.figures().behind.as_secs_f64();
-        ui.label(
-            RichText::new(format!("behind real time by {}", number::seconds(behind)))
-                .color(style::AMBER),
-        )
-        .on_hover_text(
+}
+
+/// Says by how much the simulation is behind real time, if it is.
+fn behind(ui: &mut egui::Ui, session: &Session) -> bool {
+    let figures = session.figures();
+    let shown = session.state() == State::Running && figures.is_behind();
+    if shown {
+        let time = number::seconds(figures.behind.as_secs_f64());
+        let text = RichText::new(format!("behind real time by {time}")).color(style::AMBER);
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(
             "Steps or pictures took longer than the time they stand for, so the rest was given \
              up. If steps are slow, lower the rate or test collisions through the BVH.",
         );
     }
-}
-
-impl Ui {
-    /// One step by hand, measured.
-    pub(super) fn step(&self, session: &mut Session) {
-        let stopwatch = self.stopwatch;
-        session.step_once(|| stopwatch.map(|s| s.read()).unwrap_or_default());
-    }
+    shown
 }

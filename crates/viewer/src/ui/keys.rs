@@ -1,6 +1,7 @@
 //! Keys: one table that is obeyed, listed below the picture and explained in a window.
 
-use egui::{Key, Panel, RichText};
+use egui::text::{LayoutJob, TextFormat};
+use egui::{Key, Panel, RichText, TextStyle};
 
 use super::Ui;
 use crate::session::Session;
@@ -24,7 +25,7 @@ static SHORTCUTS: [Shortcut; 10] = [
         keys: &[Key::ArrowRight, Key::Period],
         label: "Right or .",
         meaning: "single step",
-        act: |ui, session| ui.step(session),
+        act: |_, session| session.step_once(),
     },
     Shortcut {
         keys: &[Key::R],
@@ -108,14 +109,26 @@ pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session)
 pub(super) fn show_line(root: &mut egui::Ui) {
     Panel::bottom("keys").show(root, |ui| {
         ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing.x = 5.0;
+            ui.spacing_mut().item_spacing.x = 14.0;
             for shortcut in &SHORTCUTS {
-                ui.label(RichText::new(shortcut.label).small().strong());
-                ui.label(RichText::new(shortcut.meaning).small().weak());
-                ui.add_space(6.0);
+                ui.label(line(ui, shortcut));
             }
         });
     });
+}
+
+/// A key and its meaning as one text, so that they stay on one line.
+fn line(ui: &egui::Ui, shortcut: &Shortcut) -> LayoutJob {
+    let font = TextStyle::Small.resolve(ui.style());
+    let mut text = LayoutJob::default();
+    for (part, colour) in [
+        (shortcut.label, ui.visuals().strong_text_color()),
+        (" ", ui.visuals().text_color()),
+        (shortcut.meaning, ui.visuals().weak_text_color()),
+    ] {
+        text.append(part, 0.0, TextFormat::simple(font.clone(), colour));
+    }
+    text
 }
 
 /// The window that lists everything.

@@ -19,7 +19,6 @@ mod viewport;
 use egui::{CollapsingHeader, Panel, RichText, ScrollArea};
 
 use crate::session::Session;
-use crate::stopwatch::Stopwatch;
 
 pub use style::apply as apply_style;
 
@@ -30,19 +29,9 @@ pub struct Ui {
     panel_hidden: bool,
     live_hidden: bool,
     files: scene::Files,
-    /// Reads real time, to measure steps taken by hand.
-    stopwatch: Option<Stopwatch>,
 }
 
 impl Ui {
-    /// A control panel that measures with `stopwatch`.
-    pub fn new(stopwatch: Stopwatch) -> Self {
-        Self {
-            stopwatch: Some(stopwatch),
-            ..Self::default()
-        }
-    }
-
     /// Lays out one frame; returns the rectangle of the picture, in points.
     pub fn show(
         &mut self,

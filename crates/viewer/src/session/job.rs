@@ -1,0 +1,131 @@
+//! Steps as a piece of work that can be done on any thread.
+//!
+//! A step through hierarchies takes microseconds, but a naive one of two detailed meshes can take
+//! seconds. So a session does not step its world itself: it hands out a copy of the world and the
+//! number of steps due, and takes the result in when it comes. What was reset or edited meanwhile
+//! wins over a result that comes late. The meshes are shared, so the copy is small.
+
+use std::time::Duration;
+
+use sim_core::{StepError, World};
+
+use super::{Session, State};
+use crate::headless;
+
+/// Real time that the steps of one frame may take before the rest of them is given up: leaves
+/// half of a 60 Hz frame to the drawing.
+pub const STEP_BUDGET: Duration = Duration::from_millis(8);
+
+/// A world and the steps it is to take.
+#[derive(Debug)]
+pub struct Job {
+    world: World,
+    steps: u32,
+    edition: u64,
+}
+
+/// A world that has taken steps.
+#[derive(Debug)]
+pub struct Done {
+    world: World,
+    due: u32,
+    taken: u32,
+    time: Duration,
+    error: Option<StepError>,
+    edition: u64,
+}
+
+impl Job {
+    /// Takes the steps, as many as fit into [`STEP_BUDGET`] and at least one. `stopwatch` reads
+    /// real time.
+    pub fn run(mut self, stopwatch: impl Fn() -> Duration) -> Done {
+        let began = stopwatch();
+        let (mut taken, mut time, mut error) = (0, Duration::ZERO, None);
+        while taken < self.steps && time <= STEP_BUDGET && error.is_none() {
+            error = self.world.step().err();
+            taken += u32::from(error.is_none());
+            time = stopwatch().saturating_sub(began);
+        }
+        Done {
+            world: self.world,
+            due: self.steps,
+            taken,
+            time,
+            error,
+            edition: self.edition,
+        }
+    }
+}
+
+impl Session {
+    /// Lets `elapsed` real time pass; the steps that are due then, if there are any. While steps
+    /// handed out earlier are still under way, time is given up and counted, never caught up with.
+    pub fn due(&mut self, elapsed: Duration) -> Option<Job> {
+        let steps = match self.state {
+            State::Running if self.under_way => {
+                self.figures.frame.add(elapsed);
+                self.figures.fell_behind(elapsed);
+                0
+            }
+            State::Running => {
+                self.figures.frame.add(elapsed);
+                let dropped = self.clock.advance(elapsed);
+                self.figures.fell_behind(dropped);
+                let mut steps = 0;
+                while self.clock.take() {
+                    steps += 1;
+                }
+                self.figures.steps_per_frame = steps;
+                steps
+            }
+            State::Paused => u32::from(std::mem::take(&mut self.step_wanted)),
+            State::Layout => 0,
+        };
+        (steps > 0).then(|| {
+            self.under_way = true;
+            Job {
+                world: self.world.clone(),
+                steps,
+                edition: self.edition,
+            }
+        })
+    }
+
+    /// Takes in the result of a job; one from before a reset, a pause or an edit is ignored. A
+    /// failed step pauses and is shown.
+    pub fn accept(&mut self, done: Done) {
+        if !self.under_way || done.edition != self.edition {
+            return;
+        }
+        self.under_way = false;
+        self.world = done.world;
+        if done.taken > 0 {
+            self.figures.cost.add(done.time / done.taken);
+        }
+        self.figures.steps_per_frame = done.taken;
+        match done.error {
+            None => {
+                let left = f64::from(done.due - done.taken) * self.clock.dt();
+                self.figures
+                    .fell_behind(Duration::try_from_secs_f64(left).unwrap_or_default());
+            }
+            Some(error) => {
+                self.pause();
+                self.notices
+                    .error("step", headless::step_error(&self.scene, &error));
+            }
+        }
+    }
+
+    /// Whether steps are being taken somewhere, or are to be.
+    pub fn awaits_steps(&self) -> bool {
+        self.under_way || self.step_wanted
+    }
+
+    /// Makes results of jobs handed out so far be ignored.
+    pub(super) fn disown_jobs(&mut self) {
+        self.edition += 1;
+        self.under_way = false;
+        self.step_wanted = false;
+    }
+}
