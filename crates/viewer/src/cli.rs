@@ -19,7 +19,13 @@ const FIRST_SCENE: &str = "cube-cow";
 
 /// Cowbell simulates colliding triangle meshes. Without a command it opens its window.
 #[derive(Parser)]
-#[command(name = "cowbell", version, args_conflicts_with_subcommands = true)]
+#[command(
+    name = "cowbell",
+    version,
+    args_conflicts_with_subcommands = true,
+    after_help = "Exit codes: 0 done; 1 a run failed on the way; 2 arguments or a file refused; \
+                  3 no display or graphics adapter."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,

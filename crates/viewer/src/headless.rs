@@ -8,6 +8,7 @@ use serde::Serialize;
 use sim_core::{DVec3, Repairs, StepError, World};
 
 use crate::cli::Failure;
+use crate::number;
 use crate::session::{Drift, Reference};
 use crate::stopwatch::Stopwatch;
 
@@ -153,19 +154,20 @@ impl<'a> RunReport<'a> {
         let lines = [
             ("Scene", scene.title.clone()),
             ("Run", settings),
-            ("Time", format!("{:.6} s", self.time)),
+            ("Time", format!("{} s", self.time)),
             ("Impacts", self.impacts.to_string()),
-            ("Kinetic energy", format!("{:.9} J", self.kinetic_energy)),
+            ("Kinetic energy", format!("{} J", self.kinetic_energy)),
             (
                 "Momentum",
-                format!("{} kg m/s", vector(self.momentum.into())),
+                format!("{} kg m/s", vector(self.momentum.into()).trim_start()),
             ),
             ("Speed", format!("{:.3} µs a step", seconds_per_step * 1e6)),
             (
                 "Error",
                 format!(
-                    "energy {:+.1e}, momentum {:.1e} (drift since the start, relative)",
-                    drift.energy, drift.momentum
+                    "energy {}, momentum {} (drift since the start, relative)",
+                    number::relative(drift.energy),
+                    number::relative(drift.momentum)
                 ),
             ),
         ];
@@ -200,7 +202,16 @@ impl<'a> RunReport<'a> {
 }
 
 fn vector(v: DVec3) -> String {
-    format!("{:12.6} {:12.6} {:12.6}", v.x, v.y, v.z)
+    let cell = |part: f64| {
+        // Very small and very large numbers keep the columns in place with an exponent.
+        let text = if part == 0.0 || (1e-4..1e5).contains(&part.abs()) {
+            format!("{part:.6}")
+        } else {
+            format!("{part:.4e}")
+        };
+        format!("{text:>12}")
+    };
+    v.to_array().map(cell).join(" ")
 }
 
 fn collision_name(scene: &Scene) -> &'static str {

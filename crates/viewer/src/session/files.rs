@@ -51,19 +51,25 @@ impl Session {
 
     /// Opens a scene or adds a mesh, by the name's ending.
     pub fn take_in(&mut self, path: &Path) {
-        if path.extension().is_some_and(|ending| ending == "toml") {
+        if is_scene_file(path) {
             self.open(&path.to_string_lossy());
         } else {
             self.import(path);
         }
     }
 
-    /// Writes the set-up to a scene file. A file that is not the scene's own is overwritten only
-    /// with `overwrite`.
+    /// Writes the set-up to a scene file; `.toml` is added where it is missing. A file that is
+    /// not the scene's own is overwritten only with `overwrite`.
     pub fn save(&mut self, path: &Path, overwrite: bool) {
-        let path = path.with_extension("toml");
+        let mut file = path.as_os_str().to_owned();
+        // Only a name that stays as it is can have been agreed to be overwritten.
+        let agreed = overwrite && is_scene_file(path);
+        if !is_scene_file(path) {
+            file.push(".toml");
+        }
+        let path = PathBuf::from(file);
         let own = self.file.as_deref() == Some(path.as_path());
-        if path.exists() && !own && !overwrite {
+        if path.exists() && !own && !agreed {
             let text = format!("{} exists: choose another name.", path.display());
             self.notices.error("save", text);
             return;
@@ -77,4 +83,9 @@ impl Session {
             Err(error) => self.notices.error("save", error.to_string()),
         }
     }
+}
+
+fn is_scene_file(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }

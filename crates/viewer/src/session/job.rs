@@ -75,7 +75,9 @@ impl Session {
                 while self.clock.take() {
                     steps += 1;
                 }
-                self.figures.steps_per_frame = steps;
+                if steps == 0 {
+                    self.figures.steps_per_frame = 0;
+                }
                 steps
             }
             State::Paused => u32::from(std::mem::take(&mut self.step_wanted)),
