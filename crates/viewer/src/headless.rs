@@ -165,9 +165,13 @@ impl<'a> RunReport<'a> {
             (
                 "Error",
                 format!(
-                    "energy {}, momentum {} (drift since the start, relative)",
+                    "energy {}, momentum {} (drift since the start, relative){}",
                     number::relative(drift.energy),
-                    number::relative(drift.momentum)
+                    number::relative(drift.momentum),
+                    drift.position.map_or_else(String::new, |away| format!(
+                        ", position {} m",
+                        number::figure(away)
+                    ))
                 ),
             ),
         ];

@@ -54,26 +54,30 @@ impl Figures {
     }
 }
 
-/// Energy and momentum at the moment that drift is counted from.
+/// The state of a world at the moment that drift is counted from.
 ///
-/// Forces here are constant vectors, so what they add is known: the work `F . dx` and the
-/// impulse `F dt`. Drift is what remains after they are taken away, the error of method and
-/// collisions; in exact arithmetic and with an exact method it is 0.
+/// Forces here are constant vectors, so what they do is known: the work `F . dx`, the impulse
+/// `F t`, and between collisions the path `x + v t + F t^2 / 2m`. Drift is what remains after
+/// they are taken away, the error of method and collisions.
 #[derive(Clone, Debug)]
 pub struct Reference {
     time: f64,
     energy: f64,
     momentum: DVec3,
-    positions: Vec<DVec3>,
+    impacts: u64,
+    /// Position and velocity of each body.
+    motion: Vec<(DVec3, DVec3)>,
 }
 
-/// Relative errors since a [`Reference`]; dimensionless.
+/// Errors since a [`Reference`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
-    /// Of the kinetic energy less the work of the forces.
+    /// Relative error of the kinetic energy less the work of the forces.
     pub energy: f64,
-    /// Of the momentum less the impulse of the forces, as a part of the sum of `m |v|`.
+    /// Error of the momentum less the impulse of the forces, relative to the sum of `m |v|`.
     pub momentum: f64,
+    /// Largest distance of a body from its exact path, m; known as long as nothing collides.
+    pub position: Option<f64>,
 }
 
 impl Reference {
@@ -83,7 +87,10 @@ impl Reference {
             time: world.time(),
             energy: world.kinetic_energy(),
             momentum: world.momentum(),
-            positions: (0..world.len()).map(|i| world.position(i)).collect(),
+            impacts: world.impacts(),
+            motion: (0..world.len())
+                .map(|i| (world.position(i), world.velocity(i)))
+                .collect(),
         }
     }
 
@@ -93,10 +100,15 @@ impl Reference {
         let mut work = 0.0;
         let mut impulse = DVec3::ZERO;
         let mut speed = 0.0;
-        for (i, &start) in self.positions.iter().enumerate() {
-            work += world.force(i).dot(world.position(i) - start);
-            impulse += world.force(i) * elapsed;
+        let mut away: f64 = 0.0;
+        for (i, &(start, velocity)) in self.motion.iter().enumerate() {
+            let force = world.force(i);
+            work += force.dot(world.position(i) - start);
+            impulse += force * elapsed;
             speed += world.mass(i) * world.velocity(i).length();
+            let bend = force / world.mass(i) * (0.5 * elapsed * elapsed);
+            let exact = start + velocity * elapsed + bend;
+            away = away.max((world.position(i) - exact).length());
         }
         let energy = world.kinetic_energy();
         Drift {
@@ -105,6 +117,7 @@ impl Reference {
                 (world.momentum() - impulse - self.momentum).length(),
                 speed.max(self.momentum.length()),
             ),
+            position: (world.impacts() == self.impacts).then_some(away),
         }
     }
 }

@@ -87,6 +87,14 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
          taken into account",
         number::relative(drift.momentum),
     );
+    field::figure(
+        ui,
+        "Path error",
+        "Largest distance of a body from its exact path, known until the first collision",
+        drift
+            .position
+            .map_or_else(none, |away| format!("{} m", number::figure(away))),
+    );
 }
 
 fn impacts(ui: &mut egui::Ui, session: &Session) {
