@@ -69,7 +69,11 @@ impl fmt::Display for Report {
     }
 }
 
-/// Validates a mesh whose indices are all in range.
+/// Validates a mesh.
+///
+/// # Panics
+///
+/// If an index is not that of a vertex.
 pub fn check(mesh: &CowMesh) -> Report {
     let mut edges: HashMap<[u32; 2], [usize; 2]> = HashMap::new();
     for t in &mesh.triangles {
@@ -96,6 +100,10 @@ pub fn check(mesh: &CowMesh) -> Report {
 }
 
 /// Pairs of triangles that share a point off their common vertices and edge.
+///
+/// # Panics
+///
+/// If an index is not that of a vertex.
 pub fn intersections(mesh: &CowMesh) -> Vec<[u32; 2]> {
     let boxes: Vec<_> = mesh
         .triangles

@@ -5,7 +5,7 @@ use glam::Vec3;
 use std::{sync::Mutex, thread};
 
 /// Samples along one side of the blocks that are sampled, or skipped, as one.
-const BLOCK: usize = 8;
+const BLOCK: usize = 4;
 
 /// A sampled box of space.
 pub(crate) struct Grid {
@@ -101,6 +101,10 @@ impl Grid {
         while !clean {
             clean = true;
             for i in 0..self.values.len() - (dx + dy + dz) {
+                // A cell near the surface has all its corners near the surface.
+                if self.values[i].abs() > 4.0 * self.spacing {
+                    continue;
+                }
                 let inside = |offset: usize| self.values[i + offset] < 0.0;
                 let count = cell.iter().filter(|&&o| inside(o)).count();
                 if !(2..=6).contains(&count) {

@@ -2,7 +2,7 @@
 //!
 //! The cow is an implicit surface ([`model`]) built from signed distance
 //! functions ([`sdf`]), meshed and simplified to a wanted number of triangles
-//! ([`mesh`]), validated ([`check`]) and written to a file ([`write`]).
+//! ([`mesh`]), validated ([`check`]) and written to a file ([`mod@write`]).
 //!
 //! The cow faces -x, y is up, lengths are in metres and the origin is the
 //! centre of the bounding box. The same request gives the same mesh.

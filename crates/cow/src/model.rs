@@ -57,7 +57,7 @@ impl Model {
         cow
     }
 
-    /// Signed distance from `p` to the cow, negative inside.
+    /// Signed distance from `p` to the cow, m, negative inside.
     pub fn distance(&self, p: Vec3) -> f32 {
         let half = Vec3::new(p.x, p.y, p.z.abs());
         self.parts.iter().fold(f32::MAX, |d, part| {
@@ -69,18 +69,24 @@ impl Model {
         })
     }
 
-    /// The parts that shape the surface within `reach` of `p`.
+    /// A cow of only the parts that shape the surface within `reach`, m, of `p`.
     pub fn near(&self, p: Vec3, reach: f32) -> Self {
         let half = Vec3::new(p.x, p.y, p.z.abs());
-        // A part counts where it comes within a blend of the surface, which is
-        // no farther than its distance.
-        let limit = self.distance(p).abs() + 2.0 * reach + 2.0 * WIDEST_BLEND;
+        // Where the surface passes, it feels parts within the widest blend; on
+        // the way there the cow's and the part's distance change by `reach`.
+        // Both count twice, since blends add up and the distances to ellipsoids
+        // change faster than the position.
+        let limit = self.distance(p).abs() + 4.0 * reach + 2.0 * WIDEST_BLEND;
         let close = |part: &&Part| part.shape.distance(half) <= limit;
         Self {
             parts: self.parts.iter().filter(close).copied().collect(),
         }
     }
+}
 
+/// The parts, one a line.
+#[rustfmt::skip]
+impl Model {
     fn trunk(&mut self) {
         // Rib cage, paunch, chest and brisket.
         self.ball(0.10, [-0.12, 1.00, 0.0], [0.66, 0.40, 0.30]);
@@ -94,45 +100,18 @@ impl Model {
         self.ball(0.08, [0.36, 1.23, 0.0], [0.36, 0.15, 0.24]);
         // Rump between the hook bones and the pin bones.
         self.ball(0.10, [0.64, 1.15, 0.0], [0.29, 0.26, 0.24]);
-        self.cone(0.09, [0.50, 1.31, 0.12], 0.07, [0.53, 1.305, 0.225], 0.05);
+        self.cone(0.09, [0.50, 1.31, 0.12], 0.065, [0.53, 1.31, 0.225], 0.042);
         self.cone(0.09, [0.54, 1.27, 0.18], 0.07, [0.88, 1.26, 0.10], 0.055);
         // Shoulder blade, down and forward from the withers, and the upper arm.
-        self.tilted(
-            0.06,
-            [-0.52, 1.10, 0.155],
-            [0.29, 0.13, 0.085],
-            [-0.35, -1.0, 0.1],
-            [0.0, 0.0, 1.0],
-        );
+        self.tilted(0.06, [-0.52, 1.10, 0.155], [0.29, 0.13, 0.085], [-0.35, -1.0, 0.1], [0.0, 0.0, 1.0]);
         self.cone(0.06, [-0.65, 0.97, 0.14], 0.07, [-0.46, 0.80, 0.18], 0.095);
     }
 
     fn neck(&mut self) {
-        self.squeezed(
-            0.10,
-            [-0.50, 1.15, 0.0],
-            0.25,
-            [-0.95, 1.37, 0.0],
-            0.135,
-            0.72,
-        );
+        self.squeezed(0.10, [-0.50, 1.15, 0.0], 0.25, [-0.95, 1.37, 0.0], 0.135, 0.72);
         // Dewlap, from the throat to the brisket.
-        self.squeezed(
-            0.05,
-            [-1.00, 1.20, 0.0],
-            0.05,
-            [-0.83, 0.96, 0.0],
-            0.075,
-            0.38,
-        );
-        self.squeezed(
-            0.05,
-            [-0.83, 0.96, 0.0],
-            0.075,
-            [-0.70, 0.78, 0.0],
-            0.075,
-            0.38,
-        );
+        self.squeezed(0.05, [-1.00, 1.20, 0.0], 0.05, [-0.85, 0.95, 0.0], 0.075, 0.38);
+        self.squeezed(0.05, [-0.85, 0.95, 0.0], 0.075, [-0.70, 0.78, 0.0], 0.075, 0.38);
     }
 
     fn head(&mut self) {
@@ -141,109 +120,45 @@ impl Model {
         // Cranium, poll, bridge of the nose, jaw and cheeks.
         self.ball(0.05, [-1.03, 1.40, 0.0], [0.125, 0.11, 0.115]);
         self.ball(0.04, [-0.985, 1.48, 0.0], [0.055, 0.045, 0.08]);
-        self.squeezed(
-            0.04,
-            [-1.05, 1.40, 0.0],
-            0.105,
-            [-1.31, 1.175, 0.0],
-            0.075,
-            0.92,
-        );
-        self.squeezed(
-            0.04,
-            [-1.00, 1.30, 0.0],
-            0.09,
-            [-1.27, 1.115, 0.0],
-            0.055,
-            0.85,
-        );
-        self.tilted(
-            0.04,
-            [-1.04, 1.32, 0.065],
-            [0.125, 0.09, 0.042],
-            along,
-            side,
-        );
-        // Brow, muzzle and chin; the mouth is the crease between the two.
+        self.squeezed(0.04, [-1.05, 1.40, 0.0], 0.105, [-1.31, 1.175, 0.0], 0.075, 0.92);
+        self.squeezed(0.04, [-1.00, 1.30, 0.0], 0.09, [-1.27, 1.115, 0.0], 0.055, 0.85);
+        self.tilted(0.04, [-1.04, 1.32, 0.065], [0.125, 0.09, 0.042], along, side);
+        // Brow, chin and muzzle; the mouth is the crease between the two.
         self.tilted(0.03, [-1.07, 1.43, 0.09], [0.06, 0.03, 0.032], along, side);
-        self.tilted(
-            0.04,
-            [-1.345, 1.145, 0.0],
-            [0.085, 0.09, 0.108],
-            along,
-            side,
-        );
-        self.tilted(
-            0.012,
-            [-1.292, 1.079, 0.0],
-            [0.096, 0.045, 0.085],
-            along,
-            side,
-        );
+        self.tilted(0.05, [-1.285, 1.083, 0.0], [0.10, 0.045, 0.082], along, side);
+        self.tilted(0.028, [-1.342, 1.147, 0.0], [0.088, 0.088, 0.108], along, side);
     }
 
     fn eyes_and_nostrils(&mut self) {
         self.ball(0.010, [-1.11, 1.385, 0.097], [0.032, 0.032, 0.032]);
         let along = [-0.74, -0.67, 0.0];
         let side = [0.0, 0.0, 1.0];
-        self.cut(
-            0.012,
-            [-1.420, 1.150, 0.050],
-            [0.022, 0.028, 0.018],
-            along,
-            side,
-        );
+        self.cut(0.012, [-1.420, 1.150, 0.050], [0.022, 0.028, 0.018], along, side);
     }
 
     fn horn_and_ear(&mut self) {
-        self.curve(
-            0.012,
-            [
-                [-0.985, 1.485, 0.06],
-                [-0.96, 1.52, 0.20],
-                [-1.03, 1.57, 0.26],
-                [-1.09, 1.69, 0.20],
-            ],
-            [0.036, 0.011],
-        );
+        self.curve(0.012, [[-0.985, 1.485, 0.06], [-0.96, 1.52, 0.20], [-1.03, 1.57, 0.26], [-1.09, 1.69, 0.20]], [0.036, 0.011]);
         let along = [0.15, -0.22, 1.0];
         let thick = [-0.8, -0.5, 0.0];
-        self.tilted(
-            0.02,
-            [-0.965, 1.395, 0.215],
-            [0.13, 0.062, 0.021],
-            along,
-            thick,
-        );
-        self.cut(
-            0.015,
-            [-0.985, 1.380, 0.23],
-            [0.085, 0.036, 0.016],
-            along,
-            thick,
-        );
+        self.tilted(0.02, [-0.965, 1.395, 0.215], [0.13, 0.062, 0.021], along, thick);
+        self.cut(0.015, [-0.985, 1.380, 0.23], [0.085, 0.036, 0.016], along, thick);
     }
 
     fn foreleg(&mut self) {
         self.cone(0.10, [-0.47, 0.84, 0.17], 0.10, [-0.485, 0.44, 0.17], 0.056);
         self.ball(0.03, [-0.490, 0.43, 0.17], [0.055, 0.08, 0.053]);
-        self.cone(
-            0.03,
-            [-0.485, 0.40, 0.17],
-            0.046,
-            [-0.475, 0.17, 0.17],
-            0.041,
-        );
+        self.cone(0.03, [-0.485, 0.40, 0.17], 0.046, [-0.475, 0.17, 0.17], 0.041);
         self.foot([-0.475, 0.15, 0.17]);
     }
 
     fn hind_leg(&mut self) {
-        // Thigh, stifle, gaskin and the tendon to the point of the hock.
+        // From the hook bone down to thigh, stifle, gaskin, the tendon behind it and the hock.
+        self.cone(0.10, [0.55, 1.26, 0.165], 0.07, [0.52, 0.98, 0.16], 0.11);
         self.ball(0.08, [0.66, 1.00, 0.15], [0.23, 0.30, 0.125]);
-        self.cone(0.06, [0.50, 1.05, 0.17], 0.14, [0.46, 0.82, 0.19], 0.09);
+        self.cone(0.08, [0.51, 1.02, 0.15], 0.13, [0.46, 0.82, 0.19], 0.09);
         self.cone(0.06, [0.52, 0.84, 0.18], 0.12, [0.79, 0.53, 0.18], 0.055);
         self.cone(0.05, [0.70, 0.86, 0.165], 0.10, [0.80, 0.60, 0.18], 0.05);
-        self.cone(0.05, [0.79, 1.12, 0.12], 0.09, [0.835, 0.57, 0.18], 0.036);
+        self.cone(0.08, [0.78, 1.12, 0.12], 0.10, [0.835, 0.57, 0.18], 0.036);
         self.ball(0.03, [0.81, 0.52, 0.18], [0.056, 0.07, 0.05]);
         self.cone(0.03, [0.805, 0.48, 0.18], 0.048, [0.765, 0.17, 0.18], 0.043);
         self.foot([0.762, 0.15, 0.18]);
@@ -267,41 +182,23 @@ impl Model {
     }
 
     fn teats(&mut self) {
-        self.cone(
-            0.015,
-            [0.44, 0.555, 0.08],
-            0.022,
-            [0.437, 0.490, 0.085],
-            0.016,
-        );
-        self.cone(
-            0.015,
-            [0.625, 0.54, 0.078],
-            0.022,
-            [0.625, 0.475, 0.082],
-            0.016,
-        );
+        self.cone(0.015, [0.44, 0.555, 0.08], 0.022, [0.437, 0.490, 0.085], 0.016);
+        self.cone(0.015, [0.625, 0.54, 0.078], 0.022, [0.625, 0.475, 0.082], 0.016);
     }
 
     fn tail(&mut self) {
-        self.curve(
-            0.05,
-            [
-                [0.86, 1.36, 0.0],
-                [1.08, 1.38, 0.0],
-                [0.97, 1.00, 0.0],
-                [0.99, 0.66, 0.0],
-            ],
-            [0.045, 0.022],
-        );
-        self.ball(0.03, [0.988, 0.53, 0.0], [0.05, 0.18, 0.048]);
+        self.curve(0.05, [[0.86, 1.36, 0.0], [1.06, 1.38, 0.0], [0.95, 1.00, 0.0], [0.975, 0.66, 0.0]], [0.045, 0.022]);
+        self.ball(0.03, [0.973, 0.53, 0.0], [0.05, 0.18, 0.048]);
     }
 
     /// Cuts the hooves flat.
     fn ground(&mut self) {
         self.push(Join::Cut, 0.006, Shape::Below { y: 0.0 });
     }
+}
 
+/// The ways to put parts on or cut them off.
+impl Model {
     /// Cones along a Bézier curve, the radius going evenly from the first to
     /// the second of `radii`.
     fn curve(&mut self, blend: f32, control: [[f32; 3]; 4], radii: [f32; 2]) {
