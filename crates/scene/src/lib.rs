@@ -1,1 +1,27 @@
-//! stub
+//! Scenes: descriptions of bodies in text files, and the way from them to a running
+//! [`World`](sim_core::World).
+//!
+//! [`Scene::load`] takes the name of a scene of the gallery ([`SCENES`]) or the path of a
+//! `.toml` file; [`mesh_file::load`] reads the mesh files in [`mesh_file::FORMATS`].
+//!
+//! ```
+//! let scene = scene::Scene::load("cube-cow")?;
+//! let mut world = scene.world()?;
+//! assert_eq!(world.len(), scene.bodies.len());
+//! # Ok::<(), scene::SceneError>(())
+//! ```
+
+mod colour;
+mod error;
+mod gallery;
+pub mod mesh_file;
+mod mesh_ref;
+mod scene;
+mod scene_file;
+mod world;
+
+pub use error::SceneError;
+pub use gallery::{GalleryScene, SCENES};
+pub use mesh_file::{FORMATS, Format, LoadedMesh, MeshFileError};
+pub use mesh_ref::MeshRef;
+pub use scene::{Scene, SceneBody};

@@ -1,0 +1,43 @@
+//! The scenes that come with the program.
+
+use std::path::Path;
+
+use crate::SceneError;
+use crate::scene::Scene;
+use crate::scene_file::{self, MeshSource};
+
+/// The gallery, in the order of a first visit. The first is the default.
+pub static SCENES: &[GalleryScene] = &[
+    GalleryScene {
+        name: "cube-cow",
+        text: include_str!("../../../assets/scenes/cube-cow.toml"),
+    },
+    GalleryScene {
+        name: "parabola",
+        text: include_str!("../../../assets/scenes/parabola.toml"),
+    },
+    GalleryScene {
+        name: "five-hertz",
+        text: include_str!("../../../assets/scenes/five-hertz.toml"),
+    },
+    GalleryScene {
+        name: "two-cubes",
+        text: include_str!("../../../assets/scenes/two-cubes.toml"),
+    },
+];
+
+/// A scene of the gallery.
+#[derive(Debug)]
+pub struct GalleryScene {
+    /// Name for [`Scene::load`], such as `cube-cow`.
+    pub name: &'static str,
+    /// The scene file.
+    pub text: &'static str,
+}
+
+impl GalleryScene {
+    /// The scene, from built-in meshes only: no file is opened.
+    pub fn scene(&self) -> Result<Scene, SceneError> {
+        scene_file::parse(self.text, Path::new(self.name), MeshSource::builtin_only())
+    }
+}

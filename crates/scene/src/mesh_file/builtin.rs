@@ -1,0 +1,51 @@
+//! Meshes that are part of the program, for scenes that need no file.
+
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+use sim_core::Mesh;
+
+use super::{Format, read};
+
+/// The built-in meshes, by the file name that scenes use.
+pub static BUILTIN_MESHES: [BuiltinMesh; 2] = [
+    BuiltinMesh {
+        name: "cube.obj",
+        bytes: include_bytes!("../../../../assets/meshes/cube.obj"),
+        mesh: OnceLock::new(),
+    },
+    BuiltinMesh {
+        name: "cow.obj",
+        bytes: include_bytes!("../../../../assets/meshes/cow.obj"),
+        mesh: OnceLock::new(),
+    },
+];
+
+/// A mesh file embedded in the program.
+#[derive(Debug)]
+pub struct BuiltinMesh {
+    /// File name, such as `cow.obj`.
+    pub name: &'static str,
+    /// The file.
+    pub bytes: &'static [u8],
+    mesh: OnceLock<Arc<Mesh>>,
+}
+
+impl BuiltinMesh {
+    /// The mesh, read once per process.
+    pub fn mesh(&self) -> Arc<Mesh> {
+        let mesh = self.mesh.get_or_init(|| {
+            let path = Path::new(self.name);
+            let loaded = Format::of(path).and_then(|format| read(format, path, self.bytes));
+            // The file is part of the source, and a test reads it.
+            Arc::new(loaded.expect("a built-in mesh is valid").mesh)
+        });
+        mesh.clone()
+    }
+}
+
+/// The built-in mesh of that name, if there is one.
+pub fn builtin(name: &str) -> Option<Arc<Mesh>> {
+    let found = BUILTIN_MESHES.iter().find(|builtin| builtin.name == name);
+    found.map(BuiltinMesh::mesh)
+}

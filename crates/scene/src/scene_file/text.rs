@@ -1,0 +1,42 @@
+//! The fields of a scene file, as written, with their places in the text.
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+use super::number::{Number, Scale, Triple};
+
+/// What stands above the bodies.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Header {
+    pub(super) title: Option<String>,
+    pub(super) about: Option<String>,
+    pub(super) rate: Option<Spanned<Number>>,
+    pub(super) dt: Option<Spanned<Number>>,
+    pub(super) method: Option<Spanned<String>>,
+    pub(super) collision: Option<Spanned<String>>,
+}
+
+/// A `[[body]]`.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Body {
+    pub(super) name: Spanned<String>,
+    pub(super) mesh: Spanned<String>,
+    pub(super) position: Option<Spanned<Triple>>,
+    pub(super) rotation: Option<Spanned<Triple>>,
+    pub(super) scale: Option<Spanned<Scale>>,
+    pub(super) velocity: Option<Spanned<Triple>>,
+    pub(super) force: Option<Spanned<Triple>>,
+    pub(super) mass: Option<Spanned<Number>>,
+    pub(super) colour: Option<Spanned<String>>,
+}
+
+/// A whole file, for writing.
+#[derive(Serialize)]
+pub(super) struct File {
+    #[serde(flatten)]
+    pub(super) header: Header,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) body: Vec<Body>,
+}

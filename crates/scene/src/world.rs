@@ -1,0 +1,80 @@
+//! A scene to a running world.
+
+use std::sync::Arc;
+
+use glam::{DQuat, DVec3, EulerRot};
+use sim_core::{Body, Mesh, MeshError, Settings, World};
+
+use crate::SceneError;
+use crate::scene::{Scene, SceneBody};
+
+impl Scene {
+    /// The world of this scene, at time 0, with the bodies in the same order.
+    ///
+    /// Rotation and scale are baked into the meshes; bodies with the same mesh, rotation and
+    /// scale share one.
+    pub fn world(&self) -> Result<World, SceneError> {
+        let settings = Settings {
+            dt: self.dt,
+            method: self.method,
+            collision: self.collision,
+        };
+        let mut world =
+            World::new(settings).map_err(|error| self.world_error(None, None, error))?;
+        let mut baked: Vec<Arc<Mesh>> = Vec::with_capacity(self.bodies.len());
+        for (i, body) in self.bodies.iter().enumerate() {
+            let mut earlier = self.bodies[..i].iter();
+            let mesh = match earlier.position(|other| same_shape(body, other)) {
+                Some(twin) => baked[twin].clone(),
+                None => bake(body).map_err(|error| {
+                    let field = match error {
+                        MeshError::Rotation => "rotation",
+                        _ => "scale",
+                    };
+                    self.world_error(Some(body), Some(field), error)
+                })?,
+            };
+            baked.push(mesh.clone());
+            let added = world.add(Body {
+                mesh: Some(mesh),
+                position: body.position,
+                velocity: body.velocity,
+                mass: body.mass,
+                force: body.force,
+            });
+            added.map_err(|error| self.world_error(Some(body), None, error))?;
+        }
+        Ok(world)
+    }
+
+    fn world_error(
+        &self,
+        body: Option<&SceneBody>,
+        field: Option<&str>,
+        what: impl std::fmt::Display,
+    ) -> SceneError {
+        SceneError::World {
+            scene: self.name.clone(),
+            body: body.map(|body| body.name.clone()),
+            field: field.map(str::to_owned),
+            what: what.to_string(),
+        }
+    }
+}
+
+fn same_shape(a: &SceneBody, b: &SceneBody) -> bool {
+    Arc::ptr_eq(a.mesh.mesh(), b.mesh.mesh()) && a.rotation == b.rotation && a.scale == b.scale
+}
+
+fn bake(body: &SceneBody) -> Result<Arc<Mesh>, MeshError> {
+    if body.rotation == DVec3::ZERO && body.scale == DVec3::ONE {
+        return Ok(body.mesh.mesh().clone());
+    }
+    // Fixed axes in the order x, y, z are moving axes in the order z, y, x.
+    let [x, y, z] = body.rotation.to_array().map(f64::to_radians);
+    let rotation = DQuat::from_euler(EulerRot::ZYX, z, y, x);
+    body.mesh
+        .mesh()
+        .transformed(rotation, body.scale)
+        .map(Arc::new)
+}

@@ -1,0 +1,138 @@
+//! Pictures onto a texture: shaded meshes, ground grid, lines and arrows, with wgpu.
+//!
+//! Positions reach the graphics device relative to the eye, subtracted in f64, so that a scene far from
+//! the origin is drawn as steadily as one at it.
+
+mod arrows;
+mod axes;
+mod background;
+mod blur;
+mod device;
+mod finish;
+mod frame;
+mod ground;
+mod growing;
+mod lines;
+mod meshes;
+mod normals;
+pub mod offscreen;
+mod pipeline;
+mod shadow;
+mod surface;
+mod targets;
+mod triangles;
+
+pub use device::{device_descriptor, supported_samples};
+
+use egui_wgpu::wgpu;
+
+use crate::picture::Picture;
+use frame::Frame;
+use targets::Targets;
+
+/// Draws pictures onto textures of one format.
+///
+/// Meshes stay on the device for as long as each picture shows them again.
+pub struct Renderer {
+    samples: u32,
+    targets: Option<Targets>,
+    frame: frame::FrameBinding,
+    meshes: meshes::Meshes,
+    background: background::Background,
+    surface: surface::Surface,
+    shadow: shadow::Shadow,
+    ground: ground::Ground,
+    lines: lines::Lines,
+    arrows: arrows::Arrows,
+    finish: finish::Finish,
+}
+
+impl Renderer {
+    /// A renderer onto targets of a format, sRGB or not, with so many samples per pixel:
+    /// 1, or what [`supported_samples`] says.
+    pub fn new(device: &wgpu::Device, target: wgpu::TextureFormat, samples: u32) -> Self {
+        let frame = frame::FrameBinding::new(device);
+        let shadow = shadow::Shadow::new(device, &frame);
+        Self {
+            samples,
+            targets: None,
+            meshes: meshes::Meshes::new(device),
+            background: background::Background::new(device, &frame, samples),
+            surface: surface::Surface::new(device, &frame, samples),
+            ground: ground::Ground::new(device, &frame, &shadow, samples),
+            lines: lines::Lines::new(device, &frame, samples),
+            arrows: arrows::Arrows::new(device, &frame, samples),
+            finish: finish::Finish::new(device, target),
+            shadow,
+            frame,
+        }
+    }
+
+    /// Records the drawing of a picture over all of a target of a size in pixels.
+    ///
+    /// The picture's data is written to the queue at once, so each submission can hold one drawing.
+    /// Nothing is drawn at size 0. What has a position that is not finite is left out.
+    pub fn draw(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        encoder: &mut wgpu::CommandEncoder,
+        target_view: &wgpu::TextureView,
+        size: [u32; 2],
+        picture: &Picture,
+    ) {
+        if size.contains(&0) {
+            return;
+        }
+        let frame = Frame::new(&picture.camera, size);
+        self.frame.write(queue, &frame);
+        let eye = picture.camera.eye();
+        self.meshes.gather(device, queue, &picture.models, eye);
+        let axis = if picture.grid {
+            axes::upright(&picture.camera)
+        } else {
+            Vec::new()
+        };
+        self.lines
+            .gather(device, queue, axis.iter().chain(&picture.lines), eye);
+        self.arrows.gather(device, queue, &picture.arrows, eye);
+
+        if picture.grid {
+            self.shadow.draw(encoder, &self.frame, &self.meshes);
+        }
+        let samples = self.samples;
+        if self
+            .targets
+            .as_ref()
+            .is_none_or(|targets| targets.size() != size)
+        {
+            self.targets = Some(Targets::new(device, size, samples, &self.finish));
+        }
+        let Some(targets) = &self.targets else { return };
+        {
+            let mut pass = targets.begin(encoder);
+            pass.set_bind_group(0, self.frame.group(), &[]);
+            self.surface.draw(&mut pass, &self.meshes);
+            self.arrows.draw(&mut pass);
+            self.background.draw(&mut pass);
+            if picture.grid {
+                self.ground.draw(&mut pass, &self.shadow);
+            }
+            self.lines.draw(&mut pass);
+        }
+        self.finish
+            .draw(encoder, target_view, targets.finish_group());
+    }
+}
+
+/// From sRGB to linear light, each part limited to `0..=1`.
+fn linear(colour: [f32; 3]) -> [f32; 3] {
+    colour.map(|part| {
+        let part = part.clamp(0.0, 1.0);
+        if part <= 0.04045 {
+            part / 12.92
+        } else {
+            ((part + 0.055) / 1.055).powf(2.4)
+        }
+    })
+}

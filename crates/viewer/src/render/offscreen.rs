@@ -1,0 +1,237 @@
+//! Pictures into memory, with no window or display.
+
+use std::fmt;
+
+use egui_wgpu::wgpu;
+use image::RgbaImage;
+
+use super::{Renderer, device_descriptor, supported_samples};
+use crate::picture::Picture;
+
+/// Bytes.
+const PIXEL: u32 = 4;
+
+/// Why there is no picture.
+#[derive(Debug)]
+pub enum ShotError {
+    /// This computer has nothing to draw with.
+    NoAdapter,
+    /// The adapter gives no device.
+    Device(wgpu::RequestDeviceError),
+    /// A size of 0, or one larger than the device's textures can be.
+    Size {
+        /// What was asked for, pixels.
+        size: [u32; 2],
+        /// The most that this device draws along a side, pixels.
+        most: u32,
+    },
+    /// The device failed while it drew, most likely for want of memory.
+    Drawing(String),
+}
+
+impl fmt::Display for ShotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoAdapter => f.write_str(
+                "no graphics adapter: install a Vulkan driver (on Debian `mesa-vulkan-drivers` draws in \
+                 software), or use `run` or `check`, which need none",
+            ),
+            Self::Device(error) => write!(f, "the graphics adapter gives no device: {error}"),
+            Self::Size { size: [width, height], most } => write!(
+                f,
+                "cannot draw {width} x {height} pixels: both must be from 1 to {most} on this graphics adapter"
+            ),
+            Self::Drawing(error) => write!(
+                f,
+                "the graphics adapter failed to draw, try a smaller picture: {error}"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for ShotError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Device(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+/// One picture of a size in pixels, with a device of its own. [`Offscreen`] takes several in a row faster.
+pub fn shot(picture: &Picture, size: [u32; 2]) -> Result<RgbaImage, ShotError> {
+    Offscreen::new()?.shot(picture, size)
+}
+
+/// A device with a renderer that needs no display.
+pub struct Offscreen {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    format: wgpu::TextureFormat,
+    renderer: Renderer,
+}
+
+impl Offscreen {
+    /// On the fastest adapter there is, one that draws in software if there is no other.
+    pub fn new() -> Result<Self, ShotError> {
+        Self::with_format(wgpu::TextureFormat::Rgba8UnormSrgb)
+    }
+
+    fn with_format(format: wgpu::TextureFormat) -> Result<Self, ShotError> {
+        let adapter = adapter().ok_or(ShotError::NoAdapter)?;
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
+                .map_err(ShotError::Device)?;
+        let renderer = Renderer::new(&device, format, supported_samples(&adapter));
+        Ok(Self {
+            device,
+            queue,
+            format,
+            renderer,
+        })
+    }
+
+    /// One picture of a size in pixels.
+    pub fn shot(&mut self, picture: &Picture, size: [u32; 2]) -> Result<RgbaImage, ShotError> {
+        let [width, height] = size;
+        let most = self.device.limits().max_texture_dimension_2d;
+        if size.contains(&0) || width.max(height) > most {
+            return Err(ShotError::Size { size, most });
+        }
+        let padded_row = (width * PIXEL).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let bytes = u64::from(padded_row) * u64::from(height);
+
+        // Without these a failure would end the program.
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let readback = self.draw(picture, size, padded_row, bytes);
+        for scope in [internal, validation, memory] {
+            if let Some(error) = pollster::block_on(scope.pop()) {
+                return Err(ShotError::Drawing(error.to_string()));
+            }
+        }
+
+        let failed = |error: &dyn fmt::Display| ShotError::Drawing(error.to_string());
+        let slice = readback.slice(..);
+        let (sender, receiver) = std::sync::mpsc::channel();
+        slice.map_async(wgpu::MapMode::Read, move |mapped| {
+            // Nobody is left to tell if the receiver has gone.
+            let _ = sender.send(mapped);
+        });
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map_err(|error| failed(&error))?;
+        receiver
+            .recv()
+            .map_err(|error| failed(&error))?
+            .map_err(|error| failed(&error))?;
+        let mapped = slice.get_mapped_range().map_err(|error| failed(&error))?;
+        let mut pixels = Vec::with_capacity((width * PIXEL) as usize * height as usize);
+        for row in mapped.chunks_exact(padded_row as usize) {
+            pixels.extend_from_slice(&row[..(width * PIXEL) as usize]);
+        }
+        RgbaImage::from_raw(width, height, pixels)
+            .ok_or_else(|| ShotError::Drawing("too few pixels came back".to_owned()))
+    }
+
+    /// Draws, and copies the rows into a buffer that can be read.
+    fn draw(
+        &mut self,
+        picture: &Picture,
+        [width, height]: [u32; 2],
+        padded_row: u32,
+        bytes: u64,
+    ) -> wgpu::Buffer {
+        let extent = wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        };
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("shot"),
+            size: extent,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: self.format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let readback = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("shot"),
+            size: bytes,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let view = texture.create_view(&Default::default());
+        self.renderer.draw(
+            &self.device,
+            &self.queue,
+            &mut encoder,
+            &view,
+            [width, height],
+            picture,
+        );
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &readback,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(padded_row),
+                    rows_per_image: None,
+                },
+            },
+            extent,
+        );
+        self.queue.submit([encoder.finish()]);
+        readback
+    }
+}
+
+/// An adapter of the backends that the environment asks for, else of the platform's own, and OpenGL's as the last.
+fn adapter() -> Option<wgpu::Adapter> {
+    let choices = match wgpu::Backends::from_env() {
+        Some(backends) => vec![backends],
+        None => vec![wgpu::Backends::PRIMARY, wgpu::Backends::GL],
+    };
+    choices.into_iter().find_map(|backends| {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends,
+            ..wgpu::InstanceDescriptor::new_without_display_handle_from_env()
+        });
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        pollster::block_on(instance.request_adapter(&options)).ok()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn targets_with_and_without_srgb_get_the_same_bytes() -> Result<(), ShotError> {
+        let picture = Picture {
+            grid: true,
+            ..Picture::default()
+        };
+        let [encoded, plain] = [
+            wgpu::TextureFormat::Rgba8UnormSrgb,
+            wgpu::TextureFormat::Rgba8Unorm,
+        ]
+        .map(|format| Offscreen::with_format(format)?.shot(&picture, [90, 60]));
+        if let Err(ShotError::NoAdapter) = encoded {
+            println!("skipped: {}", ShotError::NoAdapter);
+            return Ok(());
+        }
+        for (encoded, plain) in encoded?.iter().zip(plain?.iter()) {
+            assert!(encoded.abs_diff(*plain) <= 1);
+        }
+        Ok(())
+    }
+}

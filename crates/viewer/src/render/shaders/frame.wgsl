@@ -1,0 +1,28 @@
+// What every pipeline knows of the picture. Positions are metres relative to the eye, along world axes.
+struct Frame {
+    view_projection: mat4x4f,
+    // From the middle of the picture to its right and upper edges, at a depth of one; unit direction of view.
+    right: vec3f,
+    near: f32,
+    up: vec3f,
+    // Size of a pixel at a depth of one.
+    pixel: f32,
+    forward: vec3f,
+    eye_height: f32,
+    // Unit direction to the key light.
+    light: vec3f,
+    shadow_half: f32,
+    // Half the picture, pixels.
+    half_size: vec2f,
+    // The middle of the shadow map and the origin's x and z.
+    shadow_centre: vec2f,
+    origin: vec2f,
+    // The finest spacing of the grid, m, and how far it is drawn.
+    grid_step: f32,
+    grid_reach: f32,
+    // The eye's place within a cell of 1, 10, 100 and 1000 spacings, in cells.
+    grid_x: vec4f,
+    grid_z: vec4f,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;

@@ -1,0 +1,72 @@
+struct Corner {
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+}
+
+struct Instance {
+    @location(2) offset: vec3f,
+    @location(4) colour: vec3f,
+}
+
+struct Varying {
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) colour: vec3f,
+    // Parts of the triangle's corners; each is zero along the edge opposite.
+    @location(3) parts: vec3f,
+}
+
+fn placed(corner: Corner, instance: Instance, parts: vec3f) -> Varying {
+    var out: Varying;
+    out.position = corner.position + instance.offset;
+    out.clip = frame.view_projection * vec4f(out.position, 1.0);
+    out.normal = corner.normal;
+    out.colour = instance.colour;
+    out.parts = parts;
+    return out;
+}
+
+@vertex
+fn vs_plain(corner: Corner, instance: Instance) -> Varying {
+    return placed(corner, instance, vec3f(1.0));
+}
+
+// For triangles whose corners come in order, three by three.
+@vertex
+fn vs_edged(corner: Corner, instance: Instance, @builtin(vertex_index) index: u32) -> Varying {
+    let place = index % 3u;
+    let parts = vec3f(f32(place == 0u), f32(place == 1u), f32(place == 2u));
+    return placed(corner, instance, parts);
+}
+
+fn surface(in: Varying, front: bool) -> vec3f {
+    // Both sides are drawn: an open mesh has an inside to look at.
+    return lit(in.colour, in.position, normalize(select(-in.normal, in.normal, front)));
+}
+
+@fragment
+fn fs_plain(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    return vec4f(surface(in, front), 1.0);
+}
+
+const EDGE = vec3f(0.010, 0.014, 0.022);
+// Half the width of an edge, of which each side's triangle draws one, pixels.
+const EDGE_HALF_WIDTH = 0.6;
+
+@fragment
+fn fs_edged(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let dx = dpdx(in.parts);
+    let dy = dpdy(in.parts);
+    // How much of the triangle one pixel crosses, away from each edge.
+    let pixel = max(sqrt(dx * dx + dy * dy), vec3f(1e-9));
+    let covered = clamp(vec3f(EDGE_HALF_WIDTH + 0.5) - in.parts / pixel, vec3f(0.0), vec3f(1.0));
+    // Edges that crowd together grow faint, so that a dense mesh still shows its surface.
+    let apart = mix(vec3f(0.12), vec3f(0.75), 1.0 - smoothstep(vec3f(0.04), vec3f(0.3), pixel));
+    let inks = covered * apart;
+    let ink = max(inks.x, max(inks.y, inks.z));
+    let normal = normalize(in.normal);
+    let grazing = 1.0 - abs(dot(normal, normalize(in.position)));
+    let bright = 1.1 * surface(in, front) + vec3f(0.012 + 0.12 * grazing * grazing * grazing);
+    return vec4f(mix(bright, EDGE, ink), 1.0);
+}

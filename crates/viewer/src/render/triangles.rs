@@ -1,0 +1,80 @@
+//! The triangles of a mesh in buffers of the device.
+
+use std::ops::Range;
+
+use egui_wgpu::wgpu;
+use egui_wgpu::wgpu::util::DeviceExt;
+use sim_core::Mesh;
+
+use super::normals::{Shaded, Vertex};
+
+/// Triangles ready to draw. Of a mesh too large for the device's buffers they are the first that fit.
+pub(super) struct Triangles {
+    vertices: wgpu::Buffer,
+    /// `None` where each corner has a vertex of its own, in order.
+    indices: Option<wgpu::Buffer>,
+    corners: u32,
+}
+
+impl Triangles {
+    /// Corners share vertices.
+    pub(super) fn shared(device: &wgpu::Device, mesh: &Mesh) -> Self {
+        let shaded = Shaded::new(mesh);
+        let vertices = &shaded.vertices[..shaded.vertices.len().min(most::<Vertex>(device))];
+        let mut indices = &shaded.indices[..shaded.indices.len().min(most::<u32>(device))];
+        if vertices.len() < shaded.vertices.len() {
+            let beyond = |&index: &u32| index as usize >= vertices.len();
+            let end = indices.iter().position(beyond).unwrap_or(indices.len());
+            indices = &indices[..end / 3 * 3];
+        }
+        Self {
+            vertices: buffer(device, wgpu::BufferUsages::VERTEX, vertices),
+            indices: Some(buffer(device, wgpu::BufferUsages::INDEX, indices)),
+            corners: indices.len() as u32,
+        }
+    }
+
+    /// Each corner by itself, the three of a triangle in order.
+    pub(super) fn apart(device: &wgpu::Device, mesh: &Mesh) -> Self {
+        let shaded = Shaded::new(mesh);
+        let corners = shaded.indices.iter().take(most::<Vertex>(device));
+        let vertices: Vec<Vertex> = corners
+            .map(|&index| shaded.vertices[index as usize])
+            .collect();
+        Self {
+            vertices: buffer(device, wgpu::BufferUsages::VERTEX, &vertices),
+            indices: None,
+            corners: vertices.len() as u32,
+        }
+    }
+
+    /// Draws instances of a buffer that is bound already.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, instances: Range<u32>) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        match &self.indices {
+            Some(indices) => {
+                pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+                pass.draw_indexed(0..self.corners, 0, instances);
+            }
+            None => pass.draw(0..self.corners, instances),
+        }
+    }
+}
+
+/// How many items a buffer can hold, in whole triangles.
+fn most<T>(device: &wgpu::Device) -> usize {
+    let items = device.limits().max_buffer_size / size_of::<T>() as u64;
+    (items.min(u64::from(u32::MAX)) / 3 * 3) as usize
+}
+
+fn buffer<T: bytemuck::Pod>(
+    device: &wgpu::Device,
+    usage: wgpu::BufferUsages,
+    items: &[T],
+) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("triangles"),
+        contents: bytemuck::cast_slice(items),
+        usage,
+    })
+}
