@@ -37,10 +37,15 @@ pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, offset: DVec3) -> b
 
 /// Every edge of one mesh in a triangle of the other, in the order of [`super::naive::hits`].
 pub fn hits(first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Hit> {
+    hits_at(Level::best(), first, second, offset)
+}
+
+/// [`hits`] with the instructions of a level, to compare levels.
+pub fn hits_at(level: Level, first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Hit> {
     let mut hits = Vec::new();
     if first.bounds().meets(&second.bounds(), offset) {
         let reach = Reach::new(second, offset);
-        let _ = each_pair(Level::best(), first, second, reach, |s, t| {
+        let _ = each_pair(level, first, second, reach, |s, t| {
             hits.extend(pair_hits(first, second, s, t, offset));
             ControlFlow::Continue(())
         });
