@@ -4,7 +4,7 @@ mod oracle;
 
 use proptest::prelude::*;
 use sim_core::collide::predicates::{segment_meets_triangle, triangles_meet};
-use sim_core::collide::{naive, tree};
+use sim_core::collide::{Level, naive, tree};
 use sim_core::{Bvh, DVec3, Mesh, Vec3};
 
 /// Points that touch, coincide and lie in planes more often than not: a small lattice, some of
@@ -68,14 +68,16 @@ fn random_soup() -> impl Strategy<Value = Mesh> {
     })
 }
 
-/// Naive and BVH give the same answer and the same hits, to the bit.
+/// Naive and BVH, at every level of vectors, give the same answer and the same hits, to the bit.
 fn assert_same(first: &Mesh, second: &Mesh, offset: DVec3) -> Result<bool, TestCaseError> {
     let (a, b) = (Bvh::build(first), Bvh::build(second));
     let hits = naive::hits(first, second, offset);
-    prop_assert_eq!(&hits, &tree::hits(&a, &b, offset));
     prop_assert_eq!(!hits.is_empty(), naive::intersect(first, second, offset));
-    prop_assert_eq!(!hits.is_empty(), tree::intersect(&a, &b, offset));
-    prop_assert_eq!(!hits.is_empty(), tree::intersect(&b, &a, -offset));
+    for level in Level::ALL {
+        prop_assert_eq!(&hits, &tree::hits_at(level, &a, &b, offset));
+        prop_assert_eq!(!hits.is_empty(), tree::intersect_at(level, &a, &b, offset));
+        prop_assert_eq!(!hits.is_empty(), tree::intersect_at(level, &b, &a, -offset));
+    }
     Ok(!hits.is_empty())
 }
 

@@ -47,10 +47,10 @@
 //! Bodies translate and do not turn. Overlap is looked for at the end of each step: what is
 //! through a body within one step is not seen.
 #![no_std]
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 extern crate alloc;
-#[cfg(test)]
+#[cfg(any(test, feature = "std"))]
 extern crate std;
 
 mod aabb;

@@ -1,103 +1,150 @@
 //! Building a BVH top down by the binned surface area heuristic (Wald 2007, "On fast construction
-//! of SAH-based bounding volume hierarchies").
+//! of SAH-based bounding volume hierarchies"), four children at a time (Wald, Benthin, Boulos
+//! 2008, "Getting rid of packets").
 
 use alloc::{vec, vec::Vec};
-use glam::Vec3;
+use core::ops::Range;
+use glam::Vec3A;
 
-use super::{Bvh, MAX_DEPTH, Node, Triangle};
+use super::{Bvh, Child, MAX_DEPTH, Node, Origin, WIDTH};
 use crate::{Aabb, Mesh};
 
-/// Candidate split planes per axis, less one. 16 costs 1 % of quality against 32 on the cow.
+/// Candidate split planes per axis, less one.
 const BINS: usize = 16;
-/// Cost of a step down the tree, in triangle tests.
-const DESCENT_COST: f64 = 1.0;
-/// A leaf never holds more, unless its triangles cannot be told apart.
-const MAX_LEAF: usize = 4;
-/// From this level on, runs are halved by count: below it at most 31 more levels exist, since a
-/// mesh has fewer than 2^31 triangles, and the tree stays within `MAX_DEPTH`.
-const HALVE_FROM: usize = 32;
+/// From this level on, runs are halved by count. It leaves a quarter at most to each child, and a
+/// mesh has fewer than 4^16 triangles, so the tree stays within `MAX_DEPTH`.
+const HALVE_FROM: usize = MAX_DEPTH - 16;
 
 /// A triangle while the tree is built.
 #[derive(Clone, Copy)]
 struct Item {
-    bounds: Aabb,
-    /// Centre of the box, within range by halving before adding.
-    centre: Vec3,
+    bounds: Bounds,
     face: u32,
+}
+
+impl Item {
+    /// Centre of the box, within range by halving before adding.
+    #[inline]
+    fn centre(&self) -> Vec3A {
+        self.bounds.min * 0.5 + self.bounds.max * 0.5
+    }
+}
+
+/// A box in two SIMD registers.
+#[derive(Clone, Copy)]
+struct Bounds {
+    min: Vec3A,
+    max: Vec3A,
+}
+
+impl Bounds {
+    const EMPTY: Bounds = Bounds {
+        min: Vec3A::INFINITY,
+        max: Vec3A::NEG_INFINITY,
+    };
+
+    #[inline]
+    fn union(self, other: Bounds) -> Bounds {
+        Bounds {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+
+    #[inline]
+    fn half_area(&self) -> f32 {
+        let e = self.max - self.min;
+        let area = e.x * e.y + e.y * e.z + e.z * e.x;
+        // Infinite for huge meshes, NaN for none: then no plane is the best, and halves do.
+        area
+    }
+
+    fn narrow(self) -> Aabb {
+        Aabb {
+            min: self.min.into(),
+            max: self.max.into(),
+        }
+    }
 }
 
 pub(super) fn build(mesh: &Mesh) -> Bvh {
     let mut items: Vec<Item> = (0..mesh.triangles().len())
         .map(|face| {
-            let bounds = Aabb::around(mesh.corners(face));
+            let [a, b, c] = mesh.corners(face).map(Vec3A::from);
+            let bounds = Bounds {
+                min: a.min(b).min(c),
+                max: a.max(b).max(c),
+            };
             Item {
                 bounds,
-                centre: bounds.min * 0.5 + bounds.max * 0.5,
                 face: face as u32,
             }
         })
         .collect();
 
-    let placeholder = Node {
-        bounds: Aabb::EMPTY,
-        first: 0,
-        count: 0,
-    };
-    let mut nodes = Vec::with_capacity(items.len());
-    nodes.push(placeholder);
+    let mut nodes = Vec::with_capacity(items.len() / 2 + 1);
+    nodes.push(Node::EMPTY);
     let mut depth = 0;
     // Each entry: a node to make, its run of items, its level.
     let mut pending = vec![(0, 0..items.len(), 0)];
-    while let Some((node, run, level)) = pending.pop() {
+    while let Some((index, run, level)) = pending.pop() {
         depth = depth.max(level + 1);
-        let bounds = run
-            .clone()
-            .fold(Aabb::EMPTY, |b, i| b.union(items[i].bounds));
-        match split(&mut items[run.clone()], &bounds, level) {
-            Some(left) => {
-                let first = nodes.len();
-                nodes.extend([placeholder; 2]);
-                nodes[node] = Node {
-                    bounds,
-                    first: first as u32,
-                    count: 0,
-                };
-                let middle = run.start + left;
-                pending.push((first + 1, middle..run.end, level + 1));
-                pending.push((first, run.start..middle, level + 1));
-            }
-            None => {
-                nodes[node] = Node {
-                    bounds,
-                    first: run.start as u32,
-                    count: run.len() as u32,
-                };
-            }
+        let (runs, count) = divide(&mut items, run, level);
+        for (lane, run) in runs.into_iter().take(count).enumerate() {
+            let bounds = bounds_of(&items[run.clone()]).narrow();
+            let child = if run.len() == 1 {
+                Child::Triangle(run.start as u32)
+            } else {
+                let child = nodes.len();
+                nodes.push(Node::EMPTY);
+                pending.push((child, run, level + 1));
+                Child::Node(child as u32)
+            };
+            nodes[index].set(lane, child, bounds);
         }
     }
     debug_assert!(depth <= MAX_DEPTH);
     Bvh {
+        bounds: mesh.bounds(),
         nodes,
-        triangles: owners(mesh, items.iter().map(|item| item.face)),
+        corners: items
+            .iter()
+            .map(|item| mesh.corners(item.face as usize))
+            .collect(),
+        origin: origins(mesh, items.iter().map(|item| item.face)),
         depth,
     }
 }
 
-/// Reorders a run so that its first part, of the length returned, goes left; `None` for a leaf.
-fn split(items: &mut [Item], bounds: &Aabb, level: usize) -> Option<usize> {
-    if items.len() == 1 {
-        return None;
-    }
-    let by_area = (level < HALVE_FROM)
-        .then(|| best_plane(items, bounds))
-        .flatten();
-    match by_area {
-        Some(plane) if items.len() > MAX_LEAF || plane.cost < items.len() as f64 => {
-            Some(partition(items, |item| plane.bin(item) <= plane.last_left))
+/// Cuts a run into four runs or fewer, none of them empty, reordering its items.
+fn divide(items: &mut [Item], run: Range<usize>, level: usize) -> ([Range<usize>; WIDTH], usize) {
+    let mut runs = [run, 0..0, 0..0, 0..0];
+    if runs[0].len() <= WIDTH {
+        let start = runs[0].start;
+        let count = runs[0].len();
+        for (i, run) in runs.iter_mut().enumerate().take(count) {
+            *run = start + i..start + i + 1;
         }
-        _ if items.len() <= MAX_LEAF => None,
+        return (runs, count);
+    }
+    for count in 1..WIDTH {
+        // The longest run is the one that has most to win.
+        let longest = (0..count).max_by_key(|&i| runs[i].len()).unwrap_or(0);
+        let Range { start, end } = runs[longest];
+        let left = start + split(&mut items[start..end], level);
+        runs[longest] = start..left;
+        runs[count] = left..end;
+    }
+    (runs, WIDTH)
+}
+
+/// Reorders a run of two or more so that its first part, of the length returned, goes left.
+fn split(items: &mut [Item], level: usize) -> usize {
+    let plane = (level < HALVE_FROM).then(|| best_plane(items)).flatten();
+    match plane {
+        Some(plane) => partition(items, |item| plane.bin(item) <= plane.last_left),
         // Centres that no plane separates: any halves do.
-        _ => Some(items.len() / 2),
+        None => items.len() / 2,
     }
 }
 
@@ -107,83 +154,76 @@ struct Plane {
     origin: f32,
     scale: f32,
     last_left: usize,
-    cost: f64,
 }
 
 impl Plane {
+    #[inline]
     fn bin(&self, item: &Item) -> usize {
-        bin((item.centre[self.axis] - self.origin) * self.scale)
+        bin((item.centre()[self.axis] - self.origin) * self.scale)
     }
 }
 
-/// Saturates: below 0 and NaN go first, too large goes last.
+/// Saturates: too large goes last.
+#[inline]
 fn bin(place: f32) -> usize {
-    (place as usize).min(BINS - 1)
+    (place as i32 as usize).min(BINS - 1)
 }
 
-/// The cheapest plane over the three axes, in triangle tests for a ray that meets the parent.
-fn best_plane(items: &[Item], bounds: &Aabb) -> Option<Plane> {
-    let centres = Aabb::around(items.iter().map(|item| item.centre));
-    let parent = bounds.half_area();
-    let mut best: Option<Plane> = None;
-    for axis in 0..3 {
-        let origin = centres.min[axis];
-        let scale = BINS as f32 / (centres.max[axis] - origin);
-        if !scale.is_finite() || scale == 0.0 {
-            continue;
-        }
-        let mut bins = [(Aabb::EMPTY, 0usize); BINS];
-        for item in items {
-            let (bounds, count) = &mut bins[bin((item.centre[axis] - origin) * scale)];
-            *bounds = bounds.union(item.bounds);
-            *count += 1;
-        }
-        // Cost of what lies to the right of each plane, swept from the right.
-        let mut right = [(0.0, 0); BINS];
-        let (mut swept, mut count) = (Aabb::EMPTY, 0);
-        for i in (1..BINS).rev() {
-            swept = swept.union(bins[i].0);
-            count += bins[i].1;
-            right[i - 1] = (weigh(swept, count), count);
-        }
-        (swept, count) = (Aabb::EMPTY, 0);
-        for last_left in 0..BINS - 1 {
-            swept = swept.union(bins[last_left].0);
-            count += bins[last_left].1;
-            let (right_weight, right_count) = right[last_left];
-            if count == 0 || right_count == 0 {
-                continue;
-            }
-            // A flat parent has no area to weigh by: halves then.
-            let cost = if parent > 0.0 {
-                DESCENT_COST + (weigh(swept, count) + right_weight) / parent
-            } else {
-                count.abs_diff(right_count) as f64
-            };
-            if best.as_ref().is_none_or(|b| cost < b.cost) {
-                best = Some(Plane {
-                    axis,
-                    origin,
-                    scale,
-                    last_left,
-                    cost,
-                });
-            }
+/// The plane across the longest axis of the centres with the least area of boxes times triangles
+/// in them.
+fn best_plane(items: &[Item]) -> Option<Plane> {
+    let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
+    for item in items {
+        low = low.min(item.centre());
+        high = high.max(item.centre());
+    }
+    let axis = (high - low).max_position();
+    let origin = low[axis];
+    let scale = BINS as f32 / (high[axis] - origin);
+    if !scale.is_finite() || scale == 0.0 {
+        return None;
+    }
+    let mut bins = [(Bounds::EMPTY, 0u32); BINS];
+    for item in items {
+        let (bounds, count) = &mut bins[bin((item.centre()[axis] - origin) * scale)];
+        *bounds = bounds.union(item.bounds);
+        *count += 1;
+    }
+    // What lies to the right of each plane, swept from the right.
+    let mut right = [(0.0, 0); BINS];
+    let (mut swept, mut count) = (Bounds::EMPTY, 0);
+    for i in (1..BINS).rev() {
+        swept = swept.union(bins[i].0);
+        count += bins[i].1;
+        right[i - 1] = (swept.half_area() * count as f32, count);
+    }
+    (swept, count) = (Bounds::EMPTY, 0);
+    let (mut best, mut best_cost) = (None, f32::INFINITY);
+    for last_left in 0..BINS - 1 {
+        swept = swept.union(bins[last_left].0);
+        count += bins[last_left].1;
+        let (right_cost, right_count) = right[last_left];
+        let cost = swept.half_area() * count as f32 + right_cost;
+        if count > 0 && right_count > 0 && cost < best_cost {
+            best_cost = cost;
+            best = Some(last_left);
         }
     }
-    best
+    Some(Plane {
+        axis,
+        origin,
+        scale,
+        last_left: best?,
+    })
 }
 
-fn weigh(bounds: Aabb, count: usize) -> f64 {
-    if count == 0 {
-        0.0
-    } else {
-        bounds.half_area() * count as f64
-    }
+fn bounds_of(items: &[Item]) -> Bounds {
+    items
+        .iter()
+        .fold(Bounds::EMPTY, |bounds, item| bounds.union(item.bounds))
 }
 
-/// Brings the items that go left to the front, and counts them. The order within either part
-/// depends on the input alone.
+/// Brings the items that go left to the front, and counts them.
 fn partition(items: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
     let mut left = 0;
     for i in 0..items.len() {
@@ -196,7 +236,7 @@ fn partition(items: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
 }
 
 /// The triangles in leaf order, each shared edge and vertex given to its first face.
-fn owners(mesh: &Mesh, faces: impl Iterator<Item = u32>) -> Vec<Triangle> {
+fn origins(mesh: &Mesh, faces: impl Iterator<Item = u32>) -> Vec<Origin> {
     let mut owner_of_vertex = vec![u32::MAX; mesh.vertices().len()];
     let mut owner_of_edge = vec![u32::MAX; mesh.edges().len()];
     for (face, (corners, edges)) in mesh
@@ -218,8 +258,7 @@ fn owners(mesh: &Mesh, faces: impl Iterator<Item = u32>) -> Vec<Triangle> {
         .map(|face| {
             let vertices = mesh.triangles()[face as usize];
             let edges = mesh.triangle_edges()[face as usize];
-            Triangle {
-                corners: mesh.corners(face as usize),
+            Origin {
                 face,
                 vertices,
                 edges,

@@ -1,39 +1,35 @@
 //! Bounding volume hierarchy over the triangles of a mesh.
 
 mod build;
+mod node;
 mod ray;
 
 use alloc::vec::Vec;
 use glam::Vec3;
 
 use crate::{Aabb, Mesh};
+pub(crate) use node::{Child, MAX_DEPTH, Node, WIDTH};
 pub use ray::RayHit;
 
-/// A binary tree of boxes, flat in memory, with the triangles beside it in leaf order.
+/// A tree of boxes, four below each, flat in memory, with the triangles beside it in leaf order.
 ///
 /// It holds all that a query needs, so that a query reads nothing else.
 #[derive(Clone, Debug)]
 pub struct Bvh {
+    bounds: Aabb,
+    /// The root first, children after their parents.
     nodes: Vec<Node>,
-    triangles: Vec<Triangle>,
+    /// Corners in leaf order: all that an answer of yes or no looks at.
+    corners: Vec<[Vec3; 3]>,
+    /// Beside each its place in the mesh.
+    origin: Vec<Origin>,
     depth: usize,
 }
 
-/// A box and what is below it: two nodes side by side, or a run of triangles.
+/// Where a triangle is in the mesh, and what it owns: of the edges and corners that it shares
+/// with others, those for which it is the first. By owners, each edge and vertex comes up once.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Node {
-    pub(crate) bounds: Aabb,
-    /// First of the two children, or first triangle.
-    first: u32,
-    /// Triangles of a leaf; 0 for an inner node.
-    count: u32,
-}
-
-/// A triangle with what it owns: of the edges and corners it shares with others, those for
-/// which it is the first in the mesh. Tested by owners, each edge and vertex comes up once.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Triangle {
-    pub(crate) corners: [Vec3; 3],
+pub(crate) struct Origin {
     pub(crate) face: u32,
     pub(crate) vertices: [u32; 3],
     pub(crate) edges: [u32; 3],
@@ -41,53 +37,59 @@ pub(crate) struct Triangle {
     pub(crate) owns_edge: [bool; 3],
 }
 
-/// No path from the root has more nodes, whatever the input (see `build`).
-pub(crate) const MAX_DEPTH: usize = 64;
-
 impl Bvh {
     /// Builds the tree by the surface area heuristic, in O(n log n).
     pub fn build(mesh: &Mesh) -> Bvh {
         build::build(mesh)
     }
 
-    /// How many nodes there are, leaves included.
+    /// How many nodes there are; triangles are not counted.
     pub fn node_count(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Levels of the tree; 1 when the root is a leaf.
+    /// Levels of nodes above the triangles.
     pub fn depth(&self) -> usize {
         self.depth
     }
 
-    /// Expected cost of a random ray against that of one triangle: the surface area of every
-    /// node relative to the root's, weighted by the work there (MacDonald, Booth 1990).
+    /// Expected number of boxes and triangles that a random ray through the root's box has to
+    /// look at: the surface area of each relative to the root's (MacDonald, Booth 1990).
     pub fn surface_area_cost(&self) -> f64 {
-        let root = self.nodes[0].bounds.half_area();
+        let root = self.bounds.half_area();
         if root == 0.0 {
-            return self.triangles.len() as f64;
+            return self.corners.len() as f64;
         }
-        let work = |n: &Node| n.bounds.half_area() * f64::from(n.count.max(1));
-        self.nodes.iter().map(work).sum::<f64>() / root
+        self.boxes()
+            .map(|(_, bounds)| bounds.half_area())
+            .sum::<f64>()
+            / root
     }
 
     /// Memory per triangle, bytes.
     pub fn bytes_per_triangle(&self) -> f64 {
-        let bytes = size_of_val(&self.nodes[..]) + size_of_val(&self.triangles[..]);
-        bytes as f64 / self.triangles.len() as f64
+        let bytes = size_of_val(&self.nodes[..])
+            + size_of_val(&self.corners[..])
+            + size_of_val(&self.origin[..]);
+        bytes as f64 / self.corners.len() as f64
     }
 
-    /// All boxes with their level, the root's being 0.
+    /// The least box around the mesh.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// All boxes with their level: the root's is 0, those of single triangles are not listed.
     pub fn boxes(&self) -> impl Iterator<Item = (usize, Aabb)> {
-        let mut pending = alloc::vec![(0, 0)];
+        let mut pending = alloc::vec![(0, 0, self.bounds)];
         core::iter::from_fn(move || {
-            let (level, node) = pending.pop()?;
-            let node = &self.nodes[node];
-            if !node.is_leaf() {
-                let [left, right] = node.children();
-                pending.extend([(level + 1, right), (level + 1, left)]);
-            }
-            Some((level, node.bounds))
+            let (level, node, bounds) = pending.pop()?;
+            let node = self.node(node);
+            pending.extend((0..WIDTH).rev().filter_map(|lane| match node.child(lane)? {
+                Child::Node(child) => Some((level + 1, child, node.bounds(lane))),
+                Child::Triangle(_) => None,
+            }));
+            Some((level, bounds))
         })
     }
 
@@ -97,22 +99,17 @@ impl Bvh {
             .filter_map(move |(level, bounds)| (level == depth).then_some(bounds))
     }
 
-    pub(crate) fn node(&self, index: usize) -> &Node {
-        &self.nodes[index]
+    pub(crate) fn node(&self, index: u32) -> &Node {
+        &self.nodes[index as usize]
     }
 
-    pub(crate) fn leaf(&self, node: &Node) -> &[Triangle] {
-        &self.triangles[node.first as usize..][..node.count as usize]
-    }
-}
-
-impl Node {
-    pub(crate) fn is_leaf(&self) -> bool {
-        self.count > 0
+    /// Corners of a triangle, by its place in leaf order.
+    pub(crate) fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        self.corners[triangle as usize]
     }
 
-    pub(crate) fn children(&self) -> [usize; 2] {
-        [self.first as usize, self.first as usize + 1]
+    pub(crate) fn origin(&self, triangle: u32) -> &Origin {
+        &self.origin[triangle as usize]
     }
 }
 
@@ -126,26 +123,28 @@ mod tests {
     fn check(mesh: &Mesh) -> Bvh {
         let bvh = Bvh::build(mesh);
         let mut seen = vec![0; mesh.triangles().len()];
-        let mut pending = vec![(0, 1, None::<Aabb>)];
+        let mut pending = vec![(0, 1, bvh.bounds())];
         let mut reached = 0;
-        while let Some((index, level, parent)) = pending.pop() {
+        while let Some((index, level, bounds)) = pending.pop() {
             reached += 1;
-            let node = bvh.node(index);
             assert!(level <= bvh.depth() && bvh.depth() <= MAX_DEPTH);
-            if let Some(parent) = parent {
-                assert_eq!(parent.union(node.bounds), parent);
-            }
-            if node.is_leaf() {
-                let mut tight = Aabb::EMPTY;
-                for t in bvh.leaf(node) {
-                    seen[t.face as usize] += 1;
-                    assert_eq!(t.corners, mesh.corners(t.face as usize));
-                    tight = tight.union(Aabb::around(t.corners));
+            let node = bvh.node(index);
+            let mut tight = Aabb::EMPTY;
+            for lane in 0..WIDTH {
+                let box_of_lane = node.bounds(lane);
+                match node.child(lane) {
+                    Some(Child::Node(child)) => pending.push((child, level + 1, box_of_lane)),
+                    Some(Child::Triangle(t)) => {
+                        let face = bvh.origin(t).face as usize;
+                        seen[face] += 1;
+                        assert_eq!(bvh.corners(t), mesh.corners(face));
+                        assert_eq!(Aabb::around(bvh.corners(t)), box_of_lane);
+                    }
+                    None => assert_eq!(box_of_lane, Aabb::EMPTY),
                 }
-                assert_eq!(tight, node.bounds);
-            } else {
-                pending.extend(node.children().map(|c| (c, level + 1, Some(node.bounds))));
+                tight = tight.union(box_of_lane);
             }
+            assert_eq!(tight, bounds);
         }
         assert!(seen.iter().all(|&n| n == 1));
         assert_eq!(reached, bvh.node_count());
@@ -157,8 +156,8 @@ mod tests {
             reached
         );
         // Each edge and vertex has one owner.
-        let owned = |owns: fn(&Triangle) -> [bool; 3]| {
-            let all = bvh.triangles.iter().flat_map(owns);
+        let owned = |owns: fn(&Origin) -> [bool; 3]| {
+            let all = bvh.origin.iter().flat_map(owns);
             all.filter(|&o| o).count()
         };
         assert_eq!(owned(|t| t.owns_edge), mesh.edges().len());
@@ -180,7 +179,7 @@ mod tests {
     fn trees_hold_their_mesh() {
         check(&cube());
         let bvh = check(&sphere(60));
-        assert!(bvh.depth() < 30, "{}", bvh.depth());
+        assert!(bvh.depth() < 12, "{}", bvh.depth());
     }
 
     #[test]
@@ -212,6 +211,6 @@ mod tests {
         let bvh = check(&soup(
             (0..1_000_000).map(|i| t.map(|v| v + Vec3::X * i as f32)),
         ));
-        assert!(bvh.depth() < 40, "{}", bvh.depth());
+        assert!(bvh.depth() < 16, "{}", bvh.depth());
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Bvh, MAX_DEPTH};
+use super::{Bvh, Child, MAX_DEPTH, WIDTH};
 use crate::Aabb;
 
 /// Where a ray meets a mesh.
@@ -22,31 +22,35 @@ impl Bvh {
     pub fn ray(&self, origin: DVec3, direction: DVec3) -> Option<RayHit> {
         let shear = Shear::along(direction)?;
         let mut best: Option<RayHit> = None;
-        let mut stack = [0; MAX_DEPTH];
+        // Each level leaves at most three siblings behind.
+        let mut stack = [0; 3 * MAX_DEPTH + 1];
         let mut top = 1;
         while top > 0 {
             top -= 1;
             let node = self.node(stack[top]);
-            let nearest = best.map_or(f64::INFINITY, |b| b.t);
-            if !slab(&node.bounds, origin, direction, nearest) {
-                continue;
-            }
-            if node.is_leaf() {
-                for triangle in self.leaf(node) {
-                    let corners = triangle.corners.map(|v| shear.apply(v.as_dvec3() - origin));
-                    let hit = meet(corners).map(|z| z * shear.per_t);
-                    if let Some(t) = hit.filter(|&t| t >= 0.0 && best.is_none_or(|b| t < b.t)) {
-                        best = Some(RayHit {
-                            t,
-                            face: triangle.face,
-                        });
+            for lane in 0..WIDTH {
+                let nearest = best.map_or(f64::INFINITY, |b| b.t);
+                let Some(child) = node.child(lane) else {
+                    break;
+                };
+                if !slab(&node.bounds(lane), origin, direction, nearest) {
+                    continue;
+                }
+                match child {
+                    Child::Node(index) => {
+                        stack[top] = index;
+                        top += 1;
+                    }
+                    Child::Triangle(triangle) => {
+                        let corners = self.corners(triangle);
+                        let corners = corners.map(|v| shear.apply(v.as_dvec3() - origin));
+                        let hit = meet(corners).map(|z| z * shear.per_t);
+                        if let Some(t) = hit.filter(|&t| t >= 0.0 && t < nearest) {
+                            let face = self.origin(triangle).face;
+                            best = Some(RayHit { t, face });
+                        }
                     }
                 }
-            } else {
-                // The stack holds at most one sibling per level.
-                let [left, right] = node.children();
-                (stack[top], stack[top + 1]) = (right, left);
-                top += 2;
             }
         }
         best

@@ -6,11 +6,13 @@
 
 mod hit;
 pub mod naive;
+mod pairs;
 pub mod predicates;
 pub mod touch;
 pub mod tree;
 
 pub use hit::{Hit, Side};
+pub use pairs::Level;
 pub use touch::{Feature, Touch};
 
 use glam::{DVec3, Vec3};

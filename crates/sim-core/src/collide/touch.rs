@@ -27,8 +27,11 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 use glam::DVec3;
 
-use super::{place, tree::each_pair};
-use crate::bvh::{Bvh, Triangle};
+use super::{
+    pairs::{Ranked, TILE, Tiles, descend, key},
+    place,
+};
+use crate::bvh::{Bvh, Node, WIDTH};
 
 /// What touches what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -72,21 +75,23 @@ pub struct Touch {
 /// The first contact of two meshes that are apart with the second displaced by `offset` and then
 /// moving by `motion` (m), both in the first one's frame. `None` if they do not touch on the way.
 pub fn first_touch(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> Option<Touch> {
-    let mut search = Search::new(offset, motion)?;
-    let _ = each_pair(
+    let mut search = Search {
         first,
         second,
-        |a, b| a.bounds.meets_swept(&b.bounds, offset, motion),
-        |s, t| {
-            search.triangles(s, t);
-            ControlFlow::Continue(())
-        },
-    );
+        offset,
+        motion,
+        direction: motion.try_normalize()?,
+        earliest: 1.0,
+        found: Vec::new(),
+    };
+    let _ = descend(first, second, &mut search);
     search.best()
 }
 
 /// Candidates for the first contact.
-struct Search {
+struct Search<'a> {
+    first: &'a Bvh,
+    second: &'a Bvh,
     offset: DVec3,
     motion: DVec3,
     direction: DVec3,
@@ -100,21 +105,63 @@ struct Search {
 /// differences, two multiplications, and the sums, doubled for the rounding of the bound itself.
 const TRIPLE_ERROR: f64 = 16.0 * f64::EPSILON;
 
-impl Search {
-    fn new(offset: DVec3, motion: DVec3) -> Option<Search> {
-        let direction = motion.try_normalize()?;
-        Some(Search {
-            offset,
-            motion,
-            direction,
-            earliest: 1.0,
-            found: Vec::new(),
-        })
+impl Tiles for Search<'_> {
+    /// Boxes that meet no later than the earliest contact so far, by the time when they do.
+    fn rank(&mut self, first: &Node, second: &Node) -> Ranked {
+        let mut keys = [0; TILE];
+        let mut count = 0;
+        for pair in 0..TILE {
+            let (i, j) = (pair / WIDTH, pair % WIDTH);
+            if first.child(i).is_none() || second.child(j).is_none() {
+                continue;
+            }
+            let time = self.entry(first, i, second, j);
+            if let Some(time) = time.filter(|&t| t <= self.earliest) {
+                keys[count] = key(time as f32, pair);
+                count += 1;
+            }
+        }
+        Ranked::sort(&mut keys[..count])
     }
 
-    fn triangles(&mut self, s: &Triangle, t: &Triangle) {
-        let first = s.corners.map(|v| v.as_dvec3());
-        let second = t.corners.map(|v| place(v, self.offset));
+    fn triangles(&mut self, s: u32, t: u32) -> ControlFlow<()> {
+        self.try_triangles(s, t);
+        ControlFlow::Continue(())
+    }
+}
+
+impl Search<'_> {
+    /// When two boxes begin to meet, rounded down; `None` if they do not within the motion.
+    fn entry(&self, first: &Node, i: usize, second: &Node, j: usize) -> Option<f64> {
+        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+        for axis in 0..3 {
+            let (a_min, a_max) = (first.min[axis][i], first.max[axis][i]);
+            let (b_min, b_max) = (second.min[axis][j], second.max[axis][j]);
+            let offset = self.offset[axis];
+            let near = f64::from(a_min) - (f64::from(b_max) + offset);
+            let far = f64::from(a_max) - (f64::from(b_min) + offset);
+            let size =
+                f64::from(a_min.abs().max(a_max.abs())) + f64::from(b_min.abs().max(b_max.abs()));
+            let slack = 8.0 * f64::EPSILON * (size + offset.abs());
+            let (near, far) = (near - slack, far + slack);
+            let motion = self.motion[axis];
+            let inverse = 1.0 / motion;
+            if inverse.is_finite() {
+                let (s, t) = (near * inverse, far * inverse);
+                // One more rounding than the slack has seen.
+                enter = enter.max(s.min(t) * (1.0 - f64::EPSILON));
+                leave = leave.min(s.max(t) * (1.0 + f64::EPSILON));
+            } else if near > 0.0 || far < 0.0 {
+                return None;
+            }
+        }
+        (enter <= leave).then_some(enter)
+    }
+
+    fn try_triangles(&mut self, s: u32, t: u32) {
+        let first = self.first.corners(s).map(|v| v.as_dvec3());
+        let second = self.second.corners(t).map(|v| place(v, self.offset));
+        let (s, t) = (self.first.origin(s), self.second.origin(t));
         for i in (0..3).filter(|&i| t.owns_vertex[i]) {
             let feature = Feature::FaceVertex {
                 face: s.face,
