@@ -76,7 +76,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session in the layout state that looks at the whole of `scene`.
+    /// A session in the layout state that looks at the whole of `scene` and where it goes.
     pub fn new(scene: Scene) -> anyhow::Result<Self> {
         let world = scene.world()?;
         let clock = FixedStep::new(scene.dt, CATCH_UP)?;
@@ -96,7 +96,7 @@ impl Session {
             camera: Camera::default(),
             display: Display::default(),
         };
-        session.frame();
+        session.frame_opening();
         Ok(session)
     }
 

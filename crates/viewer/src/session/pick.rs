@@ -5,6 +5,10 @@ use sim_core::{Aabb, DVec3};
 
 use super::{Session, State};
 
+/// Largest way that the opening view makes room for, in radii of the body: a bullet would be a
+/// dot in it.
+const OPENING_REACH: f64 = 8.0;
+
 impl Session {
     /// Where body `i` is drawn, m: between the last two states while running.
     pub(super) fn shown_position(&self, i: usize) -> DVec3 {
@@ -43,6 +47,29 @@ impl Session {
         let (min, max) = self.body_box(self.selection?);
         let middle = (min + max) / 2.0;
         Some(DVec3::new(middle.x, max.y, middle.z))
+    }
+
+    /// Looks at all bodies with room around them, or at a single one and where it goes next, so
+    /// that nothing leaves the first view at once.
+    pub(super) fn frame_opening(&mut self) {
+        let Some((centre, radius)) = self.extent() else {
+            return;
+        };
+        if self.world.len() > 1 {
+            return self.camera.frame(centre, 1.2 * radius);
+        }
+        let (velocity, acceleration) = (
+            self.world.velocity(0),
+            self.world.force(0) / self.world.mass(0),
+        );
+        let (mut min, mut max) = (centre - radius, centre + radius);
+        for time in [0.5, 1.0, 1.5, 2.0, 2.5, 3.0] {
+            let way = velocity * time + acceleration * (0.5 * time * time);
+            let there = centre + way.clamp_length_max(OPENING_REACH * radius);
+            (min, max) = (min.min(there - radius), max.max(there + radius));
+        }
+        let ball = (max - min).length() / 2.0;
+        self.camera.frame((min + max) / 2.0, ball);
     }
 
     /// A place for `body` that touches nothing: beside all others along x, at their height.
