@@ -190,7 +190,7 @@ impl ApplicationHandler<Redraw> for App {
         }
         let attributes = Window::default_attributes()
             .with_title("Cowbell")
-            .with_inner_size(LogicalSize::new(1360.0, 880.0));
+            .with_inner_size(first_size(event_loop));
         let opened = match event_loop.create_window(attributes) {
             Ok(window) => Open::new(event_loop, Arc::new(window), &self.proxy),
             Err(error) => Err(no_display(&error.to_string())),
@@ -251,6 +251,22 @@ impl ApplicationHandler<Redraw> for App {
             },
         });
     }
+}
+
+/// The size of the window at first, in points: as large as is comfortable and the monitor has.
+fn first_size(event_loop: &ActiveEventLoop) -> LogicalSize<f64> {
+    let mut size = LogicalSize::<f64>::new(1360.0, 880.0);
+    let monitor = event_loop
+        .primary_monitor()
+        .or_else(|| event_loop.available_monitors().next());
+    if let Some(monitor) = monitor {
+        let room = monitor.size().to_logical::<f64>(monitor.scale_factor());
+        if room.width > 0.0 && room.height > 0.0 {
+            size.width = size.width.min(0.95 * room.width);
+            size.height = size.height.min(0.9 * room.height);
+        }
+    }
+    size
 }
 
 /// The connection to the display. winit panics instead of failing where libraries of the display

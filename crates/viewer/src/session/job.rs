@@ -80,8 +80,8 @@ impl Session {
                 }
                 steps
             }
-            State::Paused => u32::from(std::mem::take(&mut self.step_wanted)),
-            State::Layout => 0,
+            State::Paused if !self.under_way => std::mem::take(&mut self.steps_wanted),
+            State::Paused | State::Layout => 0,
         };
         (steps > 0).then(|| {
             self.under_way = true;
@@ -106,11 +106,12 @@ impl Session {
         }
         self.figures.steps_per_frame = done.taken;
         match done.error {
-            None => {
+            None if self.state == State::Running => {
                 let left = f64::from(done.due - done.taken) * self.clock.dt();
                 self.figures
                     .fell_behind(Duration::try_from_secs_f64(left).unwrap_or_default());
             }
+            None => {}
             Some(error) => {
                 self.pause();
                 self.notices
@@ -121,13 +122,13 @@ impl Session {
 
     /// Whether steps are being taken somewhere, or are to be.
     pub fn awaits_steps(&self) -> bool {
-        self.under_way || self.step_wanted
+        self.under_way || self.steps_wanted > 0
     }
 
     /// Makes results of jobs handed out so far be ignored.
     pub(super) fn disown_jobs(&mut self) {
         self.edition += 1;
         self.under_way = false;
-        self.step_wanted = false;
+        self.steps_wanted = 0;
     }
 }

@@ -63,8 +63,8 @@ pub struct Session {
     selection: Option<usize>,
     /// Steps are being taken on a copy of the world.
     under_way: bool,
-    /// One step has been asked for by hand.
-    step_wanted: bool,
+    /// Steps asked for by hand.
+    steps_wanted: u32,
     /// Counts what makes results of earlier jobs outdated.
     edition: u64,
     /// File that the scene was read from or last saved to.
@@ -90,7 +90,7 @@ impl Session {
             notices: Notices::default(),
             selection: None,
             under_way: false,
-            step_wanted: false,
+            steps_wanted: 0,
             edition: 0,
             file: None,
             camera: Camera::default(),
@@ -169,7 +169,7 @@ impl Session {
         }
     }
 
-    /// Holds still and makes one step due.
+    /// Holds still and makes one more step due.
     pub fn step_once(&mut self) {
         match self.state {
             State::Layout => self.begin(),
@@ -177,7 +177,7 @@ impl Session {
             State::Paused => {}
         }
         self.state = State::Paused;
-        self.step_wanted = true;
+        self.steps_wanted += 1;
     }
 
     /// Returns to the layout state: every body as it was set up, time 0.

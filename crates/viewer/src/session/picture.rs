@@ -20,7 +20,7 @@ pub struct BvhView {
     pub every_body: bool,
     /// All depths rather than [`depth`](Self::depth) alone.
     pub every_depth: bool,
-    /// Which depth; 0 is the box around the whole mesh.
+    /// Which depth; 0 is the box around the whole mesh, and beyond the deepest is the deepest.
     pub depth: usize,
 }
 
@@ -124,10 +124,12 @@ impl Session {
     fn add_boxes(&self, i: usize, lines: &mut Vec<Line>) {
         let Some(bvh) = self.world.bvh(i) else { return };
         let view = self.display.bvh;
+        let levels = bvh.depth();
+        let chosen = view.depth.min(levels.saturating_sub(1));
         let origin = self.shown_position(i);
         for (depth, aabb) in bvh.boxes() {
-            if view.every_depth || depth == view.depth {
-                let colour = depth_colour(depth, bvh.depth());
+            if view.every_depth || depth == chosen {
+                let colour = depth_colour(depth, levels);
                 lines.extend(edges(aabb).map(|(from, to)| Line {
                     from: origin + from,
                     to: origin + to,

@@ -92,14 +92,14 @@ pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session)
         return;
     }
     for shortcut in &SHORTCUTS {
-        let pressed = ctx.input(|i| {
+        let presses = ctx.input(|i| {
             // Ctrl and Alt belong to the system and to egui.
-            !i.modifiers.ctrl
-                && !i.modifiers.alt
-                && !i.modifiers.command
-                && shortcut.keys.iter().any(|&key| i.key_pressed(key))
+            if i.modifiers.ctrl || i.modifiers.alt || i.modifiers.command {
+                return 0;
+            }
+            shortcut.keys.iter().map(|&key| i.num_presses(key)).sum()
         });
-        if pressed {
+        for _ in 0..presses {
             (shortcut.act)(state, session);
         }
     }
