@@ -27,7 +27,7 @@ pub fn apply(ctx: &egui::Context) {
         spacing.item_spacing = Vec2::new(8.0, 6.0);
         spacing.button_padding = Vec2::new(8.0, 3.0);
         spacing.interact_size.y = 22.0;
-        spacing.slider_width = 150.0;
+        spacing.slider_width = 130.0;
         spacing.tooltip_width = 320.0;
         spacing.scroll = egui::style::ScrollStyle::thin();
         let visuals = &mut style.visuals;
