@@ -169,52 +169,54 @@ fn bin(place: f32) -> usize {
     (place as i32 as usize).min(BINS - 1)
 }
 
-/// The plane across the longest axis of the centres with the least area of boxes times triangles
-/// in them.
+/// The plane with the least area of boxes times triangles in them, over the three axes.
 fn best_plane(items: &[Item]) -> Option<Plane> {
     let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
     for item in items {
         low = low.min(item.centre());
         high = high.max(item.centre());
     }
-    let axis = (high - low).max_position();
-    let origin = low[axis];
-    let scale = BINS as f32 / (high[axis] - origin);
-    if !scale.is_finite() || scale == 0.0 {
-        return None;
-    }
-    let mut bins = [(Bounds::EMPTY, 0u32); BINS];
+    let scale = BINS as f32 / (high - low);
+    let mut bins = [[(Bounds::EMPTY, 0u32); BINS]; 3];
     for item in items {
-        let (bounds, count) = &mut bins[bin((item.centre()[axis] - origin) * scale)];
-        *bounds = bounds.union(item.bounds);
-        *count += 1;
-    }
-    // What lies to the right of each plane, swept from the right.
-    let mut right = [(0.0, 0); BINS];
-    let (mut swept, mut count) = (Bounds::EMPTY, 0);
-    for i in (1..BINS).rev() {
-        swept = swept.union(bins[i].0);
-        count += bins[i].1;
-        right[i - 1] = (swept.half_area() * count as f32, count);
-    }
-    (swept, count) = (Bounds::EMPTY, 0);
-    let (mut best, mut best_cost) = (None, f32::INFINITY);
-    for last_left in 0..BINS - 1 {
-        swept = swept.union(bins[last_left].0);
-        count += bins[last_left].1;
-        let (right_cost, right_count) = right[last_left];
-        let cost = swept.half_area() * count as f32 + right_cost;
-        if count > 0 && right_count > 0 && cost < best_cost {
-            best_cost = cost;
-            best = Some(last_left);
+        let place = (item.centre() - low) * scale;
+        for axis in 0..3 {
+            let (bounds, count) = &mut bins[axis][bin(place[axis])];
+            *bounds = bounds.union(item.bounds);
+            *count += 1;
         }
     }
-    Some(Plane {
-        axis,
-        origin,
-        scale,
-        last_left: best?,
-    })
+    let (mut best, mut best_cost) = (None, f32::INFINITY);
+    for axis in 0..3 {
+        if !scale[axis].is_finite() || scale[axis] == 0.0 {
+            continue;
+        }
+        // What lies to the right of each plane, swept from the right.
+        let mut right = [(0.0, 0); BINS];
+        let (mut swept, mut count) = (Bounds::EMPTY, 0);
+        for i in (1..BINS).rev() {
+            swept = swept.union(bins[axis][i].0);
+            count += bins[axis][i].1;
+            right[i - 1] = (swept.half_area() * count as f32, count);
+        }
+        (swept, count) = (Bounds::EMPTY, 0);
+        for last_left in 0..BINS - 1 {
+            swept = swept.union(bins[axis][last_left].0);
+            count += bins[axis][last_left].1;
+            let (right_cost, right_count) = right[last_left];
+            let cost = swept.half_area() * count as f32 + right_cost;
+            if count > 0 && right_count > 0 && cost < best_cost {
+                best_cost = cost;
+                best = Some(Plane {
+                    axis,
+                    origin: low[axis],
+                    scale: scale[axis],
+                    last_left,
+                });
+            }
+        }
+    }
+    best
 }
 
 fn bounds_of(items: &[Item]) -> Bounds {

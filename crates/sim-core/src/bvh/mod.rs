@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use crate::{Aabb, Mesh};
-pub(crate) use node::{Child, MAX_DEPTH, Node, WIDTH};
+pub(crate) use node::{Child, MAX_DEPTH, Node, TRIANGLE, WIDTH};
 pub use ray::RayHit;
 
 /// A tree of boxes, four below each, flat in memory, with the triangles beside it in leaf order.

@@ -16,7 +16,8 @@ pub(crate) const MAX_DEPTH: usize = 32;
 pub(crate) struct Node {
     pub(crate) min: [[f32; WIDTH]; 3],
     pub(crate) max: [[f32; WIDTH]; 3],
-    child: [u32; WIDTH],
+    /// What is in each box, for [`Child::of`].
+    pub(crate) child: [u32; WIDTH],
 }
 
 /// What is in a box.
@@ -27,8 +28,20 @@ pub(crate) enum Child {
     Triangle(u32),
 }
 
+impl Child {
+    /// Reads a lane of [`Node::child`] that is not empty.
+    #[inline(always)]
+    pub(crate) fn of(code: u32) -> Child {
+        if code & TRIANGLE == 0 {
+            Child::Node(code)
+        } else {
+            Child::Triangle(code & !TRIANGLE)
+        }
+    }
+}
+
 /// Set in `Node::child` for a triangle. Meshes have fewer than 2^31 triangles.
-const TRIANGLE: u32 = 1 << 31;
+pub(crate) const TRIANGLE: u32 = 1 << 31;
 /// In `Node::child` for a lane that holds nothing; its box holds no point and meets no box.
 const NOTHING: u32 = u32::MAX;
 
@@ -59,11 +72,7 @@ impl Node {
 
     #[inline]
     pub(crate) fn child(&self, lane: usize) -> Option<Child> {
-        match self.child[lane] {
-            NOTHING => None,
-            index if index & TRIANGLE != 0 => Some(Child::Triangle(index & !TRIANGLE)),
-            index => Some(Child::Node(index)),
-        }
+        (self.child[lane] != NOTHING).then(|| Child::of(self.child[lane]))
     }
 
     pub(crate) fn bounds(&self, lane: usize) -> Aabb {

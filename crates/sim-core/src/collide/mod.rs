@@ -4,6 +4,7 @@
 //! Its vertices are *placed*, `fl64(f64(v) + offset)`, the same value wherever a vertex is used,
 //! and every decision is exact for the placed vertices.
 
+mod batch;
 mod hit;
 pub mod naive;
 mod pairs;

@@ -46,37 +46,11 @@ pub fn segment_meets_triangle(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]) -> bool
 /// They do if and only if an edge of one meets the other: where two triangles cross, the segment
 /// they share ends on an edge of either, and where one lies in the other's plane, edges cross or
 /// lie inside.
-#[inline]
 pub fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
-    // Nearly every pair that is apart has one triangle on one side of the other's plane.
-    !one_side(s, t) && !one_side(t, s) && edges_meet(s, t)
-}
-
-#[inline(never)]
-fn edges_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
     let edge_of_one_meets = |s: [DVec3; 3], t: [DVec3; 3]| {
         (0..3).any(|i| segment_meets_triangle(s[i], s[(i + 1) % 3], t))
     };
     edge_of_one_meets(s, t) || edge_of_one_meets(t, s)
-}
-
-/// Whether all of `t` lies on one side of the plane of `s`, for certain: a "no" says nothing.
-///
-/// The bound is that of the first stage of Shewchuk's orient3d, `(7 + 56 u) u` times the
-/// permanent with `u = 2^-53`; the determinant's rows are the differences from `s[0]` here.
-#[inline]
-fn one_side([a, b, c]: [DVec3; 3], t: [DVec3; 3]) -> bool {
-    const BOUND: f64 = (7.0 + 56.0 * U) * U;
-    const U: f64 = f64::EPSILON / 2.0;
-    let (u, v) = (b - a, c - a);
-    let products = DVec3::new(u.y * v.z, u.z * v.x, u.x * v.y);
-    let others = DVec3::new(u.z * v.y, u.x * v.z, u.y * v.x);
-    let (normal, size) = (products - others, products.abs() + others.abs());
-    let heights = t.map(|p| {
-        let w = p - a;
-        (normal.dot(w), BOUND * size.dot(w.abs()))
-    });
-    heights.iter().all(|&(h, error)| h > error) || heights.iter().all(|&(h, error)| h < -error)
 }
 
 /// All signs in `[0, ∞)` or all in `(-∞, 0]`.

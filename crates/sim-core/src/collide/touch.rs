@@ -28,10 +28,10 @@ use core::ops::ControlFlow;
 use glam::DVec3;
 
 use super::{
-    pairs::{Ranked, TILE, Tiles, descend, key},
+    pairs::{Leaves, Stack, TILE, Tiles, descend},
     place,
 };
-use crate::bvh::{Bvh, Node, WIDTH};
+use crate::bvh::{Bvh, Node, TRIANGLE, WIDTH};
 
 /// What touches what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -106,26 +106,40 @@ struct Search<'a> {
 const TRIPLE_ERROR: f64 = 16.0 * f64::EPSILON;
 
 impl Tiles for Search<'_> {
-    /// Boxes that meet no later than the earliest contact so far, by the time when they do.
-    fn rank(&mut self, first: &Node, second: &Node) -> Ranked {
-        let mut keys = [0; TILE];
-        let mut count = 0;
+    /// Boxes that meet no later than the earliest contact so far, the one that is first on top.
+    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
+        let (mut next, mut soonest, mut count) = (0, f64::INFINITY, 0);
         for pair in 0..TILE {
             let (i, j) = (pair / WIDTH, pair % WIDTH);
             if first.child(i).is_none() || second.child(j).is_none() {
                 continue;
             }
-            let time = self.entry(first, i, second, j);
-            if let Some(time) = time.filter(|&t| t <= self.earliest) {
-                keys[count] = key(time as f32, pair);
+            let Some(time) = self
+                .entry(first, i, second, j)
+                .filter(|&t| t <= self.earliest)
+            else {
+                continue;
+            };
+            let (a, b) = (first.child[i], second.child[j]);
+            if a & b & TRIANGLE != 0 {
+                leaves.push(a & !TRIANGLE, b & !TRIANGLE);
+            } else {
+                stack.push(a, b);
+                if time < soonest {
+                    (next, soonest) = (count, time);
+                }
                 count += 1;
             }
         }
-        Ranked::sort(&mut keys[..count])
+        if count > 1 {
+            stack.raise(count - 1 - next);
+        }
     }
 
-    fn triangles(&mut self, s: u32, t: u32) -> ControlFlow<()> {
-        self.try_triangles(s, t);
+    fn triangles(&mut self, (first, second): (&[u32], &[u32])) -> ControlFlow<()> {
+        for (&s, &t) in first.iter().zip(second) {
+            self.try_triangles(s, t);
+        }
         ControlFlow::Continue(())
     }
 }

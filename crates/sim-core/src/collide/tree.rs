@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::{
     Hit, Level, Side,
-    pairs::{Reach, each_pair},
+    batch::maybe_meet,
+    pairs::{Reach, Visit, each_pair},
     place,
     predicates::{segment_meets_triangle, triangles_meet},
 };
@@ -23,16 +24,43 @@ pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, offset: DVec3) -> b
     if !first.bounds().meets(&second.bounds(), offset) {
         return false;
     }
-    each_pair(level, first, second, Reach::new(second, offset), |s, t| {
-        let s = first.corners(s).map(|v| v.as_dvec3());
-        let t = second.corners(t).map(|v| place(v, offset));
-        if triangles_meet(s, t) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+    let mut any = AnyHit {
+        first,
+        second,
+        offset,
+    };
+    each_pair(level, first, second, Reach::new(second, offset), &mut any).is_break()
+}
+
+/// Stops at the first pair of triangles that meet.
+struct AnyHit<'a> {
+    first: &'a Bvh,
+    second: &'a Bvh,
+    offset: DVec3,
+}
+
+impl Visit for &mut AnyHit<'_> {
+    #[inline(always)]
+    fn visit(&mut self, (s, t): (&[u32], &[u32])) -> ControlFlow<()> {
+        let mut pairs = maybe_meet(self.first, self.second, (s, t), self.offset);
+        while pairs != 0 {
+            let pair = pairs.trailing_zeros() as usize;
+            if self.meet(s[pair], t[pair]) {
+                return ControlFlow::Break(());
+            }
+            pairs &= pairs - 1;
         }
-    })
-    .is_break()
+        ControlFlow::Continue(())
+    }
+}
+
+impl AnyHit<'_> {
+    #[inline(never)]
+    fn meet(&self, s: u32, t: u32) -> bool {
+        let s = self.first.corners(s).map(|v| v.as_dvec3());
+        let t = self.second.corners(t).map(|v| place(v, self.offset));
+        triangles_meet(s, t)
+    }
 }
 
 /// Every edge of one mesh in a triangle of the other, in the order of [`super::naive::hits`].
@@ -45,13 +73,34 @@ pub fn hits_at(level: Level, first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Hi
     let mut hits = Vec::new();
     if first.bounds().meets(&second.bounds(), offset) {
         let reach = Reach::new(second, offset);
-        let _ = each_pair(level, first, second, reach, |s, t| {
-            hits.extend(pair_hits(first, second, s, t, offset));
-            ControlFlow::Continue(())
-        });
+        let mut all = AllHits {
+            first,
+            second,
+            offset,
+            hits: &mut hits,
+        };
+        let _ = each_pair(level, first, second, reach, &mut all);
     }
     hits.sort_unstable_by_key(Hit::key);
     hits
+}
+
+/// Lists the hits of every pair of triangles.
+struct AllHits<'a> {
+    first: &'a Bvh,
+    second: &'a Bvh,
+    offset: DVec3,
+    hits: &'a mut Vec<Hit>,
+}
+
+impl Visit for &mut AllHits<'_> {
+    fn visit(&mut self, (s, t): (&[u32], &[u32])) -> ControlFlow<()> {
+        for (&s, &t) in s.iter().zip(t) {
+            self.hits
+                .extend(pair_hits(self.first, self.second, s, t, self.offset));
+        }
+        ControlFlow::Continue(())
+    }
 }
 
 /// The edges that either of two triangles owns, where they meet the other triangle.

@@ -1,91 +1,79 @@
 //! The descent through two hierarchies at once.
 //!
 //! A *tile* is a pair of nodes: the four boxes of one against the four of the other, sixteen
-//! pairs at once. A tile leaves the pairs that may meet, nearest first; each is a tile again,
-//! or two triangles. The descent goes depth first and keeps, for each tile on its way, only the
-//! pairs still to come, so that its stack is small whatever the meshes.
+//! pairs at once. Pairs that may meet go on a stack, to be tiles in their turn, the nearest on
+//! top; pairs of triangles are collected and handed over several at a time. A tile is a hundred
+//! instructions or less, so what counts is how few branches are guessed wrong.
 
+mod list;
 mod overlap;
-mod ranked;
 #[cfg(target_arch = "x86_64")]
 mod simd;
 
 use core::ops::ControlFlow;
 
-use crate::bvh::{Bvh, Child, MAX_DEPTH, Node};
+use crate::bvh::{Bvh, Child, Node, WIDTH};
+pub(super) use list::{Leaves, Stack};
 pub use overlap::Level;
 pub(super) use overlap::{Reach, each_pair};
-pub(super) use ranked::{Ranked, TILE, key};
+
+/// Pairs in a tile.
+pub(super) const TILE: usize = WIDTH * WIDTH;
+
+/// How many pairs of triangles are handed over at once.
+pub(super) const BATCH: usize = 8;
 
 /// What a descent does with nodes and triangles.
 pub(super) trait Tiles {
-    /// Pairs of lanes that are worth a look, nearest first.
-    fn rank(&mut self, first: &Node, second: &Node) -> Ranked;
+    /// Lists the pairs of children that are worth a look.
+    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves);
 
-    /// Takes two triangles, by their places in leaf order.
-    fn triangles(&mut self, first: u32, second: u32) -> ControlFlow<()>;
+    /// Takes up to [`BATCH`] pairs of triangles, by their places in leaf order.
+    fn triangles(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()>;
 }
 
-/// A tile on the way, with the pairs of it that are still to come.
-#[derive(Clone, Copy)]
-struct Tile {
-    first: Child,
-    second: Child,
-    ranked: Ranked,
+/// What a question does with triangles whose boxes meet.
+pub(super) trait Visit {
+    /// Takes up to [`BATCH`] pairs of triangles, by their places in leaf order. To be compiled for
+    /// the instructions of each level, it must be inlined.
+    fn visit(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()>;
 }
 
 /// Visits the pairs of triangles that `tiles` leaves, until told to stop.
 #[inline(always)]
 pub(super) fn descend(first: &Bvh, second: &Bvh, tiles: &mut impl Tiles) -> ControlFlow<()> {
-    let roots = Tile {
-        first: Child::Node(0),
-        second: Child::Node(0),
-        ranked: tiles.rank(first.node(0), second.node(0)),
-    };
-    // Each tile lies at least one level below the one before it in one of the trees.
-    let mut way = [roots; 2 * MAX_DEPTH];
-    let mut top = 0;
+    let (mut stack, mut leaves) = (Stack::new(), Leaves::new());
+    // Where meshes meet, one of the first pairs does as a rule: these are not kept waiting.
+    let mut enough = 1;
+    tiles.expand(first.node(0), second.node(0), &mut stack, &mut leaves);
     loop {
-        let tile = &mut way[top];
-        let Some((i, j)) = tile.ranked.pop() else {
-            if top == 0 {
-                return ControlFlow::Continue(());
-            }
-            top -= 1;
-            continue;
+        while leaves.len() >= enough {
+            tiles.triangles(leaves.take(BATCH))?;
+            enough = (2 * enough).min(BATCH);
+        }
+        let Some((a, b)) = stack.pop() else {
+            break;
         };
-        let a = below(first, tile.first, i);
-        let b = below(second, tile.second, j);
-        let ranked = match (a, b) {
-            (Child::Node(a), Child::Node(b)) => tiles.rank(first.node(a), second.node(b)),
-            (Child::Triangle(s), Child::Node(b)) => {
-                tiles.rank(&Node::of_triangle(s, first.corners(s)), second.node(b))
+        match (Child::of(a), Child::of(b)) {
+            (Child::Triangle(s), _) => {
+                let alone = Node::of_triangle(s, first.corners(s));
+                tiles.expand(&alone, node(second, b), &mut stack, &mut leaves);
             }
-            (Child::Node(a), Child::Triangle(t)) => {
-                tiles.rank(first.node(a), &Node::of_triangle(t, second.corners(t)))
+            (_, Child::Triangle(t)) => {
+                let alone = Node::of_triangle(t, second.corners(t));
+                tiles.expand(node(first, a), &alone, &mut stack, &mut leaves);
             }
-            (Child::Triangle(s), Child::Triangle(t)) => {
-                tiles.triangles(s, t)?;
-                continue;
-            }
-        };
-        if !ranked.is_empty() {
-            // A tile with nothing to come makes room for the next one.
-            top += usize::from(!way[top].ranked.is_empty());
-            way[top] = Tile {
-                first: a,
-                second: b,
-                ranked,
-            };
+            _ => tiles.expand(node(first, a), node(second, b), &mut stack, &mut leaves),
         }
     }
+    while leaves.len() > 0 {
+        tiles.triangles(leaves.take(BATCH))?;
+    }
+    ControlFlow::Continue(())
 }
 
-/// What a lane of a tile holds; a triangle that waits for the other side stays itself.
+/// The node of a child that is known to be one.
 #[inline(always)]
-fn below(bvh: &Bvh, at: Child, lane: usize) -> Child {
-    match at {
-        Child::Node(node) => bvh.node(node).child(lane).unwrap_or(at),
-        Child::Triangle(_) => at,
-    }
+fn node(bvh: &Bvh, child: u32) -> &Node {
+    bvh.node(child)
 }

@@ -5,8 +5,8 @@ use glam::{DVec3, Vec3};
 
 #[cfg(target_arch = "x86_64")]
 use super::simd;
-use super::{Ranked, TILE, Tiles, descend, ranked::key};
-use crate::bvh::{Bvh, Node, WIDTH};
+use super::{Leaves, Stack, TILE, Tiles, Visit, descend};
+use crate::bvh::{Bvh, Node, TRIANGLE, WIDTH};
 
 /// Offsets of the second mesh that a comparison of boxes allows for, rounded outward: from one
 /// corner of a box to the other, along each axis.
@@ -89,7 +89,7 @@ pub(crate) fn each_pair(
     first: &Bvh,
     second: &Bvh,
     reach: Reach,
-    visit: impl FnMut(u32, u32) -> ControlFlow<()>,
+    visit: impl Visit,
 ) -> ControlFlow<()> {
     #[cfg(target_arch = "x86_64")]
     match level {
@@ -111,9 +111,9 @@ struct Boxes<V> {
     visit: V,
 }
 
-impl<V: FnMut(u32, u32) -> ControlFlow<()>> Tiles for Boxes<V> {
+impl<V: Visit> Tiles for Boxes<V> {
     #[inline(always)]
-    fn rank(&mut self, first: &Node, second: &Node) -> Ranked {
+    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
         let mut apart = [[0u32; WIDTH]; WIDTH];
         let mut distance = [[0.0f32; WIDTH]; WIDTH];
         for axis in 0..3 {
@@ -129,18 +129,30 @@ impl<V: FnMut(u32, u32) -> ControlFlow<()>> Tiles for Boxes<V> {
                 }
             }
         }
-        let mut keys = [0; TILE];
-        let mut count = 0;
+        let (mut nearest, mut least, mut count) = (0, f32::INFINITY, 0);
         for pair in 0..TILE {
             let (i, j) = (pair / WIDTH, pair % WIDTH);
-            keys[count] = key(distance[i][j], pair);
-            count += (apart[i][j] == 0) as usize;
+            if apart[i][j] != 0 {
+                continue;
+            }
+            let (a, b) = (first.child[i], second.child[j]);
+            if a & b & TRIANGLE != 0 {
+                leaves.push(a & !TRIANGLE, b & !TRIANGLE);
+            } else {
+                stack.push(a, b);
+                if distance[i][j] < least {
+                    (nearest, least) = (count, distance[i][j]);
+                }
+                count += 1;
+            }
         }
-        Ranked::sort(&mut keys[..count])
+        if count > 1 {
+            stack.raise(count - 1 - nearest);
+        }
     }
 
     #[inline(always)]
-    fn triangles(&mut self, first: u32, second: u32) -> ControlFlow<()> {
-        (self.visit)(first, second)
+    fn triangles(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()> {
+        self.visit.visit(pairs)
     }
 }

@@ -7,8 +7,8 @@
 use core::arch::x86_64::*;
 use core::ops::ControlFlow;
 
-use super::{Ranked, Reach, TILE, Tiles, descend};
-use crate::bvh::{Bvh, Node, WIDTH};
+use super::{Leaves, Reach, Stack, TILE, Tiles, Visit, descend};
+use crate::bvh::{Bvh, Node, TRIANGLE, WIDTH};
 
 #[inline]
 pub(super) fn has_avx2() -> bool {
@@ -32,7 +32,7 @@ pub(super) fn each_pair_avx2(
     first: &Bvh,
     second: &Bvh,
     reach: Reach,
-    visit: impl FnMut(u32, u32) -> ControlFlow<()>,
+    visit: impl Visit,
 ) -> ControlFlow<()> {
     assert!(has_avx2());
     // SAFETY: the processor has AVX2 and FMA, by the assertion.
@@ -44,7 +44,7 @@ pub(super) fn each_pair_avx512(
     first: &Bvh,
     second: &Bvh,
     reach: Reach,
-    visit: impl FnMut(u32, u32) -> ControlFlow<()>,
+    visit: impl Visit,
 ) -> ControlFlow<()> {
     assert!(has_avx512());
     // SAFETY: the processor has AVX-512F and AVX2, by the assertion.
@@ -52,22 +52,12 @@ pub(super) fn each_pair_avx512(
 }
 
 #[target_feature(enable = "avx2,fma")]
-fn avx2(
-    first: &Bvh,
-    second: &Bvh,
-    reach: Reach,
-    visit: impl FnMut(u32, u32) -> ControlFlow<()>,
-) -> ControlFlow<()> {
+fn avx2(first: &Bvh, second: &Bvh, reach: Reach, visit: impl Visit) -> ControlFlow<()> {
     descend(first, second, &mut Avx2 { reach, visit })
 }
 
 #[target_feature(enable = "avx512f,avx2,fma")]
-fn avx512(
-    first: &Bvh,
-    second: &Bvh,
-    reach: Reach,
-    visit: impl FnMut(u32, u32) -> ControlFlow<()>,
-) -> ControlFlow<()> {
+fn avx512(first: &Bvh, second: &Bvh, reach: Reach, visit: impl Visit) -> ControlFlow<()> {
     descend(first, second, &mut Avx512 { reach, visit })
 }
 
@@ -77,16 +67,16 @@ struct Avx2<V> {
     visit: V,
 }
 
-impl<V: FnMut(u32, u32) -> ControlFlow<()>> Tiles for Avx2<V> {
+impl<V: Visit> Tiles for Avx2<V> {
     #[inline(always)]
-    fn rank(&mut self, first: &Node, second: &Node) -> Ranked {
+    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
         // SAFETY: an `Avx2` exists only inside `avx2`, which runs where AVX2 and FMA are.
-        unsafe { rank_avx2(&self.reach, first, second) }
+        unsafe { expand_avx2(&self.reach, first, second, stack, leaves) }
     }
 
     #[inline(always)]
-    fn triangles(&mut self, first: u32, second: u32) -> ControlFlow<()> {
-        (self.visit)(first, second)
+    fn triangles(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()> {
+        self.visit.visit(pairs)
     }
 }
 
@@ -96,24 +86,23 @@ struct Avx512<V> {
     visit: V,
 }
 
-impl<V: FnMut(u32, u32) -> ControlFlow<()>> Tiles for Avx512<V> {
+impl<V: Visit> Tiles for Avx512<V> {
     #[inline(always)]
-    fn rank(&mut self, first: &Node, second: &Node) -> Ranked {
+    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
         // SAFETY: an `Avx512` exists only inside `avx512`, which runs where AVX-512F is.
-        unsafe { rank_avx512(&self.reach, first, second) }
+        unsafe { expand_avx512(&self.reach, first, second, stack, leaves) }
     }
 
     #[inline(always)]
-    fn triangles(&mut self, first: u32, second: u32) -> ControlFlow<()> {
-        (self.visit)(first, second)
+    fn triangles(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()> {
+        self.visit.visit(pairs)
     }
 }
 
 #[inline]
 #[target_feature(enable = "avx2,fma")]
-fn rank_avx2(reach: &Reach, first: &Node, second: &Node) -> Ranked {
-    let mut count = 0;
-    let mut keys = [0u32; TILE];
+fn expand_avx2(reach: &Reach, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
+    let (mut nearest, mut least, mut count) = (0, u32::MAX, 0);
     // Two lanes of the first node at a time, each against the four of the second.
     for half in 0..2 {
         let mut meet = _mm256_castsi256_ps(_mm256_set1_epi32(-1));
@@ -133,24 +122,38 @@ fn rank_avx2(reach: &Reach, first: &Node, second: &Node) -> Ranked {
         if bits == 0 {
             continue;
         }
-        let lanes = _mm256_add_epi32(
-            _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
-            _mm256_set1_epi32(8 * half as i32),
-        );
-        let distance = _mm256_and_si256(_mm256_castps_si256(distance), _mm256_set1_epi32(!15));
-        let lanes: [u32; 8] = bytes_of(_mm256_or_si256(distance, lanes));
+        // Distances are not negative, so their bits are in order.
+        let distance: [u32; 8] = words_256(_mm256_castps_si256(distance));
         while bits != 0 {
-            keys[count] = lanes[bits.trailing_zeros() as usize];
-            count += 1;
+            let lane = bits.trailing_zeros() as usize;
             bits &= bits - 1;
+            let a = first.child[2 * half + lane / WIDTH];
+            let b = second.child[lane % WIDTH];
+            if a & b & TRIANGLE != 0 {
+                leaves.push(a & !TRIANGLE, b & !TRIANGLE);
+            } else {
+                stack.push(a, b);
+                if distance[lane] < least {
+                    (nearest, least) = (count, distance[lane]);
+                }
+                count += 1;
+            }
         }
     }
-    Ranked::sort(&mut keys[..count])
+    if count > 1 {
+        stack.raise(count - 1 - nearest);
+    }
 }
 
 #[inline]
 #[target_feature(enable = "avx512f,avx2,fma")]
-fn rank_avx512(reach: &Reach, first: &Node, second: &Node) -> Ranked {
+fn expand_avx512(
+    reach: &Reach,
+    first: &Node,
+    second: &Node,
+    stack: &mut Stack,
+    leaves: &mut Leaves,
+) {
     let mut meet: __mmask16 = !0;
     let mut distance = _mm512_setzero_ps();
     for axis in 0..3 {
@@ -164,11 +167,35 @@ fn rank_avx512(reach: &Reach, first: &Node, second: &Node) -> Ranked {
         let d = _mm512_sub_ps(_mm512_add_ps(a_min, a_max), _mm512_add_ps(b_min, b_max));
         distance = _mm512_fmadd_ps(d, d, distance);
     }
-    let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    let keys = _mm512_and_si512(_mm512_castps_si512(distance), _mm512_set1_epi32(!15));
-    let keys = _mm512_maskz_compress_epi32(meet, _mm512_or_si512(keys, lanes));
-    let mut keys: [u32; TILE] = bytes_of_512(keys);
-    Ranked::sort(&mut keys[..meet.count_ones() as usize])
+    let a = _mm512_permutexvar_epi32(
+        FOUR_TIMES.vector(),
+        _mm512_castsi128_si512(four_words(first.child)),
+    );
+    let b = _mm512_broadcast_i32x4(four_words(second.child));
+    let flag = _mm512_set1_epi32(TRIANGLE as i32);
+    let leaf = _mm512_mask_test_epi32_mask(meet, _mm512_and_si512(a, b), flag);
+    if leaf != 0 {
+        let pack = |x| {
+            words(_mm512_maskz_compress_epi32(
+                leaf,
+                _mm512_andnot_si512(flag, x),
+            ))
+        };
+        leaves.push_tile(pack(a), pack(b), leaf.count_ones() as usize);
+    }
+    let inner = meet & !leaf;
+    if inner != 0 {
+        let pack = |x| words(_mm512_maskz_compress_epi32(inner, x));
+        stack.push_tile(pack(a), pack(b), inner.count_ones() as usize);
+        // Distances are not negative, so their bits are in order; the lowest ones name the lane.
+        let distance = _mm512_castps_si512(distance);
+        let keys = _mm512_or_si512(
+            _mm512_and_si512(distance, _mm512_set1_epi32(!15)),
+            LANES.vector(),
+        );
+        let nearest = _mm512_mask_reduce_min_epu32(inner, keys) & 15;
+        stack.raise((inner >> nearest).count_ones() as usize - 1);
+    }
 }
 
 /// Four floats as a vector.
@@ -189,18 +216,39 @@ fn pair_of(x: [f32; WIDTH], half: usize) -> __m256 {
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn each_four_times(x: [f32; WIDTH]) -> __m512 {
-    let lanes = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
-    _mm512_permutexvar_ps(lanes, _mm512_castps128_ps512(four(x)))
+    _mm512_permutexvar_ps(FOUR_TIMES.vector(), _mm512_castps128_ps512(four(x)))
+}
+
+/// Four words as a vector.
+#[inline]
+#[target_feature(enable = "sse2")]
+fn four_words(x: [u32; WIDTH]) -> __m128i {
+    let [a, b, c, d] = x.map(|x| x as i32);
+    _mm_setr_epi32(a, b, c, d)
+}
+
+/// Numbers of lanes.
+struct Lanes([i32; TILE]);
+
+const LANES: Lanes = Lanes([0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
+const FOUR_TIMES: Lanes = Lanes([0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3]);
+
+impl Lanes {
+    #[inline(always)]
+    fn vector(&self) -> __m512i {
+        // SAFETY: both are 64 bytes in which every pattern is a value.
+        unsafe { core::mem::transmute(self.0) }
+    }
 }
 
 #[inline(always)]
-fn bytes_of(x: __m256i) -> [u32; 8] {
+fn words_256(x: __m256i) -> [u32; 8] {
     // SAFETY: both are 32 bytes in which every pattern is a value.
     unsafe { core::mem::transmute(x) }
 }
 
 #[inline(always)]
-fn bytes_of_512(x: __m512i) -> [u32; TILE] {
+fn words(x: __m512i) -> [u32; TILE] {
     // SAFETY: both are 64 bytes in which every pattern is a value.
     unsafe { core::mem::transmute(x) }
 }
