@@ -19,7 +19,7 @@ pub struct Scene {
     pub title: String,
     /// A few sentences on what to look for; may be empty.
     pub about: String,
-    /// Step in seconds, from 1e-9 to 1e6.
+    /// Step in seconds, from 1e-9 to 1e3.
     pub dt: f64,
     /// How bodies move.
     pub method: &'static Method,

@@ -4,7 +4,7 @@
 //! left over, whole steps are taken from it, and the rest waits for the next frame (Fiedler 2004,
 //! "Fix your timestep!").
 
-use core::time::Duration;
+use core::{ops::RangeInclusive, time::Duration};
 
 /// Turns elapsed time into whole steps of `dt`, without drift.
 ///
@@ -45,18 +45,18 @@ pub struct ClockError {
     pub dt: f64,
 }
 
-/// Least and greatest step, s.
-const DT_RANGE: core::ops::RangeInclusive<f64> = 1e-9..=1e3;
-
 /// The most nanoseconds counted at once, 4.9 hours. At the least step a nanosecond has 2^82
-/// units, so that 2^44 of them, what was left over and one more step stay below 2^127.
+/// units, so that 2^44 of them twice, waiting and added, stay below 2^128.
 const LONGEST_NS: u128 = 1 << 44;
 
 impl FixedStep {
+    /// Least and greatest step, s.
+    pub const DT_RANGE: RangeInclusive<f64> = 1e-9..=1e3;
+
     /// A clock that steps by `dt` seconds (1e-9 to 1e3) and lets at most `catch_up` (up to 4.8
     /// hours) of elapsed time wait, but always at least one step.
     pub fn new(dt: f64, catch_up: Duration) -> Result<FixedStep, ClockError> {
-        if !DT_RANGE.contains(&dt) {
+        if !FixedStep::DT_RANGE.contains(&dt) {
             return Err(ClockError { dt });
         }
         // dt = mantissa · 2^exponent s = mantissa · 10^9 · 2^exponent ns.

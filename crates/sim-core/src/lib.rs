@@ -44,8 +44,13 @@
 //!
 //! # Limits
 //!
-//! Bodies translate and do not turn. Overlap is looked for at the end of each step: what is
-//! through a body within one step is not seen.
+//! - Bodies translate and do not turn.
+//! - Overlap of surfaces is looked for at the end of each step. A body that is through another
+//!   within one step, or wholly inside a closed one, is not seen.
+//! - A body that is put back loses the rest of its step, along the surface too. Under a force the
+//!   work done in that step stays in its velocity: a bouncing body keeps its height under
+//!   symplectic and backward Euler, and gains some at each bounce under forward Euler and RK4.
+//! - Where several faces touch at a corner at once, one of them gives the normal.
 #![no_std]
 #![deny(unsafe_code)]
 

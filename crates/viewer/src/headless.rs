@@ -89,7 +89,7 @@ pub fn check(file: &Path, json: bool) -> Result<String, Failure> {
 
 /// A failed step in words: in which scene, and the body by its name.
 pub fn step_error(scene: &Scene, error: &StepError) -> String {
-    let StepError::NotFinite { body, .. } = *error;
+    let StepError::OutOfRange { body, .. } = *error;
     format!("scene `{}`: {}", scene.name, with_name(scene, body, error))
 }
 

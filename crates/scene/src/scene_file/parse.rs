@@ -7,7 +7,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use serde::Deserialize;
-use sim_core::{Collision, METHODS, Method, Settings};
+use sim_core::{Collision, FixedStep, METHODS, Method, Settings};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
@@ -209,10 +209,10 @@ fn dt(source: &Source, header: &Header) -> Result<f64, SceneError> {
             });
         }
     };
-    if !(1e-9..=1e6).contains(&dt) {
+    if !FixedStep::DT_RANGE.contains(&dt) {
         let what = match field {
             "rate" => "must be from 1e-6 to 1e9 Hz",
-            _ => "must be from 1e-9 to 1e6 s",
+            _ => "must be from 1e-9 to 1e3 s",
         };
         let what = format!("{what}, is {}", value.get_ref().0);
         return Err(place.error(value.span(), field, what));

@@ -260,7 +260,9 @@ impl Search<'_> {
             return;
         }
         let time = numerator / denominator;
-        let error = (numerator_error + time.abs() * denominator_error) / denominator.abs();
+        // By the least that the true denominator can be.
+        let error = (numerator_error + time.abs() * denominator_error)
+            / (denominator.abs() - denominator_error);
         if time < -error || time - error > self.earliest {
             return;
         }

@@ -11,6 +11,8 @@ mod symplectic_euler;
 use alloc::vec::Vec;
 use glam::DVec3;
 
+use crate::world::LARGEST;
+
 /// A way to step `x' = v`, `v' = F/m` forward by `dt`.
 #[derive(Debug)]
 pub struct Method {
@@ -67,9 +69,11 @@ impl State {
         self.velocity.copy_from_slice(&other.velocity);
     }
 
-    /// The first body whose position or velocity is not finite.
-    pub(crate) fn not_finite(&self) -> Option<usize> {
-        let lost = |(x, v): (&DVec3, &DVec3)| !(x.is_finite() && v.is_finite());
+    /// The first body whose position or velocity is beyond what a world takes in, or NaN.
+    pub(crate) fn out_of_range(&self) -> Option<usize> {
+        let largest = DVec3::splat(LARGEST);
+        let within = |x: &DVec3| x.abs().cmple(largest).all();
+        let lost = |(x, v): (&DVec3, &DVec3)| !(within(x) && within(v));
         self.position.iter().zip(&self.velocity).position(lost)
     }
 

@@ -116,10 +116,14 @@ impl Mesh {
                 return Err(MeshError::NotFinite { vertex });
             }
         }
-        if scale.x * scale.y * scale.z < 0.0 {
+        if scale.to_array().iter().filter(|&&s| s < 0.0).count() % 2 == 1 {
             mesh.reverse_winding();
         }
         mesh.bounds = Aabb::around(mesh.vertices.iter().copied());
+        let gone = |bounds: Aabb| bounds.half_extent() == DVec3::ZERO;
+        if gone(mesh.bounds) && !gone(self.bounds) {
+            return Err(MeshError::Scale { scale });
+        }
         Ok(mesh)
     }
 
@@ -189,6 +193,7 @@ mod tests {
             DVec3::new(1.0, 0.0, 1.0),
             DVec3::splat(f64::NAN),
             DVec3::splat(1e300),
+            DVec3::splat(1e-60),
         ] {
             assert!(
                 cube().transformed(DQuat::IDENTITY, scale).is_err(),

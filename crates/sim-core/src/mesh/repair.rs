@@ -17,7 +17,8 @@ pub struct Repairs {
     pub duplicate_triangles: usize,
     /// Vertices dropped because no triangle uses them.
     pub unreferenced_vertices: usize,
-    /// Whether a closed mesh was wound inward and has been turned outward.
+    /// Whether a closed mesh was wound inward and has been turned outward. Of several pieces the
+    /// sum of their volumes decides for all.
     pub reversed_winding: bool,
 }
 

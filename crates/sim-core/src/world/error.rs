@@ -23,6 +23,14 @@ pub enum WorldError {
         /// The value refused, kg.
         value: f64,
     },
+    /// A body that does not exist.
+    #[error("there is no body {body}: the world has {bodies}, counted from 0")]
+    NoBody {
+        /// Index asked for.
+        body: usize,
+        /// How many bodies there are.
+        bodies: usize,
+    },
     /// A step that is not a length of time.
     #[error("dt is {value} s: it must be between 1e-100 and 1e100")]
     Dt {
@@ -34,12 +42,12 @@ pub enum WorldError {
 /// A step that could not be done.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StepError {
-    /// Numbers have run out.
+    /// A position or velocity beyond ±1e100, or not a number.
     #[error(
-        "step {step}: the motion of body {body} under {method} left the range of numbers; \
+        "step {step}: the motion of body {body} under {method} left the range of ±1e100; \
          lower dt, the force or the velocity"
     )]
-    NotFinite {
+    OutOfRange {
         /// Index of the body.
         body: usize,
         /// The step that failed, from 1.
@@ -50,7 +58,7 @@ pub enum StepError {
 }
 
 /// Squares and products of quantities within these bounds stay finite.
-const LARGEST: f64 = 1e100;
+pub(crate) const LARGEST: f64 = 1e100;
 const POSITIVE: core::ops::RangeInclusive<f64> = 1e-100..=LARGEST;
 
 pub(super) fn check_vector(

@@ -13,9 +13,13 @@ use crate::{
     integrate::{Forces, Method, State},
 };
 pub use collision::Impact;
+pub(crate) use error::LARGEST;
 pub use error::{StepError, WorldError};
 
 /// Bodies, their motion, and how it goes on.
+///
+/// Bodies are named by the index that [`World::add`] returned. Methods that read one panic on an
+/// index that does not exist, as slices do; methods that change one return an error.
 ///
 /// ```
 /// use sim_core::{Body, DVec3, Settings, World};
@@ -132,7 +136,8 @@ impl World {
 
     /// Steps by `dt`: moves every body, then lets those that meet bounce.
     ///
-    /// On an error the world stays as it was before the step.
+    /// On an error every body stays where it was before the step, and the state before that is
+    /// forgotten.
     pub fn step(&mut self) -> Result<(), StepError> {
         core::mem::swap(&mut self.previous, &mut self.current);
         self.integrate()?;
@@ -148,9 +153,9 @@ impl World {
         };
         let Settings { dt, method, .. } = self.settings;
         (method.step)(&self.previous, &mut self.current, &forces, dt);
-        if let Some(body) = self.current.not_finite() {
+        if let Some(body) = self.current.out_of_range() {
             self.current.copy_from(&self.previous);
-            return Err(StepError::NotFinite {
+            return Err(StepError::OutOfRange {
                 body,
                 step: self.steps + 1,
                 method: method.title,
@@ -246,6 +251,7 @@ impl World {
 
     /// Places a body, m. It starts afresh from there: its previous position is the same.
     pub fn set_position(&mut self, body: usize, position: DVec3) -> Result<(), WorldError> {
+        self.check_body(body)?;
         error::check_vector(body, "position", position)?;
         self.current.position[body] = position;
         self.previous.position[body] = position;
@@ -256,6 +262,7 @@ impl World {
 
     /// Sets a velocity, m/s.
     pub fn set_velocity(&mut self, body: usize, velocity: DVec3) -> Result<(), WorldError> {
+        self.check_body(body)?;
         error::check_vector(body, "velocity", velocity)?;
         self.current.velocity[body] = velocity;
         Ok(())
@@ -263,6 +270,7 @@ impl World {
 
     /// Sets a resultant force, N.
     pub fn set_force(&mut self, body: usize, force: DVec3) -> Result<(), WorldError> {
+        self.check_body(body)?;
         error::check_vector(body, "force", force)?;
         self.force[body] = force;
         Ok(())
@@ -270,6 +278,7 @@ impl World {
 
     /// Sets a mass, kg.
     pub fn set_mass(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
+        self.check_body(body)?;
         error::check_mass(body, mass)?;
         self.mass[body] = mass;
         Ok(())
@@ -283,9 +292,18 @@ impl World {
     /// Changes how the world steps, from the next step on.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), WorldError> {
         error::check_dt(settings.dt)?;
-        self.since = (self.time(), self.steps);
+        if settings.dt != self.settings.dt {
+            self.since = (self.time(), self.steps);
+        }
         self.settings = settings;
         Ok(())
+    }
+
+    fn check_body(&self, body: usize) -> Result<(), WorldError> {
+        let bodies = self.len();
+        (body < bodies)
+            .then_some(())
+            .ok_or(WorldError::NoBody { body, bodies })
     }
 
     /// The index of a mesh among the shapes, which bodies with the same one share.

@@ -237,8 +237,11 @@ fn time_is_steps_times_dt_also_after_a_change_of_dt() {
         dt: 0.25,
         ..*world.settings()
     };
-    world.set_settings(slower).unwrap();
-    run(&mut world, 4);
+    for _ in 0..4 {
+        // Setting what is set already rounds nothing.
+        world.set_settings(slower).unwrap();
+        run(&mut world, 1);
+    }
     assert!((world.time() - 11.0).abs() < 1e-14);
     assert_eq!(world.steps(), 604);
 }
@@ -302,7 +305,7 @@ fn motion_beyond_numbers_names_the_body_and_leaves_the_world_as_it_was() {
         };
         world.add(wild).unwrap();
         let error = (0..10).find_map(|_| world.step().err()).unwrap();
-        let StepError::NotFinite { body, step, .. } = error;
+        let StepError::OutOfRange { body, step, .. } = error;
         assert_eq!((body, step), (1, world.steps() + 1), "{}", method.name);
         assert!(world.position(1).is_finite() && world.previous_position(1).is_finite());
     }
