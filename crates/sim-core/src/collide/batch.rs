@@ -1,8 +1,9 @@
 //! Which of several pairs of triangles are apart, at a glance.
 
+use core::cmp::Ordering;
 use glam::{DVec3, Vec3};
 
-use super::pairs::BATCH;
+use super::{pairs::BATCH, plane::Plane};
 use crate::bvh::Bvh;
 
 /// Corners of up to eight triangles, by coordinate and pair, so that one instruction takes all.
@@ -47,28 +48,13 @@ fn columns(triangles: impl Iterator<Item = [Vec3; 3]>, offset: DVec3) -> Columns
 }
 
 /// Whether all of `t` lies on one side of the plane of `s`, for certain: a "no" says nothing.
-///
-/// The bound is that of the first stage of Shewchuk's orient3d, `(7 + 56 u) u` times the
-/// permanent with `u = 2^-53`; the determinant's rows are the differences from a corner of `s`.
 #[inline(always)]
 fn one_side(s: &Columns, t: &Columns, pair: usize) -> bool {
-    const U: f64 = f64::EPSILON / 2.0;
-    const BOUND: f64 = (7.0 + 56.0 * U) * U;
-    let at = |columns: &Columns, corner: usize| [0, 1, 2].map(|k| columns[3 * corner + k][pair]);
-    let sub = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    let a = at(s, 0);
-    let (u, v) = (sub(at(s, 1), a), sub(at(s, 2), a));
-    let products = [u[1] * v[2], u[2] * v[0], u[0] * v[1]];
-    let others = [u[2] * v[1], u[0] * v[2], u[1] * v[0]];
-    let normal = sub(products, others);
-    let size = [0, 1, 2].map(|k| products[k].abs() + others[k].abs());
-    let (mut above, mut below) = (true, true);
-    for corner in 0..3 {
-        let w = sub(at(t, corner), a);
-        let height = normal[0] * w[0] + normal[1] * w[1] + normal[2] * w[2];
-        let error = BOUND * (size[0] * w[0].abs() + size[1] * w[1].abs() + size[2] * w[2].abs());
-        above &= height > error;
-        below &= height < -error;
-    }
-    above | below
+    let corners = |columns: &Columns| {
+        [0, 3, 6].map(|k| DVec3::new(columns[k][pair], columns[k + 1][pair], columns[k + 2][pair]))
+    };
+    let plane = Plane::of(corners(s));
+    let sides = corners(t).map(|p| plane.side(p));
+    let all = |side| (sides[0] == side) & (sides[1] == side) & (sides[2] == side);
+    all(Ordering::Less) | all(Ordering::Greater)
 }

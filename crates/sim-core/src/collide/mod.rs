@@ -8,6 +8,7 @@ mod batch;
 mod hit;
 pub mod naive;
 mod pairs;
+mod plane;
 pub mod predicates;
 pub mod touch;
 pub mod tree;

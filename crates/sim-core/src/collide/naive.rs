@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 use glam::DVec3;
 
-use super::{Hit, Side, place, predicates::segment_meets_triangle};
+use super::{Hit, Side, place, plane::Plane, predicates::segment_meets_triangle};
 use crate::Mesh;
 
 /// Whether the surfaces of two meshes meet, the second displaced by `offset` (m). Stops at the
@@ -24,6 +24,7 @@ pub fn hits(first: &Mesh, second: &Mesh, offset: DVec3) -> Vec<Hit> {
         hits.push(pair.measure());
         ControlFlow::Continue(())
     });
+    hits.sort_unstable_by_key(Hit::key);
     hits
 }
 
@@ -67,11 +68,20 @@ fn each_hit(
             &first_vertices,
         ),
     ];
+    let mut sides = Vec::new();
     for (side, edges_of, edge_vertices, faces_of, face_vertices) in ways {
-        for (edge, ends) in edges_of.edges().iter().enumerate() {
-            let [p, q] = ends.map(|v| edge_vertices[v as usize]);
-            for (face, corners) in faces_of.triangles().iter().enumerate() {
-                let corners = corners.map(|v| face_vertices[v as usize]);
+        for (face, corners) in faces_of.triangles().iter().enumerate() {
+            let corners = corners.map(|v| face_vertices[v as usize]);
+            // An edge with both ends on one side of the plane is done with.
+            let plane = Plane::of(corners);
+            sides.clear();
+            sides.extend(edge_vertices.iter().map(|&p| plane.side(p) as i8));
+            for (edge, ends) in edges_of.edges().iter().enumerate() {
+                let [p, q] = ends.map(|v| v as usize);
+                if sides[p] * sides[q] > 0 {
+                    continue;
+                }
+                let [p, q] = [edge_vertices[p], edge_vertices[q]];
                 if segment_meets_triangle(p, q, corners) {
                     found(Pair {
                         edge: (side, edge as u32, [p, q]),
