@@ -18,9 +18,12 @@ fn hard_points<const N: usize>() -> impl Strategy<Value = [DVec3; N]> {
         points.map(|p| {
             DVec3::from_array(p.map(|(cell, ulps)| {
                 let x = f64::from(cell) + offset;
+                // Next to zero an ulp would leave the range of exact products.
                 let x = match ulps {
-                    1 if nudge => x.next_up(),
-                    -1 if nudge => x.next_down(),
+                    _ if !nudge => x,
+                    _ if x == 0.0 => f64::from(ulps) * f64::EPSILON,
+                    1 => x.next_up(),
+                    -1 => x.next_down(),
                     _ => x,
                 };
                 x * scale
@@ -127,6 +130,34 @@ proptest! {
         offset in prop::array::uniform3(-2.0..2.0),
     ) {
         assert_same(&first, &second, DVec3::from_array(offset))?;
+    }
+}
+
+/// Found by a random search: a vertex so little off a plane that the determinant underflows.
+#[test]
+fn offsets_below_any_product_count_as_none() {
+    let mesh = |corners: [[f32; 3]; 3]| {
+        Mesh::new(corners.map(Vec3::from_array).to_vec(), vec![[0, 1, 2]]).expect("a triangle")
+    };
+    let flat = mesh([[0.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 3.0, 0.0]]);
+    let upright = mesh([[1.0, 3.0, 0.0], [1.0, 3.0, 1.0], [0.0, 0.0, 0.0]]);
+    let least_kept = 2.0_f64.powi(-250);
+    for (z, meet) in [
+        (5e-324, true),
+        (least_kept / 2.0, true),
+        (least_kept, false),
+        (1e-40, false),
+    ] {
+        let offset = DVec3::new(0.0, 0.0, z);
+        assert_eq!(
+            assert_same(&flat, &upright, offset).expect("all agree"),
+            meet,
+            "{z}"
+        );
+        assert!(
+            assert_same(&flat, &upright, -offset).expect("all agree"),
+            "-{z}"
+        );
     }
 }
 

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 use glam::DVec3;
 
-use super::{Hit, Side, place, plane::Plane, predicates::segment_meets_triangle};
+use super::{Hit, Side, place, plane::Plane, predicates::segment_meets_triangle, snap};
 use crate::Mesh;
 
 /// Whether the surfaces of two meshes meet, the second displaced by `offset` (m). Stops at the
@@ -46,6 +46,7 @@ fn each_hit(
     offset: DVec3,
     mut found: impl FnMut(Pair) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
+    let offset = snap(offset);
     let first_vertices: Vec<DVec3> = first.vertices().iter().map(|v| v.as_dvec3()).collect();
     let second_vertices: Vec<DVec3> = second
         .vertices()

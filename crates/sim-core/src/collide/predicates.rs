@@ -5,8 +5,8 @@
 //! closed: what touches, meets. No tolerance exists, so two triangles that share an edge never
 //! disagree about it, and nothing slips between them.
 //!
-//! Coordinates must be finite, with differences between 1e-97 and 1e102 in size or zero, so that
-//! products of three neither overflow nor underflow.
+//! Coordinates must lie within ±1e100 and be multiples of 2^-340, as those of placed vertices are
+//! ([`super`]), so that products of three differences neither overflow nor underflow.
 
 use glam::DVec3;
 use robust::{Coord, Coord3D};

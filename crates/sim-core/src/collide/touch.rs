@@ -29,7 +29,7 @@ use glam::DVec3;
 
 use super::{
     pairs::{Leaves, Stack, TILE, Tiles, descend},
-    place,
+    place, snap,
 };
 use crate::bvh::{Bvh, Node, TRIANGLE, WIDTH};
 
@@ -78,7 +78,7 @@ pub fn first_touch(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> O
     let mut search = Search {
         first,
         second,
-        offset,
+        offset: snap(offset),
         motion,
         direction: motion.try_normalize()?,
         earliest: 1.0,

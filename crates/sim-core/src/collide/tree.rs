@@ -10,6 +10,7 @@ use super::{
     pairs::{Reach, Visit, each_pair},
     place,
     predicates::{segment_meets_triangle, triangles_meet},
+    snap,
 };
 use crate::bvh::Bvh;
 
@@ -21,6 +22,7 @@ pub fn intersect(first: &Bvh, second: &Bvh, offset: DVec3) -> bool {
 
 /// [`intersect`] with the instructions of a level, to compare levels.
 pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, offset: DVec3) -> bool {
+    let offset = snap(offset);
     if !first.bounds().meets(&second.bounds(), offset) {
         return false;
     }
@@ -70,6 +72,7 @@ pub fn hits(first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Hit> {
 
 /// [`hits`] with the instructions of a level, to compare levels.
 pub fn hits_at(level: Level, first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Hit> {
+    let offset = snap(offset);
     let mut hits = Vec::new();
     if first.bounds().meets(&second.bounds(), offset) {
         let reach = Reach::new(second, offset);

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::{Collision, World};
 use crate::{
-    collide::{naive, touch, tree},
+    collide::{naive, snap, touch, tree},
     impulse,
 };
 
@@ -100,7 +100,7 @@ impl World {
 
     /// The same through the trees.
     fn meet_by_trees(&mut self, i: usize, j: usize) -> bool {
-        let offset = self.current.position[j] - self.current.position[i];
+        let offset = snap(self.current.position[j] - self.current.position[i]);
         let Some((first, second)) = self.mesh(i).zip(self.mesh(j)) else {
             return false;
         };
