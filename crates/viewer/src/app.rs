@@ -12,7 +12,7 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
-use crate::cli::Failure;
+use crate::failure::Failure;
 use crate::gpu::{Gpu, UiFrame};
 use crate::session::{STEP_BUDGET, Session, State};
 use crate::stopwatch::Stopwatch;

@@ -12,7 +12,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use scene::Scene;
 use sim_core::{Collision, METHODS, Method};
 
-use crate::{app, headless, shot};
+use crate::{app, failure::Failure, headless, shot};
 
 /// Scene of the window when none is named.
 const FIRST_SCENE: &str = "cube-cow";
@@ -124,38 +124,6 @@ enum CollisionArg {
     Naive,
     /// Through bounding volume hierarchies
     Bvh,
-}
-
-/// Why the program ends without having done what it was asked, as one line for a person.
-#[derive(Debug, PartialEq, Eq)]
-pub enum Failure {
-    /// A run failed on the way.
-    Run(String),
-    /// The arguments or a file were refused.
-    Refused(String),
-    /// There is no display or no graphics adapter.
-    NoDisplay(String),
-}
-
-impl Failure {
-    /// Refuses something for the reason of an error.
-    pub fn refused(error: impl std::fmt::Display) -> Self {
-        Self::Refused(error.to_string())
-    }
-
-    fn code(&self) -> u8 {
-        match self {
-            Self::Run(_) => 1,
-            Self::Refused(_) => 2,
-            Self::NoDisplay(_) => 3,
-        }
-    }
-
-    fn message(&self) -> &str {
-        match self {
-            Self::Run(message) | Self::Refused(message) | Self::NoDisplay(message) => message,
-        }
-    }
 }
 
 /// Does what the arguments of the process ask for.

@@ -7,7 +7,7 @@ use scene::{Scene, mesh_file};
 use serde::Serialize;
 use sim_core::{DVec3, Repairs, StepError, World};
 
-use crate::cli::Failure;
+use crate::failure::Failure;
 use crate::number;
 use crate::session::{Drift, Reference};
 use crate::stopwatch::Stopwatch;

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use scene::Scene;
 
-use crate::cli::{Depth, Failure, ShotArgs};
+use crate::cli::{Depth, ShotArgs};
+use crate::failure::Failure;
 use crate::render::offscreen::{self, ShotError};
 use crate::session::Session;
 use crate::stopwatch::Stopwatch;

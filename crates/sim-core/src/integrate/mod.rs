@@ -11,8 +11,6 @@ mod symplectic_euler;
 use alloc::vec::Vec;
 use glam::DVec3;
 
-use crate::world::LARGEST;
-
 /// A way to step `x' = v`, `v' = F/m` forward by `dt`.
 #[derive(Debug)]
 pub struct Method {
@@ -69,9 +67,9 @@ impl State {
         self.velocity.copy_from_slice(&other.velocity);
     }
 
-    /// The first body whose position or velocity is beyond what a world takes in, or NaN.
-    pub(crate) fn out_of_range(&self) -> Option<usize> {
-        let largest = DVec3::splat(LARGEST);
+    /// The first body with a component of position or velocity beyond ±`largest`, or NaN.
+    pub(crate) fn beyond(&self, largest: f64) -> Option<usize> {
+        let largest = DVec3::splat(largest);
         let within = |x: &DVec3| x.abs().cmple(largest).all();
         let lost = |(x, v): (&DVec3, &DVec3)| !(within(x) && within(v));
         self.position.iter().zip(&self.velocity).position(lost)

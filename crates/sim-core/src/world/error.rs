@@ -58,7 +58,7 @@ pub enum StepError {
 }
 
 /// Squares and products of quantities within these bounds stay finite.
-pub(crate) const LARGEST: f64 = 1e100;
+pub(super) const LARGEST: f64 = 1e100;
 const POSITIVE: core::ops::RangeInclusive<f64> = 1e-100..=LARGEST;
 
 pub(super) fn check_vector(

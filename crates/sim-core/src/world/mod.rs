@@ -13,7 +13,6 @@ use crate::{
     integrate::{Forces, Method, State},
 };
 pub use collision::Impact;
-pub(crate) use error::LARGEST;
 pub use error::{StepError, WorldError};
 
 /// Bodies, their motion, and how it goes on.
@@ -153,7 +152,7 @@ impl World {
         };
         let Settings { dt, method, .. } = self.settings;
         (method.step)(&self.previous, &mut self.current, &forces, dt);
-        if let Some(body) = self.current.out_of_range() {
+        if let Some(body) = self.current.beyond(error::LARGEST) {
             self.current.copy_from(&self.previous);
             return Err(StepError::OutOfRange {
                 body,
