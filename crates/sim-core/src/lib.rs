@@ -1,6 +1,6 @@
 //! Rigid triangle meshes that move and collide.
 //!
-//! `no_std` with `alloc`, no I/O, no clock, no threads, no `unsafe`. Quantities are in SI units.
+//! `no_std` with `alloc`, no I/O, no clock, no threads; `unsafe` only around vector instructions. Quantities are in SI units.
 //! State is `f64`, geometry `f32`; decisions about geometry are exact.
 //!
 //! # A step, in the order in which it happens
@@ -13,7 +13,7 @@
 //!    rest on the exact [`collide::predicates`] and always agree.
 //! 4. Where two meet, [`collide::touch`] finds the feature that touched first and with it the
 //!    contact normal, [`impulse::elastic`] the impulse. Velocities change, and both bodies go
-//!    back to where the step began, so that no two meshes are ever left inside each other.
+//!    back to where the step began, so that no two surfaces are ever left crossing.
 //! 5. [`World::interpolated`] gives positions between the last two states to draw.
 //!
 //! ```

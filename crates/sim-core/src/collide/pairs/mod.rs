@@ -57,23 +57,17 @@ pub(super) fn descend(first: &Bvh, second: &Bvh, tiles: &mut impl Tiles) -> Cont
         match (Child::of(a), Child::of(b)) {
             (Child::Triangle(s), _) => {
                 let alone = Node::of_triangle(s, first.corners(s));
-                tiles.expand(&alone, node(second, b), &mut stack, &mut leaves);
+                tiles.expand(&alone, second.node(b), &mut stack, &mut leaves);
             }
             (_, Child::Triangle(t)) => {
                 let alone = Node::of_triangle(t, second.corners(t));
-                tiles.expand(node(first, a), &alone, &mut stack, &mut leaves);
+                tiles.expand(first.node(a), &alone, &mut stack, &mut leaves);
             }
-            _ => tiles.expand(node(first, a), node(second, b), &mut stack, &mut leaves),
+            _ => tiles.expand(first.node(a), second.node(b), &mut stack, &mut leaves),
         }
     }
     while leaves.len() > 0 {
         tiles.triangles(leaves.take(BATCH))?;
     }
     ControlFlow::Continue(())
-}
-
-/// The node of a child that is known to be one.
-#[inline(always)]
-fn node(bvh: &Bvh, child: u32) -> &Node {
-    bvh.node(child)
 }
