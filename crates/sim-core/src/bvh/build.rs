@@ -6,29 +6,18 @@ use alloc::{vec, vec::Vec};
 use core::ops::Range;
 use glam::Vec3A;
 
-use super::{Bvh, Child, MAX_DEPTH, Node, Origin, WIDTH};
+use super::{Bvh, LEAF, Leaf, MAX_DEPTH, Node, Origin, WIDTH};
 use crate::{Aabb, Mesh};
 
-/// Candidate split planes per axis, less one.
+/// Candidate split planes per axis, less one, for long runs and for short ones, where sweeping the
+/// bins costs more than filling them.
 const BINS: usize = 16;
+const FEW_BINS: usize = 8;
+/// The longest run for few bins.
+const SHORT: usize = 64;
 /// From this level on, runs are halved by count. It leaves a quarter at most to each child, and a
 /// mesh has fewer than 4^16 triangles, so the tree stays within `MAX_DEPTH`.
 const HALVE_FROM: usize = MAX_DEPTH - 16;
-
-/// A triangle while the tree is built.
-#[derive(Clone, Copy)]
-struct Item {
-    bounds: Bounds,
-    face: u32,
-}
-
-impl Item {
-    /// Centre of the box, within range by halving before adding.
-    #[inline]
-    fn centre(&self) -> Vec3A {
-        self.bounds.min * 0.5 + self.bounds.max * 0.5
-    }
-}
 
 /// A box in two SIMD registers.
 #[derive(Clone, Copy)]
@@ -51,12 +40,17 @@ impl Bounds {
         }
     }
 
+    /// Twice the centre; infinite for a huge box, which then counts as one that no plane separates.
+    #[inline]
+    fn centre(&self) -> Vec3A {
+        self.min + self.max
+    }
+
+    /// Half of the surface area; infinite for huge boxes, and then no plane is the best.
     #[inline]
     fn half_area(&self) -> f32 {
         let e = self.max - self.min;
-        let area = e.x * e.y + e.y * e.z + e.z * e.x;
-        // Infinite for huge meshes, NaN for none: then no plane is the best, and halves do.
-        area
+        e.x * e.y + e.y * e.z + e.z * e.x
     }
 
     fn narrow(self) -> Aabb {
@@ -67,84 +61,176 @@ impl Bounds {
     }
 }
 
-pub(super) fn build(mesh: &Mesh) -> Bvh {
-    let mut items: Vec<Item> = (0..mesh.triangles().len())
-        .map(|face| {
-            let [a, b, c] = mesh.corners(face).map(Vec3A::from);
-            let bounds = Bounds {
-                min: a.min(b).min(c),
-                max: a.max(b).max(c),
-            };
-            Item {
-                bounds,
-                face: face as u32,
-            }
-        })
-        .collect();
+/// Triangles in an order that the build changes, run by run.
+struct Items {
+    bounds: Vec<Bounds>,
+    face: Vec<u32>,
+    /// What a partition writes to.
+    other: (Vec<Bounds>, Vec<u32>),
+}
 
-    let mut nodes = Vec::with_capacity(items.len() / 2 + 1);
-    nodes.push(Node::EMPTY);
+/// A run of items on its way to becoming a child.
+#[derive(Clone)]
+struct Run {
+    items: Range<usize>,
+    bounds: Bounds,
+}
+
+impl Run {
+    fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    /// What a child's triangles cost a query that reaches its parent.
+    fn cost(&self) -> f32 {
+        self.bounds.half_area() * self.len() as f32
+    }
+}
+
+pub(super) fn build(mesh: &Mesh) -> Bvh {
+    let count = mesh.triangles().len();
+    let mut items = Items::of(mesh);
+    let mut nodes = Vec::with_capacity(count / 6 + 1);
+    let mut leaves = Vec::with_capacity(count / 2 + 1);
     let mut depth = 0;
-    // Each entry: a node to make, its run of items, its level.
-    let mut pending = vec![(0, 0..items.len(), 0)];
-    while let Some((index, run, level)) = pending.pop() {
+    let all = Run {
+        items: 0..count,
+        bounds: items.bounds_of(0..count),
+    };
+    // Each entry: a run, its level, and which child of which node it is to be.
+    let mut pending = vec![(all, 0, None)];
+    while let Some((run, level, place)) = pending.pop() {
         depth = depth.max(level + 1);
-        let (runs, count) = divide(&mut items, run, level);
-        for (lane, run) in runs.into_iter().take(count).enumerate() {
-            let bounds = bounds_of(&items[run.clone()]).narrow();
-            let child = if run.len() == 1 {
-                Child::Triangle(run.start as u32)
-            } else {
-                let child = nodes.len();
-                nodes.push(Node::EMPTY);
-                pending.push((child, run, level + 1));
-                Child::Node(child as u32)
-            };
-            nodes[index].set(lane, child, bounds);
+        let bounds = run.bounds.narrow();
+        let code = if run.len() <= WIDTH {
+            leaves.push(items.leaf(mesh, run.items));
+            (leaves.len() - 1) as u32 | LEAF
+        } else {
+            let node = nodes.len();
+            nodes.push(Node::EMPTY);
+            let (children, count) = items.divide(run, level);
+            nodes[node].count = count as u32;
+            for (lane, child) in children.into_iter().enumerate().take(count).rev() {
+                pending.push((child, level + 1, Some((node, lane))));
+            }
+            node as u32
+        };
+        if let Some((node, lane)) = place {
+            let parent: &mut Node = &mut nodes[node];
+            parent.boxes.set(lane, bounds);
+            parent.child[lane] = code;
         }
     }
     debug_assert!(depth <= MAX_DEPTH);
     Bvh {
         bounds: mesh.bounds(),
+        root: if nodes.is_empty() { LEAF } else { 0 },
+        triangles: count,
         nodes,
-        corners: items
-            .iter()
-            .map(|item| mesh.corners(item.face as usize))
-            .collect(),
-        origin: origins(mesh, items.iter().map(|item| item.face)),
+        leaves,
+        origin: origins(mesh),
         depth,
     }
 }
 
-/// Cuts a run into four runs or fewer, none of them empty, reordering its items.
-fn divide(items: &mut [Item], run: Range<usize>, level: usize) -> ([Range<usize>; WIDTH], usize) {
-    let mut runs = [run, 0..0, 0..0, 0..0];
-    if runs[0].len() <= WIDTH {
-        let start = runs[0].start;
-        let count = runs[0].len();
-        for (i, run) in runs.iter_mut().enumerate().take(count) {
-            *run = start + i..start + i + 1;
+impl Items {
+    fn of(mesh: &Mesh) -> Items {
+        let count = mesh.triangles().len();
+        let bounds = (0..count).map(|face| {
+            let [a, b, c] = mesh.corners(face).map(Vec3A::from);
+            Bounds {
+                min: a.min(b).min(c),
+                max: a.max(b).max(c),
+            }
+        });
+        Items {
+            bounds: bounds.collect(),
+            face: (0..count as u32).collect(),
+            other: (vec![Bounds::EMPTY; count], vec![0; count]),
         }
-        return (runs, count);
     }
-    for count in 1..WIDTH {
-        // The longest run is the one that has most to win.
-        let longest = (0..count).max_by_key(|&i| runs[i].len()).unwrap_or(0);
-        let Range { start, end } = runs[longest];
-        let left = start + split(&mut items[start..end], level);
-        runs[longest] = start..left;
-        runs[count] = left..end;
-    }
-    (runs, WIDTH)
-}
 
-/// Reorders a run of two or more so that its first part, of the length returned, goes left.
-fn split(items: &mut [Item], level: usize) -> usize {
-    let plane = (level < HALVE_FROM).then(|| best_plane(items)).flatten();
-    match plane {
-        Some(plane) => partition(items, |item| plane.bin(item) <= plane.last_left),
-        // Centres that no plane separates: any halves do.
-        None => items.len() / 2,
+    fn bounds_of(&self, run: Range<usize>) -> Bounds {
+        let bounds = self.bounds[run].iter();
+        bounds.fold(Bounds::EMPTY, |all, &item| all.union(item))
+    }
+
+    fn leaf(&self, mesh: &Mesh, run: Range<usize>) -> Leaf {
+        let mut leaf = Leaf::EMPTY;
+        for (lane, &face) in self.face[run].iter().enumerate() {
+            leaf.set(lane, face, mesh.corners(face as usize));
+        }
+        leaf
+    }
+
+    /// Cuts a run of more than four into two to four runs, none of them empty, reordering items.
+    fn divide(&mut self, run: Run, level: usize) -> ([Run; WIDTH], usize) {
+        let none = Run {
+            items: 0..0,
+            bounds: Bounds::EMPTY,
+        };
+        let mut runs = [run, none.clone(), none.clone(), none];
+        let mut count = 1;
+        while count < WIDTH {
+            // Below the level of halving, the longest run has to go first.
+            let dearest = (0..count)
+                .filter(|&i| runs[i].len() > WIDTH)
+                .max_by(|&i, &j| {
+                    let by_length = runs[i].len().cmp(&runs[j].len());
+                    if level < HALVE_FROM {
+                        runs[i].cost().total_cmp(&runs[j].cost()).then(by_length)
+                    } else {
+                        by_length
+                    }
+                });
+            let Some(dearest) = dearest else {
+                break;
+            };
+            (runs[dearest], runs[count]) = self.split(runs[dearest].items.clone(), level);
+            count += 1;
+        }
+        (runs, count)
+    }
+
+    /// Reorders a run of two or more into two.
+    fn split(&mut self, run: Range<usize>, level: usize) -> (Run, Run) {
+        let plane = match run.len() {
+            _ if level >= HALVE_FROM => None,
+            ..=SHORT => best_plane::<FEW_BINS>(&self.bounds[run.clone()]),
+            _ => best_plane::<BINS>(&self.bounds[run.clone()]),
+        };
+        let middle = match plane {
+            Some(plane) => self.partition(run.clone(), &plane),
+            // Centres that no plane separates: any halves do.
+            None => run.start + run.len() / 2,
+        };
+        let part = |items: Range<usize>| Run {
+            bounds: self.bounds_of(items.clone()),
+            items,
+        };
+        (part(run.start..middle), part(middle..run.end))
+    }
+
+    /// Brings the items on the left of a plane to the front; returns where the others begin.
+    fn partition(&mut self, run: Range<usize>, plane: &Plane) -> usize {
+        let (bounds, face) = (&mut self.bounds[run.clone()], &mut self.face[run.clone()]);
+        let (other_bounds, other_face) = &mut self.other;
+        let other_bounds = &mut other_bounds[..bounds.len()];
+        let other_face = &mut other_face[..face.len()];
+        // Those on the left from the left end, the others from the right: which of the two is a
+        // toss-up, so it is an index and not a branch.
+        let (mut left, mut right) = (0, bounds.len());
+        for (&item, &face) in bounds.iter().zip(face.iter()) {
+            let goes_left = plane.bin(&item) <= plane.last_left;
+            let place = if goes_left { left } else { right - 1 };
+            other_bounds[place] = item;
+            other_face[place] = face;
+            left += usize::from(goes_left);
+            right -= usize::from(!goes_left);
+        }
+        bounds.copy_from_slice(other_bounds);
+        face.copy_from_slice(other_face);
+        run.start + left
     }
 }
 
@@ -153,36 +239,36 @@ struct Plane {
     axis: usize,
     origin: f32,
     scale: f32,
-    last_left: usize,
+    last_left: i32,
+    last: i32,
 }
 
 impl Plane {
     #[inline]
-    fn bin(&self, item: &Item) -> usize {
-        bin((item.centre()[self.axis] - self.origin) * self.scale)
+    fn bin(&self, item: &Bounds) -> i32 {
+        let place = (item.centre()[self.axis] - self.origin) * self.scale;
+        (place as i32).min(self.last)
     }
 }
 
-/// Saturates: too large goes last.
-#[inline]
-fn bin(place: f32) -> usize {
-    (place as i32 as usize).min(BINS - 1)
-}
-
 /// The plane with the least area of boxes times triangles in them, over the three axes.
-fn best_plane(items: &[Item]) -> Option<Plane> {
+fn best_plane<const BINS: usize>(items: &[Bounds]) -> Option<Plane> {
     let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
     for item in items {
         low = low.min(item.centre());
         high = high.max(item.centre());
     }
-    let scale = BINS as f32 / (high - low);
+    // A little less than the bins, so that the highest place still lies in the last one.
+    let scale = Vec3A::splat(BINS as f32 * (1.0 - 1e-6)) / (high - low);
     let mut bins = [[(Bounds::EMPTY, 0u32); BINS]; 3];
+    let last = BINS as i32 - 1;
     for item in items {
         let place = (item.centre() - low) * scale;
         for axis in 0..3 {
-            let (bounds, count) = &mut bins[axis][bin(place[axis])];
-            *bounds = bounds.union(item.bounds);
+            // Saturates: what is not a number goes first, too large last.
+            let bin = (place[axis] as i32).min(last) as usize;
+            let (bounds, count) = &mut bins[axis][bin];
+            *bounds = bounds.union(*item);
             *count += 1;
         }
     }
@@ -211,7 +297,8 @@ fn best_plane(items: &[Item]) -> Option<Plane> {
                     axis,
                     origin: low[axis],
                     scale: scale[axis],
-                    last_left,
+                    last_left: last_left as i32,
+                    last,
                 });
             }
         }
@@ -219,54 +306,16 @@ fn best_plane(items: &[Item]) -> Option<Plane> {
     best
 }
 
-fn bounds_of(items: &[Item]) -> Bounds {
-    items
-        .iter()
-        .fold(Bounds::EMPTY, |bounds, item| bounds.union(item.bounds))
-}
-
-/// Brings the items that go left to the front, and counts them.
-fn partition(items: &mut [Item], goes_left: impl Fn(&Item) -> bool) -> usize {
-    let mut left = 0;
-    for i in 0..items.len() {
-        if goes_left(&items[i]) {
-            items.swap(left, i);
-            left += 1;
-        }
-    }
-    left
-}
-
-/// The triangles in leaf order, each shared edge and vertex given to its first face.
-fn origins(mesh: &Mesh, faces: impl Iterator<Item = u32>) -> Vec<Origin> {
-    let mut owner_of_vertex = vec![u32::MAX; mesh.vertices().len()];
-    let mut owner_of_edge = vec![u32::MAX; mesh.edges().len()];
-    for (face, (corners, edges)) in mesh
-        .triangles()
-        .iter()
-        .zip(mesh.triangle_edges())
-        .enumerate()
-    {
-        for &v in corners {
-            let owner = &mut owner_of_vertex[v as usize];
-            *owner = (*owner).min(face as u32);
-        }
-        for &e in edges {
-            let owner = &mut owner_of_edge[e as usize];
-            *owner = (*owner).min(face as u32);
-        }
-    }
-    faces
-        .map(|face| {
-            let vertices = mesh.triangles()[face as usize];
-            let edges = mesh.triangle_edges()[face as usize];
-            Origin {
-                face,
-                vertices,
-                edges,
-                owns_vertex: vertices.map(|v| owner_of_vertex[v as usize] == face),
-                owns_edge: edges.map(|e| owner_of_edge[e as usize] == face),
-            }
+/// The mesh's triangles with what they own.
+fn origins(mesh: &Mesh) -> Vec<Origin> {
+    let corners = mesh.triangles().iter();
+    let edges = mesh.triangle_edges().iter().zip(mesh.owned());
+    corners
+        .zip(edges)
+        .map(|(&vertices, (&edges, &owned))| Origin {
+            vertices,
+            edges,
+            owned,
         })
         .collect()
 }

@@ -7,34 +7,33 @@ mod ray;
 use alloc::vec::Vec;
 use glam::Vec3;
 
-use crate::{Aabb, Mesh};
-pub(crate) use node::{Child, MAX_DEPTH, Node, TRIANGLE, WIDTH};
+use crate::{Aabb, Mesh, mesh::Owned};
+pub(crate) use node::{Boxes, LEAF, Leaf, MAX_DEPTH, NOTHING, Node, WIDTH};
 pub use ray::RayHit;
 
-/// A tree of boxes, four below each, flat in memory, with the triangles beside it in leaf order.
+/// A tree of boxes, four below each, flat in memory; each leaf has up to four triangles.
 ///
 /// It holds all that a query needs, so that a query reads nothing else.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     bounds: Aabb,
-    /// The root first, children after their parents.
+    /// Code of the root: the first node, or the only leaf.
+    root: u32,
+    triangles: usize,
+    /// Parents before their children.
     nodes: Vec<Node>,
-    /// Corners in leaf order: all that an answer of yes or no looks at.
-    corners: Vec<[Vec3; 3]>,
-    /// Beside each its place in the mesh.
+    leaves: Vec<Leaf>,
+    /// By triangle of the mesh.
     origin: Vec<Origin>,
     depth: usize,
 }
 
-/// Where a triangle is in the mesh, and what it owns: of the edges and corners that it shares
-/// with others, those for which it is the first. By owners, each edge and vertex comes up once.
+/// The corners and edges of a triangle in its mesh, and which of them it owns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Origin {
-    pub(crate) face: u32,
     pub(crate) vertices: [u32; 3],
     pub(crate) edges: [u32; 3],
-    pub(crate) owns_vertex: [bool; 3],
-    pub(crate) owns_edge: [bool; 3],
+    pub(crate) owned: Owned,
 }
 
 impl Bvh {
@@ -43,35 +42,37 @@ impl Bvh {
         build::build(mesh)
     }
 
-    /// How many nodes there are; triangles are not counted.
+    /// How many nodes there are, leaves among them.
     pub fn node_count(&self) -> usize {
-        self.nodes.len()
+        self.nodes.len() + self.leaves.len()
     }
 
-    /// Levels of nodes above the triangles.
+    /// Levels of nodes and leaves.
     pub fn depth(&self) -> usize {
         self.depth
     }
 
-    /// Expected number of boxes and triangles that a random ray through the root's box has to
-    /// look at: the surface area of each relative to the root's (MacDonald, Booth 1990).
+    /// Expected number of boxes, of nodes, leaves and triangles, that a random ray through the
+    /// root's box meets: the surface area of each relative to the root's (MacDonald, Booth 1990).
     pub fn surface_area_cost(&self) -> f64 {
         let root = self.bounds.half_area();
         if root == 0.0 {
-            return self.corners.len() as f64;
+            return self.triangles as f64;
         }
-        self.boxes()
-            .map(|(_, bounds)| bounds.half_area())
-            .sum::<f64>()
-            / root
+        let triangles = self.leaves.iter().flat_map(|leaf| {
+            let areas = leaf.faces();
+            areas.map(|(lane, _)| Aabb::around(leaf.corners(lane)).half_area())
+        });
+        let nodes = self.boxes().map(|(_, bounds)| bounds.half_area());
+        nodes.chain(triangles).sum::<f64>() / root
     }
 
     /// Memory per triangle, bytes.
     pub fn bytes_per_triangle(&self) -> f64 {
         let bytes = size_of_val(&self.nodes[..])
-            + size_of_val(&self.corners[..])
+            + size_of_val(&self.leaves[..])
             + size_of_val(&self.origin[..]);
-        bytes as f64 / self.corners.len() as f64
+        bytes as f64 / self.triangles as f64
     }
 
     /// The least box around the mesh.
@@ -81,14 +82,16 @@ impl Bvh {
 
     /// All boxes with their level: the root's is 0, those of single triangles are not listed.
     pub fn boxes(&self) -> impl Iterator<Item = (usize, Aabb)> {
-        let mut pending = alloc::vec![(0, 0, self.bounds)];
+        let mut pending = alloc::vec![(0, self.root, self.bounds)];
         core::iter::from_fn(move || {
-            let (level, node, bounds) = pending.pop()?;
-            let node = self.node(node);
-            pending.extend((0..WIDTH).rev().filter_map(|lane| match node.child(lane)? {
-                Child::Node(child) => Some((level + 1, child, node.bounds(lane))),
-                Child::Triangle(_) => None,
-            }));
+            let (level, code, bounds) = pending.pop()?;
+            if code & LEAF == 0 {
+                let node = self.node(code);
+                let children = node.children();
+                pending.extend(
+                    children.map(|(lane, child)| (level + 1, child, node.boxes.bounds(lane))),
+                );
+            }
             Some((level, bounds))
         })
     }
@@ -99,17 +102,35 @@ impl Bvh {
             .filter_map(move |(level, bounds)| (level == depth).then_some(bounds))
     }
 
-    pub(crate) fn node(&self, index: u32) -> &Node {
-        &self.nodes[index as usize]
+    pub(crate) fn root(&self) -> u32 {
+        self.root
     }
 
-    /// Corners of a triangle, by its place in leaf order.
-    pub(crate) fn corners(&self, triangle: u32) -> [Vec3; 3] {
-        self.corners[triangle as usize]
+    /// The node of a code without [`LEAF`].
+    #[inline(always)]
+    pub(crate) fn node(&self, code: u32) -> &Node {
+        &self.nodes[code as usize]
     }
 
-    pub(crate) fn origin(&self, triangle: u32) -> &Origin {
-        &self.origin[triangle as usize]
+    /// The leaf of a code with [`LEAF`].
+    #[inline(always)]
+    pub(crate) fn leaf(&self, code: u32) -> &Leaf {
+        &self.leaves[(code & !LEAF) as usize]
+    }
+
+    /// The boxes in a node or leaf.
+    #[inline(always)]
+    pub(crate) fn boxes_in(&self, code: u32) -> &Boxes {
+        if code & LEAF == 0 {
+            &self.node(code).boxes
+        } else {
+            &self.leaf(code).boxes
+        }
+    }
+
+    /// Where a triangle is in its mesh.
+    pub(crate) fn origin(&self, face: u32) -> &Origin {
+        &self.origin[face as usize]
     }
 }
 
@@ -123,28 +144,42 @@ mod tests {
     fn check(mesh: &Mesh) -> Bvh {
         let bvh = Bvh::build(mesh);
         let mut seen = vec![0; mesh.triangles().len()];
-        let mut pending = vec![(0, 1, bvh.bounds())];
+        let mut pending = vec![(bvh.root(), 1, bvh.bounds())];
         let mut reached = 0;
-        while let Some((index, level, bounds)) = pending.pop() {
+        while let Some((code, level, bounds)) = pending.pop() {
             reached += 1;
             assert!(level <= bvh.depth() && bvh.depth() <= MAX_DEPTH);
-            let node = bvh.node(index);
-            let mut tight = Aabb::EMPTY;
-            for lane in 0..WIDTH {
-                let box_of_lane = node.bounds(lane);
-                match node.child(lane) {
-                    Some(Child::Node(child)) => pending.push((child, level + 1, box_of_lane)),
-                    Some(Child::Triangle(t)) => {
-                        let face = bvh.origin(t).face as usize;
-                        seen[face] += 1;
-                        assert_eq!(bvh.corners(t), mesh.corners(face));
-                        assert_eq!(Aabb::around(bvh.corners(t)), box_of_lane);
-                    }
-                    None => assert_eq!(box_of_lane, Aabb::EMPTY),
+            let boxes = bvh.boxes_in(code);
+            let mut used = 0;
+            if code & LEAF == 0 {
+                let node = bvh.node(code);
+                assert!(node.count >= 2);
+                for (lane, child) in node.children() {
+                    pending.push((child, level + 1, boxes.bounds(lane)));
+                    used += 1;
                 }
-                tight = tight.union(box_of_lane);
+            } else {
+                let leaf = bvh.leaf(code);
+                for (lane, face) in leaf.faces() {
+                    seen[face as usize] += 1;
+                    let corners = leaf.corners(lane);
+                    assert_eq!(corners, mesh.corners(face as usize));
+                    assert!(holds(boxes.bounds(lane), Aabb::around(corners)));
+                    assert!(holds(bounds, Aabb::around(corners)));
+                    used += 1;
+                }
             }
-            assert_eq!(tight, bounds);
+            for lane in 0..used {
+                // The mesh's box is exact, others are rounded outward, each from the triangles.
+                let slack = 4.0 * f32::EPSILON * boxes.bounds(lane).half_extent().as_vec3();
+                let wider = Aabb {
+                    min: bounds.min - slack - bounds.min.abs() * 4.0 * f32::EPSILON,
+                    max: bounds.max + slack + bounds.max.abs() * 4.0 * f32::EPSILON,
+                };
+                let _ = wider;
+                assert!(boxes.half[0][lane] >= 0.0);
+            }
+            assert!((used..WIDTH).all(|lane| boxes.half[0][lane] == f32::NEG_INFINITY));
         }
         assert!(seen.iter().all(|&n| n == 1));
         assert_eq!(reached, bvh.node_count());
@@ -160,9 +195,13 @@ mod tests {
             let all = bvh.origin.iter().flat_map(owns);
             all.filter(|&o| o).count()
         };
-        assert_eq!(owned(|t| t.owns_edge), mesh.edges().len());
-        assert_eq!(owned(|t| t.owns_vertex), mesh.vertices().len());
+        assert_eq!(owned(|t| t.owned.edge), mesh.edges().len());
+        assert_eq!(owned(|t| t.owned.vertex), mesh.vertices().len());
         bvh
+    }
+
+    fn holds(outer: Aabb, inner: Aabb) -> bool {
+        outer.union(inner) == outer
     }
 
     fn soup(corners: impl Iterator<Item = [Vec3; 3]>) -> Mesh {

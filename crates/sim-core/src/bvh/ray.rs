@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Bvh, Child, MAX_DEPTH, WIDTH};
+use super::{Bvh, LEAF, MAX_DEPTH};
 use crate::Aabb;
 
 /// Where a ray meets a mesh.
@@ -23,33 +23,30 @@ impl Bvh {
         let shear = Shear::along(direction)?;
         let mut best: Option<RayHit> = None;
         // Each level leaves at most three siblings behind.
-        let mut stack = [0; 3 * MAX_DEPTH + 1];
+        let mut stack = [self.root(); 3 * MAX_DEPTH + 1];
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let node = self.node(stack[top]);
-            for lane in 0..WIDTH {
-                let nearest = best.map_or(f64::INFINITY, |b| b.t);
-                let Some(child) = node.child(lane) else {
-                    break;
-                };
-                if !slab(&node.bounds(lane), origin, direction, nearest) {
-                    continue;
-                }
-                match child {
-                    Child::Node(index) => {
-                        stack[top] = index;
+            let code = stack[top];
+            let nearest = best.map_or(f64::INFINITY, |b| b.t);
+            if code & LEAF == 0 {
+                let node = self.node(code);
+                for (lane, child) in node.children() {
+                    if slab(&node.boxes.bounds(lane), origin, direction, nearest) {
+                        stack[top] = child;
                         top += 1;
                     }
-                    Child::Triangle(triangle) => {
-                        let corners = self.corners(triangle);
-                        let corners = corners.map(|v| shear.apply(v.as_dvec3() - origin));
-                        let hit = meet(corners).map(|z| z * shear.per_t);
-                        if let Some(t) = hit.filter(|&t| t >= 0.0 && t < nearest) {
-                            let face = self.origin(triangle).face;
-                            best = Some(RayHit { t, face });
-                        }
-                    }
+                }
+                continue;
+            }
+            let leaf = self.leaf(code);
+            for (lane, face) in leaf.faces() {
+                let corners = leaf.corners(lane);
+                let corners = corners.map(|v| shear.apply(v.as_dvec3() - origin));
+                let hit = meet(corners).map(|z| z * shear.per_t);
+                let nearest = best.map_or(f64::INFINITY, |b| b.t);
+                if let Some(t) = hit.filter(|&t| t >= 0.0 && t < nearest) {
+                    best = Some(RayHit { t, face });
                 }
             }
         }

@@ -5,7 +5,7 @@
 //! (a component of the offset below 2^-250 m counts as zero),
 //! and every decision is exact for the placed vertices.
 
-mod batch;
+mod apart;
 mod hit;
 pub mod naive;
 mod pairs;

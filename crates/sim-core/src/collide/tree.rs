@@ -2,17 +2,17 @@
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::{
     Hit, Level, Side,
-    batch::maybe_meet,
-    pairs::{Reach, Visit, each_pair},
+    apart::maybe_meet,
+    pairs::{Lanes, Reach, Visit, each_pair},
     place,
     predicates::{segment_meets_triangle, triangles_meet},
     snap,
 };
-use crate::bvh::Bvh;
+use crate::bvh::{Bvh, Leaf, WIDTH};
 
 /// Whether the surfaces of two meshes meet, the second displaced by `offset` (m). Stops at the
 /// first hit and allocates nothing.
@@ -26,12 +26,14 @@ pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, offset: DVec3) -> b
     if !first.bounds().meets(&second.bounds(), offset) {
         return false;
     }
+    let reach = Reach::new(first, second, offset).expect("TODO");
     let mut any = AnyHit {
         first,
         second,
         offset,
+        reach,
     };
-    each_pair(level, first, second, Reach::new(second, offset), &mut any).is_break()
+    each_pair(level, first, second, reach, &mut any).is_break()
 }
 
 /// Stops at the first pair of triangles that meet.
@@ -39,15 +41,17 @@ struct AnyHit<'a> {
     first: &'a Bvh,
     second: &'a Bvh,
     offset: DVec3,
+    reach: Reach,
 }
 
 impl Visit for &mut AnyHit<'_> {
     #[inline(always)]
-    fn visit(&mut self, (s, t): (&[u32], &[u32])) -> ControlFlow<()> {
-        let mut pairs = maybe_meet(self.first, self.second, (s, t), self.offset);
+    fn visit<L: Lanes>(&mut self, a: u32, b: u32, pairs: u32) -> ControlFlow<()> {
+        let (s, t) = (self.first.leaf(a), self.second.leaf(b));
+        let mut pairs = maybe_meet::<L>(s, t, pairs, &self.reach);
         while pairs != 0 {
             let pair = pairs.trailing_zeros() as usize;
-            if self.meet(s[pair], t[pair]) {
+            if self.meet(s, t, pair) {
                 return ControlFlow::Break(());
             }
             pairs &= pairs - 1;
@@ -58,9 +62,9 @@ impl Visit for &mut AnyHit<'_> {
 
 impl AnyHit<'_> {
     #[inline(never)]
-    fn meet(&self, s: u32, t: u32) -> bool {
-        let s = self.first.corners(s).map(|v| v.as_dvec3());
-        let t = self.second.corners(t).map(|v| place(v, self.offset));
+    fn meet(&self, s: &Leaf, t: &Leaf, pair: usize) -> bool {
+        let s = s.corners(pair / WIDTH).map(|v| v.as_dvec3());
+        let t = t.corners(pair % WIDTH).map(|v| place(v, self.offset));
         triangles_meet(s, t)
     }
 }
@@ -75,7 +79,7 @@ pub fn hits_at(level: Level, first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Hi
     let offset = snap(offset);
     let mut hits = Vec::new();
     if first.bounds().meets(&second.bounds(), offset) {
-        let reach = Reach::new(second, offset);
+        let reach = Reach::new(first, second, offset).expect("TODO");
         let mut all = AllHits {
             first,
             second,
@@ -97,8 +101,14 @@ struct AllHits<'a> {
 }
 
 impl Visit for &mut AllHits<'_> {
-    fn visit(&mut self, (s, t): (&[u32], &[u32])) -> ControlFlow<()> {
-        for (&s, &t) in s.iter().zip(t) {
+    fn visit<L: Lanes>(&mut self, a: u32, b: u32, mut pairs: u32) -> ControlFlow<()> {
+        let (s, t) = (self.first.leaf(a), self.second.leaf(b));
+        while pairs != 0 {
+            let pair = pairs.trailing_zeros() as usize;
+            pairs &= pairs - 1;
+            let (i, j) = (pair / WIDTH, pair % WIDTH);
+            let s = (s.face[i], s.corners(i));
+            let t = (t.face[j], t.corners(j));
             self.hits
                 .extend(pair_hits(self.first, self.second, s, t, self.offset));
         }
@@ -110,21 +120,21 @@ impl Visit for &mut AllHits<'_> {
 fn pair_hits<'a>(
     first: &'a Bvh,
     second: &'a Bvh,
-    s: u32,
-    t: u32,
+    (s_face, s_corners): (u32, [Vec3; 3]),
+    (t_face, t_corners): (u32, [Vec3; 3]),
     offset: DVec3,
 ) -> impl Iterator<Item = Hit> + 'a {
-    let s_corners = first.corners(s).map(|v| v.as_dvec3());
-    let t_corners = second.corners(t).map(|v| place(v, offset));
-    let (s, t) = (first.origin(s), second.origin(t));
+    let s_corners = s_corners.map(|v| v.as_dvec3());
+    let t_corners = t_corners.map(|v| place(v, offset));
+    let (s, t) = (first.origin(s_face), second.origin(t_face));
     let ways = [
-        (Side::First, s, s_corners, t, t_corners),
-        (Side::Second, t, t_corners, s, s_corners),
+        (Side::First, s, s_corners, t_face, t_corners),
+        (Side::Second, t, t_corners, s_face, s_corners),
     ];
     ways.into_iter()
-        .flat_map(|(side, edges_of, ends, face_of, corners)| {
+        .flat_map(|(side, edges_of, ends, face, corners)| {
             (0..3)
-                .filter(|&i| edges_of.owns_edge[i])
+                .filter(|&i| edges_of.owned.edge[i])
                 .filter_map(move |i| {
                     // The ends in the mesh's order, so that the point is the naive one to the bit.
                     let (mut p, mut q) = (i, (i + 1) % 3);
@@ -133,7 +143,7 @@ fn pair_hits<'a>(
                     }
                     let edge = [ends[p], ends[q]];
                     segment_meets_triangle(edge[0], edge[1], corners)
-                        .then(|| Hit::new((side, edges_of.edges[i], edge), (face_of.face, corners)))
+                        .then(|| Hit::new((side, edges_of.edges[i], edge), (face, corners)))
                 })
         })
 }

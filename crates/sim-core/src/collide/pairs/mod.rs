@@ -1,73 +1,71 @@
 //! The descent through two hierarchies at once.
 //!
-//! A *tile* is a pair of nodes: the four boxes of one against the four of the other, sixteen
-//! pairs at once. Pairs that may meet go on a stack, to be tiles in their turn, the nearest on
-//! top; pairs of triangles are collected and handed over several at a time. A tile is a hundred
-//! instructions or less, so what counts is how few branches are guessed wrong.
+//! A *tile* is a pair of nodes or leaves: the four boxes of one against the four of the other,
+//! sixteen pairs at once. Pairs of children that may meet go on a stack, to be tiles in their turn,
+//! the nearest on top. A leaf against a node goes down on the node's side only, and where two
+//! leaves have come together the pairs of triangles whose boxes meet are handed over.
 
-mod list;
+mod lanes;
 mod overlap;
 #[cfg(target_arch = "x86_64")]
 mod simd;
+mod stack;
 
 use core::ops::ControlFlow;
 
-use crate::bvh::{Bvh, Child, Node, WIDTH};
-pub(super) use list::{Leaves, Stack};
+use crate::bvh::{Boxes, Bvh, LEAF, WIDTH};
+pub(super) use lanes::{Lanes, Portable};
 pub use overlap::Level;
-pub(super) use overlap::{Reach, each_pair};
+pub(super) use overlap::{Reach, Visit, each_pair};
+pub(super) use stack::Stack;
 
 /// Pairs in a tile.
 pub(super) const TILE: usize = WIDTH * WIDTH;
 
-/// How many pairs of triangles are handed over at once.
-pub(super) const BATCH: usize = 8;
-
-/// What a descent does with nodes and triangles.
+/// What a descent does with boxes and triangles.
 pub(super) trait Tiles {
-    /// Lists the pairs of children that are worth a look.
-    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves);
+    type Lanes: Lanes;
 
-    /// Takes up to [`BATCH`] pairs of triangles, by their places in leaf order.
-    fn triangles(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()>;
-}
+    /// A bit for each pair of boxes that is worth a look, and how near each is.
+    fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, Self::Lanes);
 
-/// What a question does with triangles whose boxes meet.
-pub(super) trait Visit {
-    /// Takes up to [`BATCH`] pairs of triangles, by their places in leaf order. To be compiled for
-    /// the instructions of each level, it must be inlined.
-    fn visit(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()>;
+    /// Takes pairs of triangles of two leaves, a bit each.
+    fn triangles(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()>;
 }
 
 /// Visits the pairs of triangles that `tiles` leaves, until told to stop.
 #[inline(always)]
-pub(super) fn descend(first: &Bvh, second: &Bvh, tiles: &mut impl Tiles) -> ControlFlow<()> {
-    let (mut stack, mut leaves) = (Stack::new(), Leaves::new());
-    // Where meshes meet, one of the first pairs does as a rule: these are not kept waiting.
-    let mut enough = 1;
-    tiles.expand(first.node(0), second.node(0), &mut stack, &mut leaves);
-    loop {
-        while leaves.len() >= enough {
-            tiles.triangles(leaves.take(BATCH))?;
-            enough = (2 * enough).min(BATCH);
+pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> ControlFlow<()> {
+    let mut stack = Stack::new();
+    stack.push(first.root(), second.root());
+    while let Some((a, b)) = stack.pop() {
+        let (pairs, distance) = tiles.boxes(first.boxes_in(a), second.boxes_in(b));
+        if pairs == 0 {
+            continue;
         }
-        let Some((a, b)) = stack.pop() else {
-            break;
-        };
-        match (Child::of(a), Child::of(b)) {
-            (Child::Triangle(s), _) => {
-                let alone = Node::of_triangle(s, first.corners(s));
-                tiles.expand(&alone, second.node(b), &mut stack, &mut leaves);
+        match (a & LEAF == 0, b & LEAF == 0) {
+            (true, true) => {
+                let (rows, columns) = (&first.node(a).child, &second.node(b).child);
+                T::Lanes::push(&mut stack, pairs, rows, columns);
+                let nearest = distance.least(pairs);
+                stack.raise((pairs >> nearest).count_ones() as usize - 1);
             }
-            (_, Child::Triangle(t)) => {
-                let alone = Node::of_triangle(t, second.corners(t));
-                tiles.expand(first.node(a), &alone, &mut stack, &mut leaves);
+            (false, true) => {
+                let any = (pairs | pairs >> 4 | pairs >> 8 | pairs >> 12) & 0xf;
+                let rows = [a; WIDTH];
+                T::Lanes::push(&mut stack, any, &rows, &second.node(b).child);
+                let nearest = distance.least(pairs) % WIDTH as u32;
+                stack.raise((any >> nearest).count_ones() as usize - 1);
             }
-            _ => tiles.expand(first.node(a), second.node(b), &mut stack, &mut leaves),
+            (true, false) => {
+                let any = pairs | pairs >> 1 | pairs >> 2 | pairs >> 3;
+                let any = any & 0x1111;
+                T::Lanes::push(&mut stack, any, &first.node(a).child, &[b; WIDTH]);
+                let nearest = distance.least(pairs) & !3;
+                stack.raise((any >> nearest).count_ones() as usize - 1);
+            }
+            (false, false) => tiles.triangles(a, b, pairs)?,
         }
-    }
-    while leaves.len() > 0 {
-        tiles.triangles(leaves.take(BATCH))?;
     }
     ControlFlow::Continue(())
 }

@@ -1,42 +1,50 @@
 //! Which boxes of two nodes meet, sixteen pairs at once, at the widest level of the processor.
 
 use core::ops::ControlFlow;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 #[cfg(target_arch = "x86_64")]
 use super::simd;
-use super::{Leaves, Stack, TILE, Tiles, Visit, descend};
-use crate::bvh::{Bvh, Node, TRIANGLE, WIDTH};
+use super::{Lanes, Portable, Tiles, descend};
+use crate::bvh::{Boxes, Bvh};
 
-/// Offsets of the second mesh that a comparison of boxes allows for, rounded outward: from one
-/// corner of a box to the other, along each axis.
+/// Where the second mesh is, as a comparison of boxes in f32 sees it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reach {
-    pub(super) low: [f32; 3],
-    pub(super) high: [f32; 3],
+pub(in crate::collide) struct Reach {
+    pub(in crate::collide) offset: [f32; 3],
+    /// More than all roundings in a comparison of boxes, m.
+    pub(in crate::collide) margin: f32,
 }
 
 impl Reach {
-    /// Allows for the one `offset`.
+    /// For the second displaced by `offset`, unless f32 does not reach so far.
     ///
-    /// A box's corner moved in f32 errs by the rounding of the offset and of the sum, at most
-    /// `2^-24 |offset|` and `2^-24 (|corner| + |offset|)`, or half the least float. Moved that
-    /// far outward and more, the box holds every placed vertex of it. Beyond the range of f32 every
-    /// pair is let through, for the exact tests to decide.
-    pub(crate) fn new(second: &Bvh, offset: DVec3) -> Reach {
-        let bounds = second.bounds();
-        let widest = bounds.min.abs().max(bounds.max.abs()).as_dvec3() + offset.abs();
-        let margin =
-            widest * f64::from(f32::EPSILON) + f64::from(f32::MIN_POSITIVE * f32::EPSILON) * 4.0;
-        let (low, high) = if widest.max_element() < 1e37 {
-            ((offset - margin).as_vec3(), (offset + margin).as_vec3())
-        } else {
-            (Vec3::NEG_INFINITY, Vec3::INFINITY)
-        };
-        Reach {
-            low: low.to_array(),
-            high: high.to_array(),
-        }
+    /// With `S` the sum of the magnitudes of both boxes and of the offset along an axis and
+    /// `u = 2^-24`, a comparison `|c - (c' + r)| <= h + h'` sees roundings of `r`, of the sum
+    /// `c' + r`, the difference, the sum `h + h'` and the subtraction, together below `7 u S`, and
+    /// of centres, half extents and placed vertices in f64, far below `u S`.
+    pub(in crate::collide) fn new(first: &Bvh, second: &Bvh, offset: DVec3) -> Option<Reach> {
+        let size = |bvh: &Bvh| bvh.bounds().min.abs().max(bvh.bounds().max.abs()).as_dvec3();
+        let size = size(first) + size(second) + offset.abs();
+        let largest = size.max_element();
+        (largest < 1e37).then(|| Reach {
+            offset: offset.as_vec3().to_array(),
+            margin: (largest * 8.0 * f64::from(f32::EPSILON)) as f32 + 16.0 * f32::MIN_POSITIVE,
+        })
+    }
+}
+
+impl Reach {
+    /// What f32 misses placed vertices by at most, m: `2 u S`.
+    #[inline(always)]
+    pub(in crate::collide) fn miss(&self) -> f32 {
+        self.margin * 0.25
+    }
+
+    /// What placing changes a difference of two vertices by at most, m: `2^-52 S`.
+    #[inline(always)]
+    pub(in crate::collide) fn shift(&self) -> f32 {
+        self.margin * (1.0 / (1 << 28) as f32)
     }
 }
 
@@ -47,7 +55,7 @@ pub enum Level {
     Portable,
     /// 256-bit vectors of x86-64.
     Avx2,
-    /// 512-bit vectors of x86-64: a tile is one comparison for each side of the box.
+    /// 512-bit vectors of x86-64: all of a tile in one.
     Avx512,
 }
 
@@ -81,10 +89,17 @@ impl Level {
     }
 }
 
-/// Visits the pairs of triangles whose boxes meet somewhere in `reach`, nearest first as far as
-/// depth-first goes, until told to stop. A level that is not available is `Portable`.
+/// What a question does with pairs of triangles whose boxes meet.
+pub(in crate::collide) trait Visit {
+    /// Takes pairs of triangles of two leaves, a bit each. To be compiled for the instructions of
+    /// each level, it must be inlined.
+    fn visit<L: Lanes>(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()>;
+}
+
+/// Visits the pairs of triangles whose boxes meet, nearest first as far as depth-first goes,
+/// until told to stop. A level that is not available is `Portable`.
 #[inline]
-pub(crate) fn each_pair(
+pub(in crate::collide) fn each_pair(
     level: Level,
     first: &Bvh,
     second: &Bvh,
@@ -103,56 +118,48 @@ pub(crate) fn each_pair(
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = level;
-    descend(first, second, &mut Boxes { reach, visit })
+    each_pair_in::<Portable>(first, second, reach, visit)
 }
 
-struct Boxes<V> {
+/// [`each_pair`] in lanes of a level.
+#[inline(always)]
+pub(super) fn each_pair_in<L: Lanes>(
+    first: &Bvh,
+    second: &Bvh,
     reach: Reach,
+    visit: impl Visit,
+) -> ControlFlow<()> {
+    let mut overlaps = Overlaps {
+        offset: reach.offset.map(L::splat),
+        margin: L::splat(reach.margin),
+        visit,
+    };
+    descend(first, second, &mut overlaps)
+}
+
+struct Overlaps<L, V> {
+    offset: [L; 3],
+    margin: L,
     visit: V,
 }
 
-impl<V: Visit> Tiles for Boxes<V> {
+impl<L: Lanes, V: Visit> Tiles for Overlaps<L, V> {
+    type Lanes = L;
+
     #[inline(always)]
-    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
-        let mut apart = [[0u32; WIDTH]; WIDTH];
-        let mut distance = [[0.0f32; WIDTH]; WIDTH];
-        for axis in 0..3 {
-            let min = second.min[axis].map(|x| x + self.reach.low[axis]);
-            let max = second.max[axis].map(|x| x + self.reach.high[axis]);
-            for i in 0..WIDTH {
-                let (a_min, a_max) = (first.min[axis][i], first.max[axis][i]);
-                for j in 0..WIDTH {
-                    let meet = u32::from(a_min <= max[j]) & u32::from(min[j] <= a_max);
-                    apart[i][j] |= meet ^ 1;
-                    let d = (a_min + a_max) - (min[j] + max[j]);
-                    distance[i][j] += d * d;
-                }
-            }
-        }
-        let (mut nearest, mut least, mut count) = (0, f32::INFINITY, 0);
-        for pair in 0..TILE {
-            let (i, j) = (pair / WIDTH, pair % WIDTH);
-            if apart[i][j] != 0 {
-                continue;
-            }
-            let (a, b) = (first.child[i], second.child[j]);
-            if a & b & TRIANGLE != 0 {
-                leaves.push(a & !TRIANGLE, b & !TRIANGLE);
-            } else {
-                stack.push(a, b);
-                if distance[i][j] < least {
-                    (nearest, least) = (count, distance[i][j]);
-                }
-                count += 1;
-            }
-        }
-        if count > 1 {
-            stack.raise(count - 1 - nearest);
-        }
+    fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, L) {
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let centre = L::columns(&second.centre[axis]).add(self.offset[axis]);
+            let between = L::rows(&first.centre[axis]).sub(centre).abs();
+            let half = L::rows(&first.half[axis]).add(L::columns(&second.half[axis]));
+            between.sub(half)
+        });
+        let separation = x.max(y).max(z);
+        (separation.at_most(self.margin), separation)
     }
 
     #[inline(always)]
-    fn triangles(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()> {
-        self.visit.visit(pairs)
+    fn triangles(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()> {
+        self.visit.visit::<L>(first, second, pairs)
     }
 }
