@@ -105,6 +105,9 @@ struct Search<'a> {
 /// differences, two multiplications, and the sums, doubled for the rounding of the bound itself.
 const TRIPLE_ERROR: f64 = 16.0 * f64::EPSILON;
 
+/// Times that differ by more are no tie, whatever the error of either.
+const LONGEST_TIE: f64 = 1e-9;
+
 impl Tiles for Search<'_> {
     type Lanes = Portable;
 
@@ -278,8 +281,9 @@ impl Search<'_> {
 
     fn best(mut self) -> Option<Touch> {
         let earliest = self.earliest;
+        // A time that is known badly (motion almost along the feature) does not tie with all others.
         self.found
-            .retain(|(touch, error)| touch.time - error <= earliest);
+            .retain(|(touch, error)| touch.time - error.min(LONGEST_TIE) <= earliest);
         let rank = |touch: &Touch| {
             let edges = matches!(touch.feature, Feature::EdgeEdge { .. });
             (edges, touch.normal.dot(self.direction), touch.feature)
