@@ -6,7 +6,7 @@ use alloc::{vec, vec::Vec};
 use core::ops::Range;
 use glam::Vec3A;
 
-use super::{Bvh, LEAF, Leaf, MAX_DEPTH, Node, Origin, WIDTH};
+use super::{Bvh, LEAF, MAX_DEPTH, Node, Origin, Triangles, WIDTH};
 use crate::{Aabb, Mesh};
 
 /// Candidate split planes per axis, less one, for long runs and for short ones, where sweeping the
@@ -90,8 +90,8 @@ impl Run {
 pub(super) fn build(mesh: &Mesh) -> Bvh {
     let count = mesh.triangles().len();
     let mut items = Items::of(mesh);
-    let mut nodes = Vec::with_capacity(count / 6 + 1);
-    let mut leaves = Vec::with_capacity(count / 2 + 1);
+    let mut nodes: Vec<Node> = Vec::with_capacity(count * 5 / 8 + 1);
+    let mut triangles = Vec::with_capacity(count / 2 + 1);
     let mut depth = 0;
     let all = Run {
         items: 0..count,
@@ -101,33 +101,35 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
     let mut pending = vec![(all, 0, None)];
     while let Some((run, level, place)) = pending.pop() {
         depth = depth.max(level + 1);
-        let bounds = run.bounds.narrow();
-        let code = if run.len() <= WIDTH {
-            leaves.push(items.leaf(mesh, run.items));
-            (leaves.len() - 1) as u32 | LEAF
-        } else {
-            let node = nodes.len();
-            nodes.push(Node::EMPTY);
-            let (children, count) = items.divide(run, level);
-            nodes[node].count = count as u32;
-            for (lane, child) in children.into_iter().enumerate().take(count).rev() {
-                pending.push((child, level + 1, Some((node, lane))));
-            }
-            node as u32
-        };
+        let index = nodes.len();
+        let is_leaf = run.len() <= WIDTH;
+        let code = index as u32 | if is_leaf { LEAF } else { 0 };
         if let Some((node, lane)) = place {
             let parent: &mut Node = &mut nodes[node];
-            parent.boxes.set(lane, bounds);
+            parent.boxes.set(lane, run.bounds.narrow());
             parent.child[lane] = code;
+        }
+        if is_leaf {
+            nodes.push(items.leaf(run.items.clone(), code, triangles.len() as u32));
+            triangles.push(items.triangles(mesh, run.items));
+        } else {
+            let (children, count) = items.divide(run, level);
+            nodes.push(Node {
+                count: count as u32,
+                ..Node::EMPTY
+            });
+            for (lane, child) in children.into_iter().enumerate().take(count).rev() {
+                pending.push((child, level + 1, Some((index, lane))));
+            }
         }
     }
     debug_assert!(depth <= MAX_DEPTH);
     Bvh {
         bounds: mesh.bounds(),
-        root: if nodes.is_empty() { LEAF } else { 0 },
-        triangles: count,
+        root: if count <= WIDTH { LEAF } else { 0 },
+        count,
         nodes,
-        leaves,
+        triangles,
         origin: origins(mesh),
         depth,
     }
@@ -155,12 +157,25 @@ impl Items {
         bounds.fold(Bounds::EMPTY, |all, &item| all.union(item))
     }
 
-    fn leaf(&self, mesh: &Mesh, run: Range<usize>) -> Leaf {
-        let mut leaf = Leaf::EMPTY;
-        for (lane, &face) in self.face[run].iter().enumerate() {
-            leaf.set(lane, face, mesh.corners(face as usize));
+    fn leaf(&self, run: Range<usize>, code: u32, triangles: u32) -> Node {
+        let mut leaf = Node {
+            child: [code; WIDTH],
+            count: run.len() as u32,
+            triangles,
+            ..Node::EMPTY
+        };
+        for (lane, bounds) in self.bounds[run].iter().enumerate() {
+            leaf.boxes.set(lane, bounds.narrow());
         }
         leaf
+    }
+
+    fn triangles(&self, mesh: &Mesh, run: Range<usize>) -> Triangles {
+        let mut triangles = Triangles::NONE;
+        for (lane, &face) in self.face[run].iter().enumerate() {
+            triangles.set(lane, face, mesh.corners(face as usize));
+        }
+        triangles
     }
 
     /// Cuts a run of more than four into two to four runs, none of them empty, reordering items.

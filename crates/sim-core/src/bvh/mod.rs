@@ -5,10 +5,9 @@ mod node;
 mod ray;
 
 use alloc::vec::Vec;
-use glam::Vec3;
 
 use crate::{Aabb, Mesh, mesh::Owned};
-pub(crate) use node::{Boxes, LEAF, Leaf, MAX_DEPTH, NOTHING, Node, WIDTH};
+pub(crate) use node::{Boxes, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
 pub use ray::RayHit;
 
 /// A tree of boxes, four below each, flat in memory; each leaf has up to four triangles.
@@ -17,12 +16,13 @@ pub use ray::RayHit;
 #[derive(Clone, Debug)]
 pub struct Bvh {
     bounds: Aabb,
-    /// Code of the root: the first node, or the only leaf.
+    /// Code of the root, the first node.
     root: u32,
-    triangles: usize,
-    /// Parents before their children.
+    count: usize,
+    /// Nodes and leaves, parents before their children.
     nodes: Vec<Node>,
-    leaves: Vec<Leaf>,
+    /// Of each leaf.
+    triangles: Vec<Triangles>,
     /// By triangle of the mesh.
     origin: Vec<Origin>,
     depth: usize,
@@ -44,7 +44,7 @@ impl Bvh {
 
     /// How many nodes there are, leaves among them.
     pub fn node_count(&self) -> usize {
-        self.nodes.len() + self.leaves.len()
+        self.nodes.len()
     }
 
     /// Levels of nodes and leaves.
@@ -57,11 +57,12 @@ impl Bvh {
     pub fn surface_area_cost(&self) -> f64 {
         let root = self.bounds.half_area();
         if root == 0.0 {
-            return self.triangles as f64;
+            return self.count as f64;
         }
-        let triangles = self.leaves.iter().flat_map(|leaf| {
-            let areas = leaf.faces();
-            areas.map(|(lane, _)| Aabb::around(leaf.corners(lane)).half_area())
+        let leaves = self.nodes.iter().filter(|node| node.child[0] & LEAF != 0 && node.count > 0);
+        let _ = leaves;
+        let triangles = self.triangles.iter().flat_map(|leaf| {
+            (0..WIDTH).map(|lane| Aabb::around(leaf.corners(lane)).half_area())
         });
         let nodes = self.boxes().map(|(_, bounds)| bounds.half_area());
         nodes.chain(triangles).sum::<f64>() / root
@@ -70,9 +71,9 @@ impl Bvh {
     /// Memory per triangle, bytes.
     pub fn bytes_per_triangle(&self) -> f64 {
         let bytes = size_of_val(&self.nodes[..])
-            + size_of_val(&self.leaves[..])
+            + size_of_val(&self.triangles[..])
             + size_of_val(&self.origin[..]);
-        bytes as f64 / self.triangles as f64
+        bytes as f64 / self.count as f64
     }
 
     /// The least box around the mesh.
@@ -87,10 +88,8 @@ impl Bvh {
             let (level, code, bounds) = pending.pop()?;
             if code & LEAF == 0 {
                 let node = self.node(code);
-                let children = node.children();
-                pending.extend(
-                    children.map(|(lane, child)| (level + 1, child, node.boxes.bounds(lane))),
-                );
+                let child = |lane| (level + 1, node.child[lane], node.boxes.bounds(lane));
+                pending.extend(node.lanes().map(child));
             }
             Some((level, bounds))
         })
@@ -106,26 +105,16 @@ impl Bvh {
         self.root
     }
 
-    /// The node of a code without [`LEAF`].
+    /// The node or leaf of a code.
     #[inline(always)]
     pub(crate) fn node(&self, code: u32) -> &Node {
-        &self.nodes[code as usize]
+        &self.nodes[(code & !LEAF) as usize]
     }
 
-    /// The leaf of a code with [`LEAF`].
+    /// The triangles of a leaf.
     #[inline(always)]
-    pub(crate) fn leaf(&self, code: u32) -> &Leaf {
-        &self.leaves[(code & !LEAF) as usize]
-    }
-
-    /// The boxes in a node or leaf.
-    #[inline(always)]
-    pub(crate) fn boxes_in(&self, code: u32) -> &Boxes {
-        if code & LEAF == 0 {
-            &self.node(code).boxes
-        } else {
-            &self.leaf(code).boxes
-        }
+    pub(crate) fn triangles(&self, leaf: &Node) -> &Triangles {
+        &self.triangles[leaf.triangles as usize]
     }
 
     /// Where a triangle is in its mesh.
@@ -139,6 +128,7 @@ mod tests {
     use super::*;
     use crate::test_meshes::{cube, sphere};
     use alloc::vec;
+    use glam::Vec3;
 
     /// Every triangle in one leaf, every box around what is below it, no level too deep.
     fn check(mesh: &Mesh) -> Bvh {
@@ -149,37 +139,21 @@ mod tests {
         while let Some((code, level, bounds)) = pending.pop() {
             reached += 1;
             assert!(level <= bvh.depth() && bvh.depth() <= MAX_DEPTH);
-            let boxes = bvh.boxes_in(code);
-            let mut used = 0;
-            if code & LEAF == 0 {
-                let node = bvh.node(code);
-                assert!(node.count >= 2);
-                for (lane, child) in node.children() {
-                    pending.push((child, level + 1, boxes.bounds(lane)));
-                    used += 1;
+            let node = bvh.node(code);
+            for lane in node.lanes() {
+                let inner = node.boxes.bounds(lane);
+                if code & LEAF == 0 {
+                    assert!(node.count >= 2);
+                    pending.push((node.child[lane], level + 1, inner));
+                    continue;
                 }
-            } else {
-                let leaf = bvh.leaf(code);
-                for (lane, face) in leaf.faces() {
-                    seen[face as usize] += 1;
-                    let corners = leaf.corners(lane);
-                    assert_eq!(corners, mesh.corners(face as usize));
-                    assert!(holds(boxes.bounds(lane), Aabb::around(corners)));
-                    assert!(holds(bounds, Aabb::around(corners)));
-                    used += 1;
-                }
+                let (face, corners) = (bvh.triangles(node).face[lane], bvh.triangles(node).corners(lane));
+                seen[face as usize] += 1;
+                assert_eq!(corners, mesh.corners(face as usize));
+                assert!(holds(inner, Aabb::around(corners)) && holds(bounds, Aabb::around(corners)));
             }
-            for lane in 0..used {
-                // The mesh's box is exact, others are rounded outward, each from the triangles.
-                let slack = 4.0 * f32::EPSILON * boxes.bounds(lane).half_extent().as_vec3();
-                let wider = Aabb {
-                    min: bounds.min - slack - bounds.min.abs() * 4.0 * f32::EPSILON,
-                    max: bounds.max + slack + bounds.max.abs() * 4.0 * f32::EPSILON,
-                };
-                let _ = wider;
-                assert!(boxes.half[0][lane] >= 0.0);
-            }
-            assert!((used..WIDTH).all(|lane| boxes.half[0][lane] == f32::NEG_INFINITY));
+            let unused = node.count as usize..WIDTH;
+            assert!(unused.into_iter().all(|lane| node.boxes.half[0][lane] == f32::NEG_INFINITY));
         }
         assert!(seen.iter().all(|&n| n == 1));
         assert_eq!(reached, bvh.node_count());

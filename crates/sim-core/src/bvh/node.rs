@@ -13,9 +13,6 @@ pub(crate) const MAX_DEPTH: usize = 32;
 /// Set in a code for a leaf. Meshes have fewer than 2^31 triangles.
 pub(crate) const LEAF: u32 = 1 << 31;
 
-/// In `Leaf::face` for a lane that holds nothing.
-pub(crate) const NOTHING: u32 = u32::MAX;
-
 /// Four boxes by axis, so that one instruction takes all four, as centres and half extents
 /// rounded outward: boxes moved and turned stay sums of these, and overlap is one comparison an
 /// axis, `|c - c'| <= h + h'`.
@@ -77,22 +74,25 @@ fn half_extent(min: f32, max: f32, centre: f32) -> f32 {
     }
 }
 
-/// Four children, each a node or a leaf.
+/// Four boxes and what is in them: of a node its children, of a leaf its triangles.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
     pub(crate) boxes: Boxes,
-    /// An index of nodes, or with [`LEAF`] of leaves.
+    /// Of a node the codes of its children: indices of nodes, with [`LEAF`] for a leaf. A leaf has
+    /// its own code in every lane, as it stays itself where only the other tree goes down.
     pub(crate) child: [u32; WIDTH],
+    /// Lanes in use.
     pub(crate) count: u32,
+    /// Of a leaf, the place of its triangles.
+    pub(crate) triangles: u32,
 }
 
-/// Up to four triangles with a box each.
+/// Up to four triangles, side by side.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(crate) struct Leaf {
-    pub(crate) boxes: Boxes,
-    /// Corners by coordinate: x, y, z of the first, of the second, of the third; finite in lanes
+#[repr(C, align(32))]
+pub(crate) struct Triangles {
+    /// Corners by coordinate: x, y, z of the first, of the second, of the third; zero in lanes
     /// that hold nothing.
     pub(crate) corners: [[f32; WIDTH]; 9],
     /// Indices of the mesh's triangles.
@@ -102,24 +102,23 @@ pub(crate) struct Leaf {
 impl Node {
     pub(crate) const EMPTY: Node = Node {
         boxes: Boxes::EMPTY,
-        child: [NOTHING; WIDTH],
+        child: [0; WIDTH],
         count: 0,
+        triangles: 0,
     };
 
-    pub(crate) fn children(&self) -> impl Iterator<Item = (usize, u32)> {
-        (0..self.count as usize).map(|lane| (lane, self.child[lane]))
+    pub(crate) fn lanes(&self) -> core::ops::Range<usize> {
+        0..self.count as usize
     }
 }
 
-impl Leaf {
-    pub(crate) const EMPTY: Leaf = Leaf {
-        boxes: Boxes::EMPTY,
+impl Triangles {
+    pub(crate) const NONE: Triangles = Triangles {
         corners: [[0.0; WIDTH]; 9],
-        face: [NOTHING; WIDTH],
+        face: [0; WIDTH],
     };
 
     pub(crate) fn set(&mut self, lane: usize, face: u32, corners: [Vec3; 3]) {
-        self.boxes.set(lane, Aabb::around(corners));
         for (k, column) in self.corners.iter_mut().enumerate() {
             column[lane] = corners[k / 3][k % 3];
         }
@@ -130,11 +129,5 @@ impl Leaf {
     #[inline]
     pub(crate) fn corners(&self, lane: usize) -> [Vec3; 3] {
         [0, 3, 6].map(|k| Vec3::from_array([0, 1, 2].map(|axis| self.corners[k + axis][lane])))
-    }
-
-    /// Lanes that hold a triangle, and its place in the mesh.
-    pub(crate) fn faces(&self) -> impl Iterator<Item = (usize, u32)> {
-        let faces = self.face.into_iter().enumerate();
-        faces.take_while(|&(_, face)| face != NOTHING)
     }
 }

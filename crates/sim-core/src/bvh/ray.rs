@@ -29,19 +29,19 @@ impl Bvh {
             top -= 1;
             let code = stack[top];
             let nearest = best.map_or(f64::INFINITY, |b| b.t);
+            let node = self.node(code);
             if code & LEAF == 0 {
-                let node = self.node(code);
-                for (lane, child) in node.children() {
+                for lane in node.lanes() {
                     if slab(&node.boxes.bounds(lane), origin, direction, nearest) {
-                        stack[top] = child;
+                        stack[top] = node.child[lane];
                         top += 1;
                     }
                 }
                 continue;
             }
-            let leaf = self.leaf(code);
-            for (lane, face) in leaf.faces() {
-                let corners = leaf.corners(lane);
+            let triangles = self.triangles(node);
+            for lane in node.lanes() {
+                let (face, corners) = (triangles.face[lane], triangles.corners(lane));
                 let corners = corners.map(|v| shear.apply(v.as_dvec3() - origin));
                 let hit = meet(corners).map(|z| z * shear.per_t);
                 let nearest = best.map_or(f64::INFINITY, |b| b.t);

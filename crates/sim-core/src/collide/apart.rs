@@ -13,8 +13,8 @@
 //! and products below the range of f32 vanish, whence a small constant. As boxes meet, no
 //! component of `w` exceeds twice the sum of the half extents and the margin of their comparison.
 
-use super::pairs::{Lanes, Reach};
-use crate::bvh::{Leaf, WIDTH};
+use super::pairs::{Lanes, Reach, splat};
+use crate::bvh::{Node, Triangles, WIDTH};
 
 /// Columns of four triangles.
 type Four = [f32; WIDTH];
@@ -35,8 +35,8 @@ const VANISHING: f32 = 16.0 * f32::MIN_POSITIVE;
 impl Planes {
     /// For sides moved by at most `shift`, and points that f32 misses by at most `miss`.
     #[inline(always)]
-    fn of(leaf: &Leaf, shift: f32, miss: f32) -> Planes {
-        let corners = &leaf.corners;
+    fn of(triangles: &Triangles, shift: f32, miss: f32) -> Planes {
+        let corners = &triangles.corners;
         let mut planes = Planes {
             normal: [[0.0; WIDTH]; 3],
             slope: [[0.0; WIDTH]; 3],
@@ -61,46 +61,74 @@ impl Planes {
 
 /// A bit for each of the `pairs` that may meet: of two leaves whose boxes are known to meet there.
 #[inline(always)]
-pub(super) fn maybe_meet<L: Lanes>(first: &Leaf, second: &Leaf, pairs: u32, reach: &Reach) -> u32 {
-    let offset = reach.offset.map(L::splat);
-    let widest: [L; 3] = core::array::from_fn(|axis| {
-        let half = L::rows(&first.boxes.half[axis]).add(L::columns(&second.boxes.half[axis]));
-        half.add(half).add(L::splat(reach.margin))
-    });
-    let corner = |k: usize| -> [L; 3] {
-        core::array::from_fn(|axis| L::rows(&first.corners[3 * k + axis]))
-    };
-    let placed = |k: usize| -> [L; 3] {
-        core::array::from_fn(|axis| L::columns(&second.corners[3 * k + axis]).add(offset[axis]))
-    };
-    let (a, b) = ([0, 1, 2].map(corner), [0, 1, 2].map(placed));
+pub(super) fn maybe_meet<L: Lanes>(
+    (first_boxes, first): (&Node, &Triangles),
+    (second_boxes, second): (&Node, &Triangles),
+    pairs: u32,
+    reach: &Reach,
+) -> u32 {
+    let offset = splat(reach.offset);
+    let margin = L::splat(reach.margin);
+    let (f, s) = (&first_boxes.boxes.half, &second_boxes.boxes.half);
+    let widest = [wide(f, s, margin, 0), wide(f, s, margin, 1), wide(f, s, margin, 2)];
+    let (u, v) = (&first.corners, &second.corners);
+    let a = [rows(u, 0), rows(u, 3), rows(u, 6)];
+    let b = [placed(v, 0, &offset), placed(v, 3, &offset), placed(v, 6, &offset)];
 
     let planes = Planes::of(first, 0.0, reach.miss());
-    let (normal, slope) = (planes.normal.each_ref(), planes.slope.each_ref());
-    let one = one_side(normal.map(L::rows), slope.map(L::rows), L::rows(&planes.rest), &widest, a[0], b);
+    let normal = [L::rows(&planes.normal[0]), L::rows(&planes.normal[1]), L::rows(&planes.normal[2])];
+    let slope = [L::rows(&planes.slope[0]), L::rows(&planes.slope[1]), L::rows(&planes.slope[2])];
+    let error = dot(&slope, &widest, L::rows(&planes.rest));
+    let one = one_side(&normal, error, &a[0], &b);
+
     let planes = Planes::of(second, reach.shift(), reach.miss());
-    let (normal, slope) = (planes.normal.each_ref(), planes.slope.each_ref());
-    let columns = L::columns(&planes.rest);
-    let other = one_side(normal.map(L::columns), slope.map(L::columns), columns, &widest, b[0], a);
+    let normal = [L::columns(&planes.normal[0]), L::columns(&planes.normal[1]), L::columns(&planes.normal[2])];
+    let slope = [L::columns(&planes.slope[0]), L::columns(&planes.slope[1]), L::columns(&planes.slope[2])];
+    let error = dot(&slope, &widest, L::columns(&planes.rest));
+    let other = one_side(&normal, error, &b[0], &a);
     pairs & !(one | other)
+}
+
+/// Bounds what lies between two points of two boxes that meet, along an axis.
+#[inline(always)]
+fn wide<L: Lanes>(first: &[Four; 3], second: &[Four; 3], margin: L, axis: usize) -> L {
+    let half = L::rows(&first[axis]).add(L::columns(&second[axis]));
+    half.add(half).add(margin)
+}
+
+/// A corner of each of the first's triangles.
+#[inline(always)]
+fn rows<L: Lanes>(corners: &[Four; 9], k: usize) -> [L; 3] {
+    [L::rows(&corners[k]), L::rows(&corners[k + 1]), L::rows(&corners[k + 2])]
+}
+
+/// A corner of each of the second's triangles, placed but for rounding.
+#[inline(always)]
+fn placed<L: Lanes>(corners: &[Four; 9], k: usize, offset: &[L; 3]) -> [L; 3] {
+    [
+        L::columns(&corners[k]).add(offset[0]),
+        L::columns(&corners[k + 1]).add(offset[1]),
+        L::columns(&corners[k + 2]).add(offset[2]),
+    ]
+}
+
+#[inline(always)]
+fn dot<L: Lanes>(x: &[L; 3], y: &[L; 3], rest: L) -> L {
+    x[0].mul_add(y[0], x[1].mul_add(y[1], x[2].mul_add(y[2], rest)))
+}
+
+#[inline(always)]
+fn height<L: Lanes>(normal: &[L; 3], corner: &[L; 3], p: &[L; 3]) -> L {
+    let (x, y, z) = (p[0].sub(corner[0]), p[1].sub(corner[1]), p[2].sub(corner[2]));
+    normal[0].mul_add(x, normal[1].mul_add(y, normal[2].mul(z)))
 }
 
 /// Lanes in which three points lie on one side of a plane for certain.
 #[inline(always)]
-fn one_side<L: Lanes>(
-    normal: [L; 3],
-    slope: [L; 3],
-    rest: L,
-    widest: &[L; 3],
-    corner: [L; 3],
-    points: [[L; 3]; 3],
-) -> u32 {
-    let dot = |x: &[L; 3], y: &[L; 3], rest: L| x[0].mul_add(y[0], x[1].mul_add(y[1], x[2].mul_add(y[2], rest)));
-    let error = dot(&slope, widest, rest);
-    let [p, q, r] = points.map(|point| {
-        let w: [L; 3] = core::array::from_fn(|axis| point[axis].sub(corner[axis]));
-        normal[0].mul_add(w[0], normal[1].mul_add(w[1], normal[2].mul(w[2])))
-    });
+fn one_side<L: Lanes>(normal: &[L; 3], error: L, corner: &[L; 3], points: &[[L; 3]; 3]) -> u32 {
+    let p = height(normal, corner, &points[0]);
+    let q = height(normal, corner, &points[1]);
+    let r = height(normal, corner, &points[2]);
     let (low, high) = (p.min(q).min(r), p.max(q).max(r));
     low.above(error) | L::splat(0.0).sub(high).above(error)
 }

@@ -125,7 +125,8 @@ impl Tiles for Search<'_> {
     }
 
     fn triangles(&mut self, first: u32, second: u32, mut pairs: u32) -> ControlFlow<()> {
-        let (first, second) = (self.first.leaf(first), self.second.leaf(second));
+        let (first, second) = (self.first.node(first), self.second.node(second));
+        let (first, second) = (self.first.triangles(first), self.second.triangles(second));
         while pairs != 0 {
             let pair = pairs.trailing_zeros() as usize;
             pairs &= pairs - 1;

@@ -12,7 +12,7 @@ use super::{
     predicates::{segment_meets_triangle, triangles_meet},
     snap,
 };
-use crate::bvh::{Bvh, Leaf, WIDTH};
+use crate::bvh::{Bvh, Triangles, WIDTH};
 
 /// Whether the surfaces of two meshes meet, the second displaced by `offset` (m). Stops at the
 /// first hit and allocates nothing.
@@ -47,8 +47,9 @@ struct AnyHit<'a> {
 impl Visit for &mut AnyHit<'_> {
     #[inline(always)]
     fn visit<L: Lanes>(&mut self, a: u32, b: u32, pairs: u32) -> ControlFlow<()> {
-        let (s, t) = (self.first.leaf(a), self.second.leaf(b));
-        let mut pairs = maybe_meet::<L>(s, t, pairs, &self.reach);
+        let (a, b) = (self.first.node(a), self.second.node(b));
+        let (s, t) = (self.first.triangles(a), self.second.triangles(b));
+        let mut pairs = maybe_meet::<L>((a, s), (b, t), pairs, &self.reach);
         while pairs != 0 {
             let pair = pairs.trailing_zeros() as usize;
             if self.meet(s, t, pair) {
@@ -62,7 +63,7 @@ impl Visit for &mut AnyHit<'_> {
 
 impl AnyHit<'_> {
     #[inline(never)]
-    fn meet(&self, s: &Leaf, t: &Leaf, pair: usize) -> bool {
+    fn meet(&self, s: &Triangles, t: &Triangles, pair: usize) -> bool {
         let s = s.corners(pair / WIDTH).map(|v| v.as_dvec3());
         let t = t.corners(pair % WIDTH).map(|v| place(v, self.offset));
         triangles_meet(s, t)
@@ -102,7 +103,8 @@ struct AllHits<'a> {
 
 impl Visit for &mut AllHits<'_> {
     fn visit<L: Lanes>(&mut self, a: u32, b: u32, mut pairs: u32) -> ControlFlow<()> {
-        let (s, t) = (self.first.leaf(a), self.second.leaf(b));
+        let (a, b) = (self.first.node(a), self.second.node(b));
+        let (s, t) = (self.first.triangles(a), self.second.triangles(b));
         while pairs != 0 {
             let pair = pairs.trailing_zeros() as usize;
             pairs &= pairs - 1;

@@ -16,7 +16,7 @@ use core::ops::ControlFlow;
 use crate::bvh::{Boxes, Bvh, LEAF, WIDTH};
 pub(super) use lanes::{Lanes, Portable};
 pub use overlap::Level;
-pub(super) use overlap::{Reach, Visit, each_pair};
+pub(super) use overlap::{Reach, Visit, each_pair, splat};
 pub(super) use stack::Stack;
 
 /// Pairs in a tile.
@@ -33,39 +33,62 @@ pub(super) trait Tiles {
     fn triangles(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()>;
 }
 
+/// How many tiles are looked at one after the other, always the nearest pair next. Where meshes
+/// meet deeply, a hit is found by then as a rule.
+const GREEDY: usize = 24;
+/// How many tiles are looked at side by side after that, in no order, as then the hope is gone and
+/// throughput counts.
+const ABREAST: usize = 4;
+
 /// Visits the pairs of triangles that `tiles` leaves, until told to stop.
 #[inline(always)]
 pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> ControlFlow<()> {
     let mut stack = Stack::new();
     stack.push(first.root(), second.root());
-    while let Some((a, b)) = stack.pop() {
-        let (pairs, distance) = tiles.boxes(first.boxes_in(a), second.boxes_in(b));
-        if pairs == 0 {
-            continue;
-        }
-        match (a & LEAF == 0, b & LEAF == 0) {
-            (true, true) => {
-                let (rows, columns) = (&first.node(a).child, &second.node(b).child);
-                T::Lanes::push(&mut stack, pairs, rows, columns);
-                let nearest = distance.least(pairs);
-                stack.raise((pairs >> nearest).count_ones() as usize - 1);
-            }
-            (false, true) => {
-                let any = (pairs | pairs >> 4 | pairs >> 8 | pairs >> 12) & 0xf;
-                let rows = [a; WIDTH];
-                T::Lanes::push(&mut stack, any, &rows, &second.node(b).child);
-                let nearest = distance.least(pairs) % WIDTH as u32;
-                stack.raise((any >> nearest).count_ones() as usize - 1);
-            }
-            (true, false) => {
-                let any = pairs | pairs >> 1 | pairs >> 2 | pairs >> 3;
-                let any = any & 0x1111;
-                T::Lanes::push(&mut stack, any, &first.node(a).child, &[b; WIDTH]);
-                let nearest = distance.least(pairs) & !3;
-                stack.raise((any >> nearest).count_ones() as usize - 1);
-            }
-            (false, false) => tiles.triangles(a, b, pairs)?,
+    for _ in 0..GREEDY {
+        let Some((a, b)) = stack.pop() else {
+            return ControlFlow::Continue(());
+        };
+        let (pairs, distance) = tiles.boxes(&first.node(a).boxes, &second.node(b).boxes);
+        let bits = below(a, b, pairs);
+        if bits != 0 {
+            T::Lanes::push(&mut stack, bits, &first.node(a).child, &second.node(b).child);
+            let nearest = distance.least(bits);
+            stack.raise((bits >> nearest).count_ones() as usize - 1);
+        } else if pairs != 0 {
+            tiles.triangles(a, b, pairs)?;
         }
     }
-    ControlFlow::Continue(())
+    let mut leaves = [(0, 0, 0); ABREAST];
+    loop {
+        let mut waiting = 0;
+        let mut abreast = [(0, 0); ABREAST];
+        let count = stack.take(&mut abreast);
+        if count == 0 {
+            return ControlFlow::Continue(());
+        }
+        for &(a, b) in &abreast[..count] {
+            let (pairs, _) = tiles.boxes(&first.node(a).boxes, &second.node(b).boxes);
+            let bits = below(a, b, pairs);
+            T::Lanes::push(&mut stack, bits, &first.node(a).child, &second.node(b).child);
+            leaves[waiting] = (a, b, pairs);
+            waiting += usize::from((bits == 0) & (pairs != 0));
+        }
+        for &(a, b, pairs) in &leaves[..waiting] {
+            tiles.triangles(a, b, pairs)?;
+        }
+    }
+}
+
+/// The pairs to go on with: of two nodes all; where one is a leaf, it stays for the other's
+/// children, once for all its triangles; where both are leaves none.
+#[inline(always)]
+fn below(a: u32, b: u32, pairs: u32) -> u32 {
+    let columns = (pairs | pairs >> 4 | pairs >> 8 | pairs >> 12) & 0x000f;
+    let rows = (pairs | pairs >> 1 | pairs >> 2 | pairs >> 3) & 0x1111;
+    let of_first = if a & LEAF == 0 { u32::MAX } else { columns };
+    let of_second = if b & LEAF == 0 { u32::MAX } else { rows };
+    let both = if a & b & LEAF == 0 { u32::MAX } else { 0 };
+    let any = if (a | b) & LEAF == 0 { pairs } else { u32::MAX };
+    any & of_first & of_second & both
 }

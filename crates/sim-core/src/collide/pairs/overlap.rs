@@ -130,7 +130,7 @@ pub(super) fn each_pair_in<L: Lanes>(
     visit: impl Visit,
 ) -> ControlFlow<()> {
     let mut overlaps = Overlaps {
-        offset: reach.offset.map(L::splat),
+        offset: splat(reach.offset),
         margin: L::splat(reach.margin),
         visit,
     };
@@ -148,12 +148,9 @@ impl<L: Lanes, V: Visit> Tiles for Overlaps<L, V> {
 
     #[inline(always)]
     fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, L) {
-        let [x, y, z] = [0, 1, 2].map(|axis| {
-            let centre = L::columns(&second.centre[axis]).add(self.offset[axis]);
-            let between = L::rows(&first.centre[axis]).sub(centre).abs();
-            let half = L::rows(&first.half[axis]).add(L::columns(&second.half[axis]));
-            between.sub(half)
-        });
+        let x = self.separation(first, second, 0);
+        let y = self.separation(first, second, 1);
+        let z = self.separation(first, second, 2);
         let separation = x.max(y).max(z);
         (separation.at_most(self.margin), separation)
     }
@@ -162,4 +159,22 @@ impl<L: Lanes, V: Visit> Tiles for Overlaps<L, V> {
     fn triangles(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()> {
         self.visit.visit::<L>(first, second, pairs)
     }
+}
+
+impl<L: Lanes, V> Overlaps<L, V> {
+    /// How far apart boxes are along an axis.
+    #[inline(always)]
+    fn separation(&self, first: &Boxes, second: &Boxes, axis: usize) -> L {
+        let centre = L::columns(&second.centre[axis]).add(self.offset[axis]);
+        let between = L::rows(&first.centre[axis]).sub(centre).abs();
+        let half = L::rows(&first.half[axis]).add(L::columns(&second.half[axis]));
+        between.sub(half)
+    }
+}
+
+/// Written out, as are all loops over axes here: closures in the standard library's loops would
+/// not be compiled for the instructions of a level.
+#[inline(always)]
+pub(in crate::collide) fn splat<L: Lanes>([x, y, z]: [f32; 3]) -> [L; 3] {
+    [L::splat(x), L::splat(y), L::splat(z)]
 }

@@ -7,12 +7,13 @@
 
 use core::mem::MaybeUninit;
 
-use super::TILE;
+use super::{ABREAST, TILE};
 use crate::bvh::MAX_DEPTH;
 
-/// A pair of nodes or leaves that is looked at leaves fifteen beside the next one, on each of the
-/// levels of both trees; two pairs are looked at at once.
-const CAPACITY: usize = (TILE - 1) * 2 * MAX_DEPTH * 2 + 2 * TILE;
+/// Each pair lies lower in one tree or both than the pair that it comes from, and pairs lie in the
+/// order of their levels: those of one level all come from one round, sixteen from each pair of
+/// it. A tile's sixteen are written in one piece, however few count.
+const CAPACITY: usize = TILE * ABREAST * 2 * MAX_DEPTH + TILE;
 
 /// A stack of pairs, in two columns.
 ///
@@ -39,6 +40,19 @@ impl Stack {
         let (first, second) = (self.first[self.len], self.second[self.len]);
         // SAFETY: `len` was one more, so by the invariant both have been written.
         Some(unsafe { (first.assume_init(), second.assume_init()) })
+    }
+
+    /// Takes pairs from the top, the lowest first, and returns how many.
+    #[inline(always)]
+    pub(super) fn take(&mut self, pairs: &mut [(u32, u32); ABREAST]) -> usize {
+        let count = self.len.min(ABREAST);
+        self.len -= count;
+        for (i, pair) in pairs.iter_mut().enumerate().take(count) {
+            let place = self.len + i;
+            // SAFETY: it is below what `len` was, so by the invariant both have been written.
+            *pair = unsafe { (self.first[place].assume_init(), self.second[place].assume_init()) };
+        }
+        count
     }
 
     #[inline(always)]
