@@ -6,6 +6,7 @@ use alloc::{vec, vec::Vec};
 use core::ops::Range;
 use glam::Vec3A;
 
+use super::slabs::slabs;
 use super::{Bvh, LEAF, MAX_DEPTH, Node, Origin, Triangles, WIDTH};
 use crate::{Aabb, Mesh};
 
@@ -128,6 +129,7 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
         bounds: mesh.bounds(),
         root: if count <= WIDTH { LEAF } else { 0 },
         count,
+        slabs: slabs(&nodes, &triangles),
         nodes,
         triangles,
         origin: origins(mesh),
@@ -172,7 +174,9 @@ impl Items {
 
     fn triangles(&self, mesh: &Mesh, run: Range<usize>) -> Triangles {
         let mut triangles = Triangles::NONE;
-        for (lane, &face) in self.face[run].iter().enumerate() {
+        // Lanes that hold nothing repeat the last one, so that they widen nothing.
+        for lane in 0..WIDTH {
+            let face = self.face[(run.start + lane).min(run.end - 1)];
             triangles.set(lane, face, mesh.corners(face as usize));
         }
         triangles

@@ -3,12 +3,14 @@
 mod build;
 mod node;
 mod ray;
+mod slabs;
 
 use alloc::vec::Vec;
 
 use crate::{Aabb, Mesh, mesh::Owned};
 pub(crate) use node::{Boxes, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
 pub use ray::RayHit;
+pub(crate) use slabs::Slabs;
 
 /// A tree of boxes, four below each, flat in memory; each leaf has up to four triangles.
 ///
@@ -21,6 +23,8 @@ pub struct Bvh {
     count: usize,
     /// Nodes and leaves, parents before their children.
     nodes: Vec<Node>,
+    /// Beside each node.
+    slabs: Vec<Slabs>,
     /// Of each leaf.
     triangles: Vec<Triangles>,
     /// By triangle of the mesh.
@@ -59,8 +63,6 @@ impl Bvh {
         if root == 0.0 {
             return self.count as f64;
         }
-        let leaves = self.nodes.iter().filter(|node| node.child[0] & LEAF != 0 && node.count > 0);
-        let _ = leaves;
         let triangles = self.triangles.iter().flat_map(|leaf| {
             (0..WIDTH).map(|lane| Aabb::around(leaf.corners(lane)).half_area())
         });
@@ -71,6 +73,7 @@ impl Bvh {
     /// Memory per triangle, bytes.
     pub fn bytes_per_triangle(&self) -> f64 {
         let bytes = size_of_val(&self.nodes[..])
+            + size_of_val(&self.slabs[..])
             + size_of_val(&self.triangles[..])
             + size_of_val(&self.origin[..]);
         bytes as f64 / self.count as f64
@@ -109,6 +112,12 @@ impl Bvh {
     #[inline(always)]
     pub(crate) fn node(&self, code: u32) -> &Node {
         &self.nodes[(code & !LEAF) as usize]
+    }
+
+    /// The slabs beside the boxes of a node or leaf.
+    #[inline(always)]
+    pub(crate) fn slabs(&self, code: u32) -> &Slabs {
+        &self.slabs[(code & !LEAF) as usize]
     }
 
     /// The triangles of a leaf.

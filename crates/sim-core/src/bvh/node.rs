@@ -92,8 +92,7 @@ pub(crate) struct Node {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(crate) struct Triangles {
-    /// Corners by coordinate: x, y, z of the first, of the second, of the third; zero in lanes
-    /// that hold nothing.
+    /// Corners by coordinate: x, y, z of the first, of the second, of the third.
     pub(crate) corners: [[f32; WIDTH]; 9],
     /// Indices of the mesh's triangles.
     pub(crate) face: [u32; WIDTH],

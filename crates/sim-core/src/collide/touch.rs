@@ -31,7 +31,7 @@ use super::{
     pairs::{Portable, TILE, Tiles, descend},
     place, snap,
 };
-use crate::bvh::{Boxes, Bvh, WIDTH};
+use crate::bvh::{Boxes, Bvh, Slabs, WIDTH};
 
 /// What touches what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -122,6 +122,11 @@ impl Tiles for Search<'_> {
             }
         }
         (bits, Portable::new(times))
+    }
+
+    /// Slabs know nothing of motion.
+    fn slabs(&self, _: (&Boxes, &Slabs), _: (&Boxes, &Slabs), pairs: u32) -> u32 {
+        pairs
     }
 
     fn triangles(&mut self, first: u32, second: u32, mut pairs: u32) -> ControlFlow<()> {

@@ -13,7 +13,7 @@ mod stack;
 
 use core::ops::ControlFlow;
 
-use crate::bvh::{Boxes, Bvh, LEAF, WIDTH};
+use crate::bvh::{Boxes, Bvh, LEAF, Slabs, WIDTH};
 pub(super) use lanes::{Lanes, Portable};
 pub use overlap::Level;
 pub(super) use overlap::{Reach, Visit, each_pair, splat};
@@ -29,13 +29,16 @@ pub(super) trait Tiles {
     /// A bit for each pair of boxes that is worth a look, and how near each is.
     fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, Self::Lanes);
 
+    /// Those of some pairs that are worth it by their slabs too.
+    fn slabs(&self, first: (&Boxes, &Slabs), second: (&Boxes, &Slabs), pairs: u32) -> u32;
+
     /// Takes pairs of triangles of two leaves, a bit each.
     fn triangles(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()>;
 }
 
 /// How many tiles are looked at one after the other, always the nearest pair next. Where meshes
 /// meet deeply, a hit is found by then as a rule.
-const GREEDY: usize = 24;
+const GREEDY: usize = 12;
 /// How many tiles are looked at side by side after that, in no order, as then the hope is gone and
 /// throughput counts.
 const ABREAST: usize = 4;
@@ -49,28 +52,31 @@ pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> Con
         let Some((a, b)) = stack.pop() else {
             return ControlFlow::Continue(());
         };
-        let (pairs, distance) = tiles.boxes(&first.node(a).boxes, &second.node(b).boxes);
+        let (node, other) = (first.node(a), second.node(b));
+        let (pairs, distance) = tiles.boxes(&node.boxes, &other.boxes);
         let bits = below(a, b, pairs);
         if bits != 0 {
-            T::Lanes::push(&mut stack, bits, &first.node(a).child, &second.node(b).child);
+            T::Lanes::push(&mut stack, bits, &node.child, &other.child);
             let nearest = distance.least(bits);
             stack.raise((bits >> nearest).count_ones() as usize - 1);
         } else if pairs != 0 {
             tiles.triangles(a, b, pairs)?;
         }
     }
-    let mut leaves = [(0, 0, 0); ABREAST];
     loop {
-        let mut waiting = 0;
         let mut abreast = [(0, 0); ABREAST];
         let count = stack.take(&mut abreast);
         if count == 0 {
             return ControlFlow::Continue(());
         }
+        let (mut leaves, mut waiting) = ([(0, 0, 0); ABREAST], 0);
         for &(a, b) in &abreast[..count] {
-            let (pairs, _) = tiles.boxes(&first.node(a).boxes, &second.node(b).boxes);
+            let (node, other) = (first.node(a), second.node(b));
+            let (pairs, _) = tiles.boxes(&node.boxes, &other.boxes);
+            let slabs = (first.slabs(a), second.slabs(b));
+            let pairs = tiles.slabs((&node.boxes, slabs.0), (&other.boxes, slabs.1), pairs);
             let bits = below(a, b, pairs);
-            T::Lanes::push(&mut stack, bits, &first.node(a).child, &second.node(b).child);
+            T::Lanes::push(&mut stack, bits, &node.child, &other.child);
             leaves[waiting] = (a, b, pairs);
             waiting += usize::from((bits == 0) & (pairs != 0));
         }

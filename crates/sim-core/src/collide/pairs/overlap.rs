@@ -6,7 +6,7 @@ use glam::DVec3;
 #[cfg(target_arch = "x86_64")]
 use super::simd;
 use super::{Lanes, Portable, Tiles, descend};
-use crate::bvh::{Boxes, Bvh};
+use crate::bvh::{Boxes, Bvh, Slabs};
 
 /// Where the second mesh is, as a comparison of boxes in f32 sees it.
 #[derive(Clone, Copy, Debug)]
@@ -130,6 +130,7 @@ pub(super) fn each_pair_in<L: Lanes>(
     visit: impl Visit,
 ) -> ControlFlow<()> {
     let mut overlaps = Overlaps {
+        reach,
         offset: splat(reach.offset),
         margin: L::splat(reach.margin),
         visit,
@@ -138,6 +139,7 @@ pub(super) fn each_pair_in<L: Lanes>(
 }
 
 struct Overlaps<L, V> {
+    reach: Reach,
     offset: [L; 3],
     margin: L,
     visit: V,
@@ -153,6 +155,11 @@ impl<L: Lanes, V: Visit> Tiles for Overlaps<L, V> {
         let z = self.separation(first, second, 2);
         let separation = x.max(y).max(z);
         (separation.at_most(self.margin), separation)
+    }
+
+    #[inline(always)]
+    fn slabs(&self, first: (&Boxes, &Slabs), second: (&Boxes, &Slabs), pairs: u32) -> u32 {
+        pairs & !slabs_apart::<L>(&self.reach, first, second)
     }
 
     #[inline(always)]
@@ -177,4 +184,61 @@ impl<L: Lanes, V> Overlaps<L, V> {
 #[inline(always)]
 pub(in crate::collide) fn splat<L: Lanes>([x, y, z]: [f32; 3]) -> [L; 3] {
     [L::splat(x), L::splat(y), L::splat(z)]
+}
+
+/// A bit for each pair of children that the slab of one of them keeps apart.
+///
+/// Along the normal `n` of the one, a point `x` of the other has the height
+/// `n·x = k m·x + (n - k m)·x` for any `k`, with the other's normal `m`. For `k = n·m` the second
+/// part is small where the normals are alike; the other's slab bounds the first part, its box the
+/// second one. Roundings in f32 are below 128 units of the last place of the largest sum of
+/// coordinates, and twice that is allowed for.
+#[inline(always)]
+fn slabs_apart<L: Lanes>(
+    reach: &Reach,
+    (boxes, slabs): (&Boxes, &Slabs),
+    (other_boxes, other_slabs): (&Boxes, &Slabs),
+) -> u32 {
+    let n = [L::rows(&slabs.normal[0]), L::rows(&slabs.normal[1]), L::rows(&slabs.normal[2])];
+    let m = &other_slabs.normal;
+    let m = [L::columns(&m[0]), L::columns(&m[1]), L::columns(&m[2])];
+    let (s, w) = (L::rows(&slabs.middle), L::rows(&slabs.half));
+    let (t, v) = (L::columns(&other_slabs.middle), L::columns(&other_slabs.half));
+    let offset = splat::<L>(reach.offset);
+    let slack = L::splat(16.0 * reach.margin);
+    let k = n[0].mul_add(m[0], n[1].mul_add(m[1], n[2].mul(m[2])));
+
+    let c = &other_boxes.centre;
+    let c = [L::columns(&c[0]), L::columns(&c[1]), L::columns(&c[2])];
+    let h = &other_boxes.half;
+    let h = [L::columns(&h[0]), L::columns(&h[1]), L::columns(&h[2])];
+    let far = n[0].mul_add(offset[0], n[1].mul_add(offset[1], n[2].mul(offset[2])));
+    let one = slab_apart(&n, &m, k, (s, w.add(slack)), (t, v), far, &c, &h);
+
+    let c = [L::rows(&boxes.centre[0]), L::rows(&boxes.centre[1]), L::rows(&boxes.centre[2])];
+    let h = [L::rows(&boxes.half[0]), L::rows(&boxes.half[1]), L::rows(&boxes.half[2])];
+    let far = m[0].mul_add(offset[0], m[1].mul_add(offset[1], m[2].mul(offset[2])));
+    let far = L::splat(0.0).sub(far);
+    one | slab_apart(&m, &n, k, (t, v.add(slack)), (s, w), far, &c, &h)
+}
+
+/// Lanes in which a slab of normal `n` holds nothing of another slab and box, `far` along `n`.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "all of them are lanes of one formula")]
+fn slab_apart<L: Lanes>(
+    n: &[L; 3],
+    m: &[L; 3],
+    k: L,
+    (s, w): (L, L),
+    (t, v): (L, L),
+    far: L,
+    c: &[L; 3],
+    h: &[L; 3],
+) -> u32 {
+    let rest = [n[0].sub(k.mul(m[0])), n[1].sub(k.mul(m[1])), n[2].sub(k.mul(m[2]))];
+    let middle = rest[0].mul_add(c[0], rest[1].mul_add(c[1], rest[2].mul_add(c[2], far)));
+    let middle = k.mul_add(t, middle);
+    let half = rest[0].abs().mul_add(h[0], rest[1].abs().mul_add(h[1], rest[2].abs().mul_add(h[2], w)));
+    let half = k.abs().mul_add(v, half);
+    middle.sub(s).abs().above(half)
 }
