@@ -38,7 +38,7 @@ pub(super) trait Tiles {
 
 /// How many tiles are looked at one after the other, always the nearest pair next. Where meshes
 /// meet deeply, a hit is found by then as a rule.
-const GREEDY: usize = 12;
+const GREEDY: usize = 16;
 /// How many tiles are looked at side by side after that, in no order, as then the hope is gone and
 /// throughput counts.
 const ABREAST: usize = 4;
@@ -47,21 +47,26 @@ const ABREAST: usize = 4;
 #[inline(always)]
 pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> ControlFlow<()> {
     let mut stack = Stack::new();
-    stack.push(first.root(), second.root());
+    let mut next = Some((first.root(), second.root()));
     for _ in 0..GREEDY {
-        let Some((a, b)) = stack.pop() else {
+        let Some((a, b)) = next.or_else(|| stack.pop()) else {
             return ControlFlow::Continue(());
         };
         let (node, other) = (first.node(a), second.node(b));
         let (pairs, distance) = tiles.boxes(&node.boxes, &other.boxes);
         let bits = below(a, b, pairs);
+        next = None;
         if bits != 0 {
-            T::Lanes::push(&mut stack, bits, &node.child, &other.child);
             let nearest = distance.least(bits);
-            stack.raise((bits >> nearest).count_ones() as usize - 1);
+            let (i, j) = (nearest as usize / WIDTH, nearest as usize % WIDTH);
+            next = Some((node.child[i], other.child[j]));
+            T::Lanes::push(&mut stack, bits & !(1 << nearest), &node.child, &other.child);
         } else if pairs != 0 {
             tiles.triangles(a, b, pairs)?;
         }
+    }
+    if let Some((a, b)) = next {
+        stack.push(a, b);
     }
     loop {
         let mut abreast = [(0, 0); ABREAST];

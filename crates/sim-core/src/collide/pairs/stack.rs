@@ -71,12 +71,4 @@ impl Stack {
         self.second[range].copy_from_slice(&second.map(MaybeUninit::new));
         self.len += count;
     }
-
-    /// Brings a pair to the top, counted from the top.
-    #[inline(always)]
-    pub(in crate::collide) fn raise(&mut self, below_top: usize) {
-        let top = self.len - 1;
-        self.first.swap(top - below_top, top);
-        self.second.swap(top - below_top, top);
-    }
 }
