@@ -8,14 +8,13 @@ use glam::Vec3A;
 
 use super::slabs::slabs;
 use super::{Bvh, LEAF, MAX_DEPTH, Node, Origin, Triangles, WIDTH};
-use crate::{Aabb, Mesh};
+use crate::Mesh;
 
-/// Candidate split planes, less one, for long runs and for short ones, where sweeping the bins
-/// costs more than filling them.
+/// Candidate split planes, less one; a power of two.
 const BINS: usize = 16;
-const FEW_BINS: usize = 8;
-/// The longest run for few bins.
-const SHORT: usize = 64;
+/// Runs up to this are cut in the middle of their centres: of so few triangles the heuristic makes
+/// nothing better.
+const SHORT: usize = 16;
 /// From this level on, runs are halved by count. It leaves a quarter at most to each child, and a
 /// mesh has fewer than 4^16 triangles, so the tree stays within `MAX_DEPTH`.
 const HALVE_FROM: usize = MAX_DEPTH - 16;
@@ -52,13 +51,6 @@ impl Bounds {
     fn half_area(&self) -> f32 {
         let e = self.max - self.min;
         e.x * e.y + e.y * e.z + e.z * e.x
-    }
-
-    fn narrow(self) -> Aabb {
-        Aabb {
-            min: self.min.into(),
-            max: self.max.into(),
-        }
     }
 }
 
@@ -118,7 +110,7 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
         let code = index as u32 | if is_leaf { LEAF } else { 0 };
         if let Some((node, lane)) = place {
             let parent: &mut Node = &mut nodes[node];
-            parent.boxes.set(lane, run.bounds.narrow());
+            parent.boxes.set(lane, run.bounds.min, run.bounds.max);
             parent.child[lane] = code;
         }
         if is_leaf {
@@ -173,7 +165,7 @@ impl Items {
         };
         let bounds = &self.bounds[run.buffer][run.items.clone()];
         for (lane, bounds) in bounds.iter().enumerate() {
-            leaf.boxes.set(lane, bounds.narrow());
+            leaf.boxes.set(lane, bounds.min, bounds.max);
         }
         leaf
     }
@@ -214,59 +206,70 @@ impl Items {
         (runs, count)
     }
 
-    /// Cuts a run of two or more in two.
+    /// Cuts a run of two or more in two, along the axis on which centres lie farthest apart.
     fn split(&mut self, run: &Run, level: usize) -> (Run, Run) {
-        let bounds = &self.bounds[run.buffer][run.items.clone()];
-        let split = match run.len() {
-            _ if level >= HALVE_FROM => None,
-            ..=SHORT => best_split::<FEW_BINS>(bounds),
-            _ => best_split::<BINS>(bounds),
-        };
-        match split {
-            Some(split) => self.partition(run, &split),
-            None => self.halve(run),
+        let items = &self.bounds[run.buffer][run.items.clone()];
+        let Centres { axis, low, high } = Centres::of(items);
+        if level >= HALVE_FROM || !(high > low && high - low < f32::INFINITY) {
+            return self.halve(run);
         }
-    }
-
-    /// Cuts a run whose centres no plane separates: any halves do.
-    fn halve(&self, run: &Run) -> (Run, Run) {
-        let middle = run.items.start + run.len() / 2;
-        let part = |items: Range<usize>| Run {
-            bounds: self.bounds[run.buffer][items.clone()]
-                .iter()
-                .fold(Bounds::EMPTY, |all, &item| all.union(item)),
-            items,
-            buffer: run.buffer,
-        };
-        (part(run.items.start..middle), part(middle..run.items.end))
-    }
-
-    /// Writes a run to the other buffer, the items on the left of a plane in front.
-    fn partition(&mut self, run: &Run, split: &Split) -> (Run, Run) {
-        let range = run.items.clone();
-        let [bounds, other_bounds] = two(&mut self.bounds, run.buffer, range.clone());
-        let [face, other_face] = two(&mut self.face, run.buffer, range.clone());
-        // Those on the left from the left end, the others from the right: which of the two is a
-        // toss-up, so it is an index and not a branch.
-        let (mut left, mut right) = (0, bounds.len());
-        for (item, &face) in bounds.iter().zip(face.iter()) {
-            let goes_left = split.bin(item) <= split.last_left;
-            let place = if goes_left { left } else { right - 1 };
-            other_bounds[place] = *item;
-            other_face[place] = face;
-            left += usize::from(goes_left);
-            right -= usize::from(!goes_left);
+        if run.len() <= SHORT {
+            let middle = low + 0.5 * (high - low);
+            let at = self.partition(run, |item| along(item, axis) <= middle);
+            return self.parts(run.items.clone(), at, 1 - run.buffer);
         }
-        let middle = range.start + left;
+        let Some(best) = best_plane(items, axis, low, high) else {
+            return self.halve(run);
+        };
+        let at = self.partition(run, |item| {
+            bin(item, axis, low, best.scale) <= best.last_left
+        });
         let part = |items, bounds| Run {
             items,
             bounds,
             buffer: 1 - run.buffer,
         };
         (
-            part(range.start..middle, split.left),
-            part(middle..range.end, split.right),
+            part(run.items.start..at, best.left),
+            part(at..run.items.end, best.right),
         )
+    }
+
+    /// Cuts a run where it is whose centres no plane separates.
+    fn halve(&self, run: &Run) -> (Run, Run) {
+        let middle = run.items.start + run.len() / 2;
+        self.parts(run.items.clone(), middle, run.buffer)
+    }
+
+    fn parts(&self, run: Range<usize>, middle: usize, buffer: usize) -> (Run, Run) {
+        let part = |items: Range<usize>| Run {
+            bounds: self.bounds[buffer][items.clone()]
+                .iter()
+                .fold(Bounds::EMPTY, |all, &item| all.union(item)),
+            items,
+            buffer,
+        };
+        (part(run.start..middle), part(middle..run.end))
+    }
+
+    /// Writes a run to the other buffer, items that go left in front; returns where the others
+    /// begin.
+    #[inline]
+    fn partition(&mut self, run: &Run, goes_left: impl Fn(&Bounds) -> bool) -> usize {
+        let [bounds, other_bounds] = two(&mut self.bounds, run.buffer, run.items.clone());
+        let [face, other_face] = two(&mut self.face, run.buffer, run.items.clone());
+        // Those on the left from the left end, the others from the right: which of the two is a
+        // toss-up, so it is an index and not a branch.
+        let (mut left, mut right) = (0, bounds.len());
+        for (item, &face) in bounds.iter().zip(face.iter()) {
+            let goes_left = goes_left(item);
+            let place = if goes_left { left } else { right - 1 };
+            other_bounds[place] = *item;
+            other_face[place] = face;
+            left += usize::from(goes_left);
+            right -= usize::from(!goes_left);
+        }
+        run.items.start + left
     }
 }
 
@@ -277,49 +280,63 @@ fn two<T>(buffers: &mut [Vec<T>; 2], from: usize, range: Range<usize>) -> [&mut 
     [&mut from[range.clone()], &mut to[range]]
 }
 
-/// A plane that items are split by, up to a bin of an axis to the left, and their boxes.
-struct Split {
+/// The axis along which the centres of some boxes lie farthest apart, and twice the outer ones.
+struct Centres {
     axis: usize,
-    origin: f32,
+    low: f32,
+    high: f32,
+}
+
+impl Centres {
+    fn of(items: &[Bounds]) -> Centres {
+        let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
+        for item in items {
+            low = low.min(item.centre());
+            high = high.max(item.centre());
+        }
+        let axis = (high - low).max_position();
+        Centres {
+            axis,
+            low: low[axis],
+            high: high[axis],
+        }
+    }
+}
+
+/// A plane that items are split by: up to a bin to the left, and the boxes of both sides.
+struct Plane {
     scale: f32,
-    last_left: i32,
+    last_left: u32,
     left: Bounds,
     right: Bounds,
 }
 
-impl Split {
-    #[inline]
-    fn bin(&self, item: &Bounds) -> i32 {
-        bin(item, self.axis, self.origin, self.scale)
-    }
-}
+/// Adding this to a small float rounds it to whole numbers, which are then its last bits.
+const WHOLE: f32 = (3 << 22) as f32;
 
-/// Saturates: what is not a number goes first.
 #[inline]
-fn bin(item: &Bounds, axis: usize, origin: f32, scale: f32) -> i32 {
-    ((item.centre()[axis] - origin) * scale) as i32
+fn bin(item: &Bounds, axis: usize, origin: f32, scale: f32) -> u32 {
+    ((along(item, axis) - origin) * scale - 0.5 + WHOLE).to_bits() & BINS as u32 - 1
 }
 
-/// The plane with the least area of boxes times triangles in them, along the axis on which centres
-/// lie farthest apart. Trying the other two axes as well triples the time and saves no query more
-/// than a few tiles.
-fn best_split<const BINS: usize>(items: &[Bounds]) -> Option<Split> {
-    let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
-    for item in items {
-        low = low.min(item.centre());
-        high = high.max(item.centre());
-    }
-    let axis = (high - low).max_position();
-    let origin = low[axis];
-    // A little less than the bins, so that the highest place still lies in the last one.
-    let scale = BINS as f32 * (1.0 - 1e-6) / (high[axis] - origin);
-    if !scale.is_finite() || scale == 0.0 {
-        return None;
-    }
+/// Twice the centre along an axis, straight from memory rather than from a vector of three.
+#[inline]
+fn along(item: &Bounds, axis: usize) -> f32 {
+    let (min, max): (&[f32; 3], &[f32; 3]) = (item.min.as_ref(), item.max.as_ref());
+    min[axis] + max[axis]
+}
+
+/// The plane across an axis with the least area of boxes times triangles in them.
+///
+/// Planes across the other two axes as well would take three times as long and save queries at
+/// best a few tiles in a hundred.
+fn best_plane(items: &[Bounds], axis: usize, low: f32, high: f32) -> Option<Plane> {
+    // A little less than the bins, so that the highest centre still lies in the last one.
+    let scale = BINS as f32 * (1.0 - 1e-6) / (high - low);
     let mut bins = [Bounds::EMPTY; BINS];
     let mut counts = [0u32; BINS];
     for item in items {
-        let bin = bin(item, axis, origin, scale) as usize & (BINS - 1);
+        let bin = bin(item, axis, low, scale) as usize;
         bins[bin] = bins[bin].union(*item);
         counts[bin] += 1;
     }
@@ -337,11 +354,9 @@ fn best_split<const BINS: usize>(items: &[Bounds]) -> Option<Split> {
         let cost = left.half_area() * count as f32 + right.half_area() * others as f32;
         if count > 0 && others > 0 && cost < best_cost {
             best_cost = cost;
-            best = Some(Split {
-                axis,
-                origin,
+            best = Some(Plane {
                 scale,
-                last_left: last_left as i32,
+                last_left: last_left as u32,
                 left,
                 right,
             });

@@ -1,6 +1,6 @@
 //! Nodes and leaves: four boxes side by side, and what is in them.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use crate::Aabb;
 
@@ -30,12 +30,14 @@ impl Boxes {
         half: [[f32::NEG_INFINITY; WIDTH]; 3],
     };
 
-    pub(crate) fn set(&mut self, lane: usize, bounds: Aabb) {
+    pub(crate) fn set(&mut self, lane: usize, min: Vec3A, max: Vec3A) {
+        let centre = 0.5 * min + 0.5 * max;
+        // Either difference is rounded once, the factor makes up for it.
+        let half = (max - centre).max(centre - min) * (1.0 + 2.0 * f32::EPSILON);
+        let (centre, half) = (centre.to_array(), half.to_array());
         for axis in 0..3 {
-            let (min, max) = (bounds.min[axis], bounds.max[axis]);
-            let centre = 0.5 * min + 0.5 * max;
-            self.centre[axis][lane] = centre;
-            self.half[axis][lane] = half_extent(min, max, centre);
+            self.centre[axis][lane] = centre[axis];
+            self.half[axis][lane] = half[axis];
         }
     }
 
@@ -57,20 +59,6 @@ impl Boxes {
             min: Vec3::new(x.0, y.0, z.0),
             max: Vec3::new(x.1, y.1, z.1),
         }
-    }
-}
-
-/// A float that is not below the distance from the centre to either end, but for the rounding of
-/// f64, which every query allows for.
-#[inline]
-fn half_extent(min: f32, max: f32, centre: f32) -> f32 {
-    let (min, max, centre) = (f64::from(min), f64::from(max), f64::from(centre));
-    let exact = (max - centre).max(centre - min);
-    let half = exact as f32;
-    if f64::from(half) < exact {
-        half.next_up()
-    } else {
-        half
     }
 }
 

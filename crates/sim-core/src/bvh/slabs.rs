@@ -26,12 +26,28 @@ impl Slabs {
         half: [0.0; WIDTH],
     };
 
-    fn set(&mut self, lane: usize, area: [f32; 3], heights: impl Fn([f32; 3]) -> (f32, f32)) {
-        let normal = unit(area);
-        let (low, high) = heights(normal);
-        for axis in 0..3 {
-            self.normal[axis][lane] = normal[axis];
+    /// With normals along area vectors.
+    #[inline]
+    fn along(mut area: [[f32; WIDTH]; 3]) -> Slabs {
+        for lane in 0..WIDTH {
+            let [x, y, z] = area.map(|axis| axis[lane].abs());
+            let scale = 1.0 / if x > y { x.max(z) } else { y.max(z) };
+            let [x, y, z] = area.map(|axis| axis[lane] * scale);
+            let length = libm::sqrtf(x * x + y * y + z * z);
+            // Any normal will do for a patch without one, or beyond the range of f32.
+            let usable = length >= 0.5 && length < 2.0;
+            let inverse = 1.0 / length;
+            area[0][lane] = if usable { x * inverse } else { 1.0 };
+            area[1][lane] = if usable { y * inverse } else { 0.0 };
+            area[2][lane] = if usable { z * inverse } else { 0.0 };
         }
+        Slabs {
+            normal: area,
+            ..Slabs::NONE
+        }
+    }
+
+    fn set(&mut self, lane: usize, low: f32, high: f32) {
         self.middle[lane] = 0.5 * low + 0.5 * high;
         self.half[lane] = (self.middle[lane] - low).max(high - self.middle[lane]);
     }
@@ -46,44 +62,65 @@ pub(super) fn slabs(nodes: &[Node], triangles: &[Triangles]) -> alloc::vec::Vec<
     let mut slabs = alloc::vec![Slabs::NONE; nodes.len()];
     for index in (0..nodes.len()).rev() {
         let node = &nodes[index];
-        let is_leaf = node.child[0] & LEAF != 0 && (node.child[0] & !LEAF) as usize == index;
-        let (mut start, mut end, mut area) = (u32::MAX, 0, [0.0; 3]);
-        for lane in node.lanes() {
-            let of_lane = if is_leaf {
-                let leaf = &triangles[node.triangles as usize];
-                let of_lane = leaf.area(lane);
-                slabs[index].set(lane, of_lane, |normal| leaf.heights(lane, normal));
-                (start, end) = (node.triangles, node.triangles + 1);
-                of_lane
-            } else {
+        let is_leaf = node.child[0] == index as u32 | LEAF;
+        let (mut start, mut end, mut area) = (u32::MAX, 0, [[0.0; WIDTH]; 3]);
+        if is_leaf {
+            let leaf = &triangles[node.triangles as usize];
+            (start, end) = (node.triangles, node.triangles + 1);
+            area = leaf.areas();
+            slabs[index] = leaf.slabs(area);
+        } else {
+            for lane in node.lanes() {
                 let (from, to, of_lane) = runs[(node.child[lane] & !LEAF) as usize];
                 (start, end) = (start.min(from), end.max(to));
+                for axis in 0..3 {
+                    area[axis][lane] = of_lane[axis];
+                }
+            }
+            slabs[index] = Slabs::along(area);
+            for lane in node.lanes() {
+                let (from, to, _) = runs[(node.child[lane] & !LEAF) as usize];
                 let below = &triangles[from as usize..to as usize];
-                slabs[index].set(lane, of_lane, |normal| heights(below, normal));
-                of_lane
-            };
-            for axis in 0..3 {
-                area[axis] += of_lane[axis];
+                let (low, high) = heights(below, slabs[index].normal.map(|axis| axis[lane]));
+                slabs[index].set(lane, low, high);
             }
         }
-        runs[index] = (start, end, area);
+        let sum = |axis: [f32; WIDTH]| node.lanes().map(|lane| axis[lane]).sum();
+        runs[index] = (start, end, area.map(sum));
     }
     slabs
 }
 
 impl Triangles {
-    /// Normal of a lane's triangle, twice as long as its area.
-    fn area(&self, lane: usize) -> [f32; 3] {
-        let [a, b, c] = self.corners(lane);
-        (b - a).cross(c - a).to_array()
+    /// Normals of the triangles, twice as long as their areas.
+    #[inline]
+    fn areas(&self) -> [[f32; WIDTH]; 3] {
+        let c = &self.corners;
+        let mut areas = [[0.0; WIDTH]; 3];
+        for axis in 0..3 {
+            let (y, z) = ((axis + 1) % 3, (axis + 2) % 3);
+            for lane in 0..WIDTH {
+                let (uy, uz) = (c[3 + y][lane] - c[y][lane], c[3 + z][lane] - c[z][lane]);
+                let (vy, vz) = (c[6 + y][lane] - c[y][lane], c[6 + z][lane] - c[z][lane]);
+                areas[axis][lane] = uy * vz - uz * vy;
+            }
+        }
+        areas
     }
 
-    fn heights(&self, lane: usize, normal: [f32; 3]) -> (f32, f32) {
-        let heights = self
-            .corners(lane)
-            .map(|v| normal[0] * v.x + normal[1] * v.y + normal[2] * v.z);
-        let [a, b, c] = heights;
-        (a.min(b).min(c), a.max(b).max(c))
+    /// A slab for each triangle.
+    #[inline]
+    fn slabs(&self, areas: [[f32; WIDTH]; 3]) -> Slabs {
+        let mut slabs = Slabs::along(areas);
+        let (c, n) = (&self.corners, slabs.normal);
+        for lane in 0..WIDTH {
+            let height = |k: usize| {
+                n[0][lane] * c[k][lane] + n[1][lane] * c[k + 1][lane] + n[2][lane] * c[k + 2][lane]
+            };
+            let (p, q, r) = (height(0), height(3), height(6));
+            slabs.set(lane, p.min(q).min(r), p.max(q).max(r));
+        }
+        slabs
     }
 }
 
@@ -102,15 +139,4 @@ fn heights(triangles: &[Triangles], [x, y, z]: [f32; 3]) -> (f32, f32) {
     }
     let low = low.into_iter().fold(f32::INFINITY, f32::min);
     (low, high.into_iter().fold(f32::NEG_INFINITY, f32::max))
-}
-
-/// A unit vector along an area vector; any where that says nothing.
-fn unit([x, y, z]: [f32; 3]) -> [f32; 3] {
-    let scale = x.abs().max(y.abs()).max(z.abs());
-    if !(scale > 0.0 && scale.is_finite()) {
-        return [1.0, 0.0, 0.0];
-    }
-    let [x, y, z] = [x / scale, y / scale, z / scale];
-    let length = libm::sqrtf(x * x + y * y + z * z);
-    [x / length, y / length, z / length]
 }
