@@ -63,9 +63,10 @@ impl Bvh {
         if root == 0.0 {
             return self.count as f64;
         }
-        let triangles = self.triangles.iter().flat_map(|leaf| {
-            (0..WIDTH).map(|lane| Aabb::around(leaf.corners(lane)).half_area())
-        });
+        let triangles = self
+            .triangles
+            .iter()
+            .flat_map(|leaf| (0..WIDTH).map(|lane| Aabb::around(leaf.corners(lane)).half_area()));
         let nodes = self.boxes().map(|(_, bounds)| bounds.half_area());
         nodes.chain(triangles).sum::<f64>() / root
     }
@@ -156,13 +157,22 @@ mod tests {
                     pending.push((node.child[lane], level + 1, inner));
                     continue;
                 }
-                let (face, corners) = (bvh.triangles(node).face[lane], bvh.triangles(node).corners(lane));
+                let (face, corners) = (
+                    bvh.triangles(node).face[lane],
+                    bvh.triangles(node).corners(lane),
+                );
                 seen[face as usize] += 1;
                 assert_eq!(corners, mesh.corners(face as usize));
-                assert!(holds(inner, Aabb::around(corners)) && holds(bounds, Aabb::around(corners)));
+                assert!(
+                    holds(inner, Aabb::around(corners)) && holds(bounds, Aabb::around(corners))
+                );
             }
             let unused = node.count as usize..WIDTH;
-            assert!(unused.into_iter().all(|lane| node.boxes.half[0][lane] == f32::NEG_INFINITY));
+            assert!(
+                unused
+                    .into_iter()
+                    .all(|lane| node.boxes.half[0][lane] == f32::NEG_INFINITY)
+            );
         }
         assert!(seen.iter().all(|&n| n == 1));
         assert_eq!(reached, bvh.node_count());

@@ -132,8 +132,16 @@ fn heights(triangles: &[Triangles], [x, y, z]: [f32; 3]) -> (f32, f32) {
         for k in [0, 3, 6] {
             for lane in 0..WIDTH {
                 let height = x * c[k][lane] + y * c[k + 1][lane] + z * c[k + 2][lane];
-                low[lane] = if height < low[lane] { height } else { low[lane] };
-                high[lane] = if height > high[lane] { height } else { high[lane] };
+                low[lane] = if height < low[lane] {
+                    height
+                } else {
+                    low[lane]
+                };
+                high[lane] = if height > high[lane] {
+                    height
+                } else {
+                    high[lane]
+                };
             }
         }
     }

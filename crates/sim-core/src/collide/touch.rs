@@ -29,7 +29,7 @@ use glam::{DVec3, Vec3};
 
 use super::{
     pairs::{Portable, TILE, Tiles, descend},
-    place, snap,
+    snap,
 };
 use crate::bvh::{Boxes, Bvh, Slabs, WIDTH};
 
@@ -136,7 +136,10 @@ impl Tiles for Search<'_> {
             let pair = pairs.trailing_zeros() as usize;
             pairs &= pairs - 1;
             let (i, j) = (pair / WIDTH, pair % WIDTH);
-            self.try_triangles((first.face[i], first.corners(i)), (second.face[j], second.corners(j)));
+            self.try_triangles(
+                (first.face[i], first.corners(i)),
+                (second.face[j], second.corners(j)),
+            );
         }
         ControlFlow::Continue(())
     }
@@ -174,7 +177,7 @@ impl Search<'_> {
 
     fn try_triangles(&mut self, (s_face, s): (u32, [Vec3; 3]), (t_face, t): (u32, [Vec3; 3])) {
         let first = s.map(|v| v.as_dvec3());
-        let second = t.map(|v| place(v, self.offset));
+        let second = t.map(|v| v.as_dvec3() + self.offset);
         let (s, t) = (self.first.origin(s_face), self.second.origin(t_face));
         for i in (0..3).filter(|&i| t.owned.vertex[i]) {
             let feature = Feature::FaceVertex {

@@ -1,134 +1,149 @@
-//! The same answers through two hierarchies: only triangles whose boxes meet are tested.
+//! Through two hierarchies: only triangles whose boxes meet are tested.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
-use glam::{DVec3, Vec3};
 
 use super::{
-    Hit, Level, Side,
+    Hit, Level, Placement, Side,
     apart::maybe_meet,
-    pairs::{Lanes, Reach, Visit, each_pair},
-    place,
+    pairs::{Lanes, Meshes, Question, Reach, each_pair},
     predicates::{segment_meets_triangle, triangles_meet},
-    snap,
 };
-use crate::bvh::{Bvh, Triangles, WIDTH};
+use crate::bvh::{Bvh, WIDTH};
 
-/// Whether the surfaces of two meshes meet, the second displaced by `offset` (m). Stops at the
-/// first hit and allocates nothing.
-pub fn intersect(first: &Bvh, second: &Bvh, offset: DVec3) -> bool {
-    intersect_at(Level::best(), first, second, offset)
+/// Whether the surfaces of two meshes meet, the second one placed: displaced by a `DVec3` (m), or
+/// turned too ([`Placement::turned`]). Stops at the first hit and allocates nothing.
+pub fn intersect(first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> bool {
+    intersect_at(Level::best(), first, second, at)
 }
 
 /// [`intersect`] with the instructions of a level, to compare levels.
-pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, offset: DVec3) -> bool {
-    let offset = snap(offset);
-    if !first.bounds().meets(&second.bounds(), offset) {
-        return false;
-    }
-    let reach = Reach::new(first, second, offset).expect("TODO");
-    let mut any = AnyHit {
-        first,
-        second,
-        offset,
-        reach,
-    };
-    each_pair(level, first, second, reach, &mut any).is_break()
+pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> bool {
+    let at = &at.into();
+    let meshes = Meshes { first, second, at };
+    each_pair(level, meshes, &mut AnyHit).is_break()
 }
 
 /// Stops at the first pair of triangles that meet.
-struct AnyHit<'a> {
-    first: &'a Bvh,
-    second: &'a Bvh,
-    offset: DVec3,
-    reach: Reach,
-}
+struct AnyHit;
 
-impl Visit for &mut AnyHit<'_> {
+impl Question for AnyHit {
     #[inline(always)]
-    fn visit<L: Lanes>(&mut self, a: u32, b: u32, pairs: u32) -> ControlFlow<()> {
-        let (a, b) = (self.first.node(a), self.second.node(b));
-        let (s, t) = (self.first.triangles(a), self.second.triangles(b));
-        let mut pairs = maybe_meet::<L>((a, s), (b, t), pairs, &self.reach);
-        while pairs != 0 {
-            let pair = pairs.trailing_zeros() as usize;
-            if self.meet(s, t, pair) {
-                return ControlFlow::Break(());
-            }
-            pairs &= pairs - 1;
+    fn triangles<L: Lanes>(
+        &mut self,
+        meshes: Meshes<'_>,
+        (a, b): (u32, u32),
+        pairs: u32,
+        reach: Option<&Reach>,
+    ) -> ControlFlow<()> {
+        let maybe = match reach.filter(|_| meshes.at.turn().is_none()) {
+            Some(reach) => maybe_meet::<L>(meshes, (a, b), pairs, reach),
+            None => pairs,
+        };
+        if any_meets(meshes, (a, b), maybe) {
+            return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     }
 }
 
-impl AnyHit<'_> {
-    #[inline(never)]
-    fn meet(&self, s: &Triangles, t: &Triangles, pair: usize) -> bool {
-        let s = s.corners(pair / WIDTH).map(|v| v.as_dvec3());
-        let t = t.corners(pair % WIDTH).map(|v| place(v, self.offset));
-        triangles_meet(s, t)
-    }
+/// Not for lanes, and not to take their registers.
+#[inline(never)]
+fn any_meets(meshes: Meshes<'_>, leaves: (u32, u32), pairs: u32) -> bool {
+    triangles(meshes, leaves, pairs).any(|((_, s), (_, t))| {
+        let s = s.map(|v| v.as_dvec3());
+        triangles_meet(s, t.map(|v| meshes.at.place(v)))
+    })
+}
+
+/// Every edge of one mesh in a triangle of the other, in no order, until `found` stops it.
+/// Allocates nothing.
+pub fn each_hit(
+    first: &Bvh,
+    second: &Bvh,
+    at: impl Into<Placement>,
+    found: impl FnMut(Hit) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    each_hit_at(Level::best(), first, second, at, found)
+}
+
+/// [`each_hit`] with the instructions of a level, to compare levels.
+pub fn each_hit_at(
+    level: Level,
+    first: &Bvh,
+    second: &Bvh,
+    at: impl Into<Placement>,
+    found: impl FnMut(Hit) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let at = &at.into();
+    let meshes = Meshes { first, second, at };
+    each_pair(level, meshes, &mut AllHits { found })
 }
 
 /// Every edge of one mesh in a triangle of the other, in the order of [`super::naive::hits`].
-pub fn hits(first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Hit> {
-    hits_at(Level::best(), first, second, offset)
+pub fn hits(first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> Vec<Hit> {
+    hits_at(Level::best(), first, second, at)
 }
 
 /// [`hits`] with the instructions of a level, to compare levels.
-pub fn hits_at(level: Level, first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Hit> {
-    let offset = snap(offset);
+pub fn hits_at(level: Level, first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> Vec<Hit> {
     let mut hits = Vec::new();
-    if first.bounds().meets(&second.bounds(), offset) {
-        let reach = Reach::new(first, second, offset).expect("TODO");
-        let mut all = AllHits {
-            first,
-            second,
-            offset,
-            hits: &mut hits,
-        };
-        let _ = each_pair(level, first, second, reach, &mut all);
-    }
+    let _ = each_hit_at(level, first, second, at, |hit| {
+        hits.push(hit);
+        ControlFlow::Continue(())
+    });
     hits.sort_unstable_by_key(Hit::key);
     hits
 }
 
-/// Lists the hits of every pair of triangles.
-struct AllHits<'a> {
-    first: &'a Bvh,
-    second: &'a Bvh,
-    offset: DVec3,
-    hits: &'a mut Vec<Hit>,
+struct AllHits<F> {
+    found: F,
 }
 
-impl Visit for &mut AllHits<'_> {
-    fn visit<L: Lanes>(&mut self, a: u32, b: u32, mut pairs: u32) -> ControlFlow<()> {
-        let (a, b) = (self.first.node(a), self.second.node(b));
-        let (s, t) = (self.first.triangles(a), self.second.triangles(b));
-        while pairs != 0 {
-            let pair = pairs.trailing_zeros() as usize;
-            pairs &= pairs - 1;
-            let (i, j) = (pair / WIDTH, pair % WIDTH);
-            let s = (s.face[i], s.corners(i));
-            let t = (t.face[j], t.corners(j));
-            self.hits
-                .extend(pair_hits(self.first, self.second, s, t, self.offset));
+impl<F: FnMut(Hit) -> ControlFlow<()>> Question for AllHits<F> {
+    fn triangles<L: Lanes>(
+        &mut self,
+        meshes: Meshes<'_>,
+        leaves: (u32, u32),
+        pairs: u32,
+        _: Option<&Reach>,
+    ) -> ControlFlow<()> {
+        for (s, t) in triangles(meshes, leaves, pairs) {
+            pair_hits(meshes, s, t).try_for_each(&mut self.found)?;
         }
         ControlFlow::Continue(())
     }
 }
 
+/// A triangle of a mesh and its corners, in the mesh's own frame.
+type Face = (u32, [glam::Vec3; 3]);
+
+/// The triangles of some pairs of two leaves.
+#[inline]
+fn triangles(
+    meshes: Meshes<'_>,
+    (a, b): (u32, u32),
+    mut pairs: u32,
+) -> impl Iterator<Item = (Face, Face)> {
+    let s = meshes.first.triangles(meshes.first.node(a));
+    let t = meshes.second.triangles(meshes.second.node(b));
+    core::iter::from_fn(move || {
+        let pair = (pairs != 0).then(|| pairs.trailing_zeros() as usize)?;
+        pairs &= pairs - 1;
+        let (i, j) = (pair / WIDTH, pair % WIDTH);
+        Some(((s.face[i], s.corners(i)), (t.face[j], t.corners(j))))
+    })
+}
+
 /// The edges that either of two triangles owns, where they meet the other triangle.
-fn pair_hits<'a>(
-    first: &'a Bvh,
-    second: &'a Bvh,
-    (s_face, s_corners): (u32, [Vec3; 3]),
-    (t_face, t_corners): (u32, [Vec3; 3]),
-    offset: DVec3,
-) -> impl Iterator<Item = Hit> + 'a {
+fn pair_hits(
+    meshes: Meshes<'_>,
+    (s_face, s_corners): Face,
+    (t_face, t_corners): Face,
+) -> impl Iterator<Item = Hit> {
     let s_corners = s_corners.map(|v| v.as_dvec3());
-    let t_corners = t_corners.map(|v| place(v, offset));
-    let (s, t) = (first.origin(s_face), second.origin(t_face));
+    let t_corners = t_corners.map(|v| meshes.at.place(v));
+    let (s, t) = (meshes.first.origin(s_face), meshes.second.origin(t_face));
     let ways = [
         (Side::First, s, s_corners, t_face, t_corners),
         (Side::Second, t, t_corners, s_face, s_corners),

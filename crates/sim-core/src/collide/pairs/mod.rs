@@ -6,7 +6,9 @@
 //! leaves have come together the pairs of triangles whose boxes meet are handed over.
 
 mod lanes;
+mod level;
 mod overlap;
+mod reach;
 #[cfg(target_arch = "x86_64")]
 mod simd;
 mod stack;
@@ -15,8 +17,9 @@ use core::ops::ControlFlow;
 
 use crate::bvh::{Boxes, Bvh, LEAF, Slabs, WIDTH};
 pub(super) use lanes::{Lanes, Portable};
-pub use overlap::Level;
-pub(super) use overlap::{Reach, Visit, each_pair, splat};
+pub use level::Level;
+pub(super) use overlap::{Meshes, Question, each_pair};
+pub(super) use reach::{Reach, dot, dot0, splat};
 pub(super) use stack::Stack;
 
 /// Pairs in a tile.
@@ -60,7 +63,12 @@ pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> Con
             let nearest = distance.least(bits);
             let (i, j) = (nearest as usize / WIDTH, nearest as usize % WIDTH);
             next = Some((node.child[i], other.child[j]));
-            T::Lanes::push(&mut stack, bits & !(1 << nearest), &node.child, &other.child);
+            T::Lanes::push(
+                &mut stack,
+                bits & !(1 << nearest),
+                &node.child,
+                &other.child,
+            );
         } else if pairs != 0 {
             tiles.triangles(a, b, pairs)?;
         }

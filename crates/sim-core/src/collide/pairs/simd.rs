@@ -8,59 +8,59 @@ use core::arch::x86_64::*;
 use core::ops::ControlFlow;
 
 use super::lanes::{least, push_each};
-use super::overlap::each_pair_in;
-use super::{Lanes, Reach, Stack, TILE, Visit};
-use crate::bvh::{Bvh, WIDTH};
+use super::{Lanes, Meshes, Question, Stack, TILE, overlap};
+use crate::bvh::WIDTH;
+
+#[cfg(feature = "std")]
+macro_rules! has {
+    ($($feature:tt),*) => { $(std::arch::is_x86_feature_detected!($feature))&&* };
+}
+#[cfg(not(feature = "std"))]
+macro_rules! has {
+    ($($feature:tt),*) => { cfg!(all($(target_feature = $feature),*)) };
+}
 
 #[inline]
 pub(super) fn has_avx2() -> bool {
-    #[cfg(feature = "std")]
-    return std::arch::is_x86_feature_detected!("avx2")
-        && std::arch::is_x86_feature_detected!("fma");
-    #[cfg(not(feature = "std"))]
-    cfg!(all(target_feature = "avx2", target_feature = "fma"))
+    has!("avx2", "fma", "bmi1", "bmi2", "popcnt")
 }
 
 #[inline]
 pub(super) fn has_avx512() -> bool {
-    #[cfg(feature = "std")]
-    return std::arch::is_x86_feature_detected!("avx512f") && has_avx2();
-    #[cfg(not(feature = "std"))]
-    cfg!(all(target_feature = "avx512f", target_feature = "avx2", target_feature = "fma"))
+    has!("avx512f") && has_avx2()
 }
 
-/// [`super::each_pair`] in 256-bit vectors. The caller has asked [`has_avx2`].
-pub(super) fn each_pair_avx2(
-    first: &Bvh,
-    second: &Bvh,
-    reach: Reach,
-    visit: impl Visit,
+/// Answers a question in 256-bit vectors.
+pub(super) fn ask_avx2<Q: Question, const TURNED: bool>(
+    meshes: Meshes<'_>,
+    question: &mut Q,
 ) -> ControlFlow<()> {
     assert!(has_avx2());
-    // SAFETY: the processor has AVX2 and FMA, by the assertion.
-    unsafe { avx2(first, second, reach, visit) }
+    // SAFETY: the processor has what `avx2` is compiled for, by the assertion.
+    unsafe { avx2::<Q, TURNED>(meshes, question) }
 }
 
-/// [`super::each_pair`] in 512-bit vectors. The caller has asked [`has_avx512`].
-pub(super) fn each_pair_avx512(
-    first: &Bvh,
-    second: &Bvh,
-    reach: Reach,
-    visit: impl Visit,
+/// Answers a question in 512-bit vectors.
+pub(super) fn ask_avx512<Q: Question, const TURNED: bool>(
+    meshes: Meshes<'_>,
+    question: &mut Q,
 ) -> ControlFlow<()> {
     assert!(has_avx512());
-    // SAFETY: the processor has AVX-512F, AVX2 and FMA, by the assertion.
-    unsafe { avx512(first, second, reach, visit) }
+    // SAFETY: the processor has what `avx512` is compiled for, by the assertion.
+    unsafe { avx512::<Q, TURNED>(meshes, question) }
 }
 
-#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-fn avx2(first: &Bvh, second: &Bvh, reach: Reach, visit: impl Visit) -> ControlFlow<()> {
-    each_pair_in::<Avx2>(first, second, reach, visit)
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
+fn avx2<Q: Question, const TURNED: bool>(meshes: Meshes<'_>, question: &mut Q) -> ControlFlow<()> {
+    overlap::ask::<Avx2, Q, TURNED>(meshes, question)
 }
 
-#[target_feature(enable = "avx512f,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-fn avx512(first: &Bvh, second: &Bvh, reach: Reach, visit: impl Visit) -> ControlFlow<()> {
-    each_pair_in::<Avx512>(first, second, reach, visit)
+#[target_feature(enable = "avx512f,avx2,fma,bmi1,bmi2,popcnt")]
+fn avx512<Q: Question, const TURNED: bool>(
+    meshes: Meshes<'_>,
+    question: &mut Q,
+) -> ControlFlow<()> {
+    overlap::ask::<Avx512, Q, TURNED>(meshes, question)
 }
 
 /// Two rows of four in each vector. Made only in [`avx2`].
