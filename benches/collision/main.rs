@@ -1,0 +1,75 @@
+//! Mesh contact beside its peers: time, wrong answers, building, rays and growth.
+//!
+//! `cargo bench` runs all and prints tables, which are also left in `target/contact.md`;
+//! `cargo bench -- contact/near` runs a part, `cargo bench -- --quick` all of it in less time.
+
+mod contact;
+mod meshes;
+mod peers;
+mod placements;
+mod sweep;
+mod table;
+
+use std::path::PathBuf;
+
+use crate::meshes::Solids;
+use crate::table::Table;
+
+/// How much is tried.
+#[derive(Clone, Copy)]
+struct Scope {
+    /// From which a mesh comes in.
+    directions: usize,
+    /// Triangles of the largest mesh.
+    largest: usize,
+}
+
+impl Scope {
+    /// Without cargo bench's `--bench` criterion runs everything once, as a test.
+    fn of_args() -> Scope {
+        if std::env::args().any(|arg| arg == "--bench") {
+            Scope {
+                directions: 200,
+                largest: usize::MAX,
+            }
+        } else {
+            Scope {
+                directions: 5,
+                largest: 20_000,
+            }
+        }
+    }
+}
+
+fn main() {
+    let scope = Scope::of_args();
+    let mut criterion = sweep::criterion();
+    let solids = Solids::default();
+    let outcomes = contact::bench(&mut criterion, &solids, scope);
+    criterion.final_summary();
+    publish(&[
+        contact::table(&outcomes),
+        contact::table_of_pairs(&outcomes),
+    ]);
+}
+
+/// Prints the tables that have rows, and leaves them in cargo's target folder.
+fn publish(tables: &[Table]) {
+    let tables: Vec<&Table> = tables
+        .iter()
+        .filter(|table| !table.rows.is_empty())
+        .collect();
+    let text: String = tables.iter().map(|table| table.markdown() + "\n").collect();
+    println!("\n{text}");
+    std::fs::write(target().join("contact.md"), text).expect("target can be written");
+}
+
+/// The folder that cargo builds in: that of this program is `target/release/deps`.
+fn target() -> PathBuf {
+    let program = std::env::current_exe().expect("a program has a path");
+    program
+        .ancestors()
+        .nth(3)
+        .expect("cargo builds in target")
+        .into()
+}
