@@ -5,6 +5,7 @@ use std::cell::OnceCell;
 use criterion::{BenchmarkGroup, Criterion, measurement::WallTime};
 
 use crate::Scope;
+use crate::degenerate::Degenerate;
 use crate::meshes::{Shape, Solids};
 use crate::peers::Method;
 use crate::placements::{Class, Pair, Placement};
@@ -141,10 +142,19 @@ fn outcome(
 
 /// Rows of methods, columns of classes: the geometric mean over pairs of the median placement,
 /// how many times that of the first method it is, and wrong answers of how many.
-pub(crate) fn table(outcomes: &[Outcome]) -> Table {
+pub(crate) fn table(outcomes: &[Outcome], degenerate: &[Degenerate]) -> Table {
     let mut table = Table::new(
         "Contact: median placement, geometric mean over pairs; wrong answers",
-        ["method", "near", "graze", "deep", "hair", "nested", "wrong"],
+        [
+            "method",
+            "near",
+            "graze",
+            "deep",
+            "hair",
+            "nested",
+            "degenerate wrong",
+            "wrong",
+        ],
     );
     let of = |method, class| {
         let of = outcomes
@@ -153,6 +163,9 @@ pub(crate) fn table(outcomes: &[Outcome]) -> Table {
         of.collect::<Vec<_>>()
     };
     let mean = |outcomes: &[&Outcome]| geometric_mean(outcomes.iter().map(|o| o.median()));
+    if outcomes.is_empty() {
+        return table;
+    }
     for method in Method::with_trees() {
         let first = Method::with_trees()[0];
         let mut row = vec![method.name()];
@@ -172,7 +185,12 @@ pub(crate) fn table(outcomes: &[Outcome]) -> Table {
             wrong += bad;
             all += count;
         }
-        row.push(format!("{wrong}/{all}"));
+        let bad = degenerate
+            .iter()
+            .filter(|d| method.meet(&d.first, &d.second, d.placement.offset) != d.placement.meet);
+        let bad = bad.count();
+        row.push(format!("{bad}/{}", degenerate.len()));
+        row.push(format!("{}/{}", wrong + bad, all + degenerate.len()));
         table.rows.push(row);
     }
     table

@@ -4,7 +4,12 @@
 //! `cargo bench -- contact/near` runs a part, `cargo bench -- --quick` all of it in less time.
 
 mod contact;
+mod degenerate;
+mod edge_tests;
 mod meshes;
+mod moller_trumbore;
+#[path = "../../tests/oracle/mod.rs"]
+mod oracle;
 mod peers;
 mod placements;
 mod sweep;
@@ -45,11 +50,14 @@ fn main() {
     let scope = Scope::of_args();
     let mut criterion = sweep::criterion();
     let solids = Solids::default();
+    let degenerate = degenerate::all(&solids);
     let outcomes = contact::bench(&mut criterion, &solids, scope);
+    let edge_tests = edge_tests::bench(&mut criterion, &solids, scope, &degenerate);
     criterion.final_summary();
     publish(&[
-        contact::table(&outcomes),
+        contact::table(&outcomes, &degenerate),
         contact::table_of_pairs(&outcomes),
+        edge_tests,
     ]);
 }
 
