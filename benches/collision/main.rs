@@ -3,6 +3,7 @@
 //! `cargo bench` runs all and prints tables, which are also left in `target/contact.md`;
 //! `cargo bench -- contact/near` runs a part, `cargo bench -- --quick` all of it in less time.
 
+mod build;
 mod contact;
 mod degenerate;
 mod edge_tests;
@@ -53,11 +54,13 @@ fn main() {
     let degenerate = degenerate::all(&solids);
     let outcomes = contact::bench(&mut criterion, &solids, scope);
     let edge_tests = edge_tests::bench(&mut criterion, &solids, scope, &degenerate);
+    let builds = build::bench(&mut criterion, &solids, scope);
     criterion.final_summary();
     publish(&[
         contact::table(&outcomes, &degenerate),
         contact::table_of_pairs(&outcomes),
         edge_tests,
+        build::table(&builds),
     ]);
 }
 

@@ -32,6 +32,18 @@ impl Shape {
         }
     }
 
+    /// Such as `cow 6k`.
+    pub(crate) fn name(self) -> String {
+        let thousands = self.triangles() as f64 / 1000.0;
+        match self {
+            Shape::Cube => "cube".into(),
+            Shape::Cow(_) => format!("cow {thousands}k"),
+            Shape::Knot(_) => format!("knot {thousands}k"),
+            Shape::Bumpy(_) => format!("bumpy {thousands}k"),
+            Shape::Sphere(..) => format!("sphere {thousands}k"),
+        }
+    }
+
     fn make(self) -> Mesh {
         match self {
             Shape::Cube => {
