@@ -7,6 +7,7 @@ use sim_core::{DQuat, DVec3, Mesh, Vec3};
 use crate::meshes::{Shape, Solid, Solids};
 use crate::oracle;
 use crate::placements::Placement;
+use crate::random::Random;
 
 /// Two solids where they touch, overlap, or are apart by little.
 pub(crate) struct Degenerate {
@@ -143,27 +144,4 @@ fn triangles_meet(first: &Mesh, second: &Mesh, offset: DVec3) -> bool {
         (0..3).any(|i| oracle::segment_meets_triangle(s[i], s[(i + 1) % 3], t))
     };
     edge_meets(s, t) || edge_meets(t, s)
-}
-
-/// Numbers that look random and are the same on every run (Steele, Lea, Flood 2014, "Fast
-/// splittable pseudorandom number generators").
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ mixed >> 31
-    }
-
-    /// A whole number less than `n`.
-    pub(crate) fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
-    }
-
-    /// From 0 up to 1.
-    pub(crate) fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
 }

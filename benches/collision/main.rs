@@ -7,12 +7,15 @@ mod build;
 mod contact;
 mod degenerate;
 mod edge_tests;
+mod growth;
 mod meshes;
 mod moller_trumbore;
 #[path = "../../tests/oracle/mod.rs"]
 mod oracle;
 mod peers;
 mod placements;
+mod random;
+mod rays;
 mod sweep;
 mod table;
 
@@ -55,12 +58,17 @@ fn main() {
     let outcomes = contact::bench(&mut criterion, &solids, scope);
     let edge_tests = edge_tests::bench(&mut criterion, &solids, scope, &degenerate);
     let builds = build::bench(&mut criterion, &solids, scope);
+    let mut growth = growth::bench(&mut criterion, &solids, scope);
+    growth.extend(growth::of_builds(&builds));
+    let rays = rays::bench(&mut criterion, &solids, scope);
     criterion.final_summary();
     publish(&[
         contact::table(&outcomes, &degenerate),
         contact::table_of_pairs(&outcomes),
         edge_tests,
         build::table(&builds),
+        growth::table(&growth),
+        rays,
     ]);
 }
 

@@ -29,6 +29,10 @@ impl Method {
         levels.map(Method::Tree).chain(peers).collect()
     }
 
+    pub(crate) fn best_tree() -> Method {
+        Method::Tree(Level::best())
+    }
+
     pub(crate) fn name(self) -> String {
         match self {
             Method::Tree(level) => format!("ours {level:?}"),
