@@ -113,6 +113,15 @@ pub(crate) fn of_builds(builds: &[Build]) -> Vec<Series> {
     all
 }
 
+/// Whether queries of every size have been timed.
+pub(crate) fn is_complete(all: &[Series]) -> bool {
+    let complete = |class: Class| {
+        let mut series = all.iter().filter(|series| series.what == class.name());
+        series.any(|series| series.points.len() == SIZES.len())
+    };
+    complete(Class::Near) && complete(Class::Deep)
+}
+
 pub(crate) fn table(all: &[Series]) -> Table {
     let sizes = SIZES.map(|size| format!("{}k", size as f64 / 1000.0));
     let header: Vec<&str> = ["what", "method"]

@@ -14,12 +14,13 @@ mod moller_trumbore;
 mod oracle;
 mod peers;
 mod placements;
+mod plot;
 mod random;
 mod rays;
 mod sweep;
 mod table;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::meshes::Solids;
 use crate::table::Table;
@@ -62,6 +63,15 @@ fn main() {
     growth.extend(growth::of_builds(&builds));
     let rays = rays::bench(&mut criterion, &solids, scope);
     criterion.final_summary();
+    // A part of the growth would be a misleading picture.
+    if growth::is_complete(&growth) {
+        let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+        std::fs::write(
+            docs.join("naive-vs-bvh.svg"),
+            plot::naive_against_bvh(&growth),
+        )
+        .expect("docs can be written");
+    }
     publish(&[
         contact::table(&outcomes, &degenerate),
         contact::table_of_pairs(&outcomes),
@@ -80,7 +90,10 @@ fn publish(tables: &[Table]) {
         .collect();
     let text: String = tables.iter().map(|table| table.markdown() + "\n").collect();
     println!("\n{text}");
-    std::fs::write(target().join("contact.md"), text).expect("target can be written");
+    let csv: Vec<String> = tables.iter().map(|table| table.csv()).collect();
+    let target = target();
+    std::fs::write(target.join("contact.md"), text).expect("target can be written");
+    std::fs::write(target.join("contact.csv"), csv.join("\n")).expect("target can be written");
 }
 
 /// The folder that cargo builds in: that of this program is `target/release/deps`.

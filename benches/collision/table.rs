@@ -55,10 +55,11 @@ impl Table {
     }
 
     pub(crate) fn csv(&self) -> String {
+        let title = format!("# {}\n", self.title);
         let lines = [&self.header].into_iter().chain(&self.rows);
         let quote = |cell: &String| format!("\"{}\"", cell.replace('"', "\"\""));
         let line = |row: &Vec<String>| row.iter().map(quote).collect::<Vec<_>>().join(",") + "\n";
-        lines.map(line).collect()
+        title + &lines.map(line).collect::<String>()
     }
 }
 
