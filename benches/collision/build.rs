@@ -258,7 +258,7 @@ pub(crate) fn bench(c: &mut Criterion, solids: &Solids, scope: Scope) -> Vec<Bui
 pub(crate) fn table(builds: &[Build]) -> Table {
     let mut table = Table::new(
         "Build, freeing included; cost: boxes and triangles that a random ray is tested with",
-        [
+        &[
             "mesh",
             "builder",
             "time",

@@ -1,31 +1,25 @@
 //! Do two meshes meet? Time and wrong answers of each method, by class of placement.
 
 use std::cell::OnceCell;
+use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, measurement::WallTime};
 
 use crate::Scope;
-use crate::degenerate::Degenerate;
 use crate::meshes::{Shape, Solids};
 use crate::peers::Method;
 use crate::placements::{Class, Pair, Placement};
-use crate::sweep::{geometric_mean, median, sweep};
-use crate::table::{Table, three_digits, time};
+use crate::sweep::{median, sweep};
 
 /// What one method did with the placements of one class of a pair.
 pub(crate) struct Outcome {
     pub(crate) class: Class,
     pub(crate) pair: &'static str,
     pub(crate) method: Method,
-    /// Median of each placement, s.
-    pub(crate) times: Vec<f64>,
+    /// The median placement, s.
+    pub(crate) time: f64,
     pub(crate) wrong: usize,
-}
-
-impl Outcome {
-    fn median(&self) -> f64 {
-        median(self.times.clone())
-    }
+    pub(crate) placements: usize,
 }
 
 /// A pair, made when the first of its benchmarks runs.
@@ -135,96 +129,29 @@ fn outcome(
         class,
         pair: pair.name,
         method,
-        times: swept.times,
         wrong,
+        placements: swept.cases.len(),
+        time: median(swept.times),
     })
 }
 
-/// Rows of methods, columns of classes: the geometric mean over pairs of the median placement,
-/// how many times that of the first method it is, and wrong answers of how many.
-pub(crate) fn table(outcomes: &[Outcome], degenerate: &[Degenerate]) -> Table {
-    let mut table = Table::new(
-        "Contact: median placement, geometric mean over pairs; wrong answers",
-        [
-            "method",
-            "near",
-            "graze",
-            "deep",
-            "hair",
-            "nested",
-            "degenerate wrong",
-            "wrong",
-        ],
-    );
-    let of = |method, class| {
-        let of = outcomes
-            .iter()
-            .filter(move |o| o.method == method && o.class == class);
-        of.collect::<Vec<_>>()
+/// Asks ours about every placement of a class, so many times, with the smaller pairs: for
+/// counting instructions.
+pub(crate) fn repeat(class: &str, times: usize) {
+    let solids = Solids::default();
+    let scope = Scope {
+        directions: 20,
+        largest: 20_000,
     };
-    let mean = |outcomes: &[&Outcome]| geometric_mean(outcomes.iter().map(|o| o.median()));
-    if outcomes.is_empty() {
-        return table;
-    }
-    for method in Method::with_trees() {
-        let first = Method::best_tree();
-        let mut row = vec![method.name()];
-        let (mut wrong, mut all) = (0, 0);
-        for class in Class::ALL {
-            let of_class = of(method, class);
-            let (bad, count) = tally(&of_class);
-            let ratio = mean(&of_class) / mean(&of(first, class));
-            row.push(match count {
-                0 => "-".into(),
-                _ => format!(
-                    "{} x{} ({bad}/{count})",
-                    time(mean(&of_class)),
-                    three_digits(ratio)
-                ),
-            });
-            wrong += bad;
-            all += count;
-        }
-        let bad = degenerate
-            .iter()
-            .filter(|d| method.meet(&d.first, &d.second, d.placement.offset) != d.placement.meet);
-        let bad = bad.count();
-        row.push(format!("{bad}/{}", degenerate.len()));
-        row.push(format!("{}/{}", wrong + bad, all + degenerate.len()));
-        table.rows.push(row);
-    }
-    table
-}
-
-fn tally(outcomes: &[&Outcome]) -> (usize, usize) {
-    let wrong = outcomes.iter().map(|o| o.wrong).sum();
-    (wrong, outcomes.iter().map(|o| o.times.len()).sum())
-}
-
-/// The same for each pair.
-pub(crate) fn table_of_pairs(outcomes: &[Outcome]) -> Table {
-    let mut table = Table::new(
-        "Contact by pair: median placement, wrong answers",
-        ["pair", "method", "near", "graze", "deep", "hair", "nested"],
-    );
-    let mut pairs: Vec<&str> = outcomes.iter().map(|o| o.pair).collect();
-    pairs.dedup();
-    for pair in pairs {
-        for method in Method::with_trees().into_iter().chain([Method::Naive]) {
-            let of: Vec<&Outcome> = outcomes
-                .iter()
-                .filter(|o| o.pair == pair && o.method == method)
-                .collect();
-            if of.is_empty() {
-                continue;
+    for pair in pairs(&solids, scope) {
+        for class in Class::ALL.into_iter().filter(|c| c.name() == class) {
+            let pair = pair.get();
+            let placements = pair.placements(class);
+            for placement in std::iter::repeat_n(placements, times).flatten() {
+                let offset = black_box(placement.offset);
+                let meet = Method::best_tree().meet(&pair.first, &pair.second, offset);
+                assert_eq!(meet, placement.meet);
             }
-            let cell = |class| match of.iter().find(|o| o.class == class) {
-                Some(o) => format!("{} ({}/{})", time(o.median()), o.wrong, o.times.len()),
-                None => "-".into(),
-            };
-            let row = [pair.to_string(), method.name()].into_iter();
-            table.rows.push(row.chain(Class::ALL.map(cell)).collect());
         }
     }
-    table
 }

@@ -5,9 +5,9 @@ use std::rc::Rc;
 use sim_core::{DQuat, DVec3, Mesh, Vec3};
 
 use crate::meshes::{Shape, Solid, Solids};
-use crate::oracle;
 use crate::placements::Placement;
 use crate::random::Random;
+use crate::rationals;
 
 /// Two solids where they touch, overlap, or are apart by little.
 pub(crate) struct Degenerate {
@@ -126,7 +126,8 @@ fn triangles() -> Vec<Degenerate> {
                 DVec3::ONE
             }
             * scale;
-        let meet = triangles_meet(&first, &second, offset);
+        let corners = [&first, &second].map(|mesh| mesh.corners(0).map(|v| v.as_dvec3()));
+        let meet = rationals::triangles_meet(corners[0], corners[1].map(|v| v + offset));
         placements.push(Degenerate {
             first: Rc::new(Solid::of(first)),
             second: Rc::new(Solid::of(second)),
@@ -134,14 +135,4 @@ fn triangles() -> Vec<Degenerate> {
         });
     }
     placements
-}
-
-/// Rational arithmetic about two meshes of one triangle.
-fn triangles_meet(first: &Mesh, second: &Mesh, offset: DVec3) -> bool {
-    let s = first.corners(0).map(|v| v.as_dvec3());
-    let t = second.corners(0).map(|v| v.as_dvec3() + offset);
-    let edge_meets = |s: [DVec3; 3], t: [DVec3; 3]| {
-        (0..3).any(|i| oracle::segment_meets_triangle(s[i], s[(i + 1) % 3], t))
-    };
-    edge_meets(s, t) || edge_meets(t, s)
 }

@@ -29,7 +29,7 @@ pub(crate) fn bench(
 ) -> Table {
     let mut table = Table::new(
         "One test of an edge with a triangle: near placements; wrong answers where meshes touch",
-        [
+        &[
             "pair",
             "method",
             "ns a test",

@@ -2,20 +2,28 @@
 //!
 //! `cargo bench` runs all and prints tables, which are also left in `target/contact.md`;
 //! `cargo bench -- contact/near` runs a part, `cargo bench -- --quick` all of it in less time.
+//!
+//! `repeat near 100` asks ours about the near placements of the smaller pairs and does no more, so
+//! that instructions can be counted; PROGRAM is what `cargo bench --no-run` prints last:
+//!
+//! ```sh
+//! valgrind --tool=callgrind --toggle-collect='sim_core::collide::tree::intersect_at' \
+//!   PROGRAM repeat near 100
+//! ```
 
 mod build;
 mod contact;
+mod contact_tables;
 mod degenerate;
 mod edge_tests;
 mod growth;
 mod meshes;
 mod moller_trumbore;
-#[path = "../../tests/oracle/mod.rs"]
-mod oracle;
 mod peers;
 mod placements;
 mod plot;
 mod random;
+mod rationals;
 mod rays;
 mod sweep;
 mod table;
@@ -52,6 +60,9 @@ impl Scope {
 }
 
 fn main() {
+    if let Some((class, times)) = repeat_of_args() {
+        return contact::repeat(&class, times);
+    }
     let scope = Scope::of_args();
     let mut criterion = sweep::criterion();
     let solids = Solids::default();
@@ -73,13 +84,20 @@ fn main() {
         .expect("docs can be written");
     }
     publish(&[
-        contact::table(&outcomes, &degenerate),
-        contact::table_of_pairs(&outcomes),
+        contact_tables::of_classes(&outcomes, &degenerate),
+        contact_tables::of_pairs(&outcomes),
         edge_tests,
         build::table(&builds),
         growth::table(&growth),
         rays,
     ]);
+}
+
+/// From `repeat near 100`.
+fn repeat_of_args() -> Option<(String, usize)> {
+    let mut args = std::env::args().skip(1);
+    let (_, class) = (args.next().filter(|arg| arg == "repeat")?, args.next()?);
+    Some((class, args.next()?.parse().ok()?))
 }
 
 /// Prints the tables that have rows, and leaves them in cargo's target folder.

@@ -3,7 +3,7 @@
 //! The second mesh comes in along directions spread evenly over the sphere, until it touches the
 //! first. Offsets lie on a grid along the direction, so that "touches" and "one step before" are
 //! both exact. Truth is found through parry's trees and their descent with exact predicates,
-//! never through the code under test.
+//! never through the code under test, and some of it is found again in rational arithmetic.
 
 use std::rc::Rc;
 
@@ -12,6 +12,7 @@ use sim_core::collide::predicates::triangles_meet;
 
 use crate::meshes::{Shape, Solid, Solids};
 use crate::peers::parry_tree;
+use crate::rationals;
 
 /// Where along its way the second mesh is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +56,9 @@ pub(crate) struct Placement {
     pub(crate) meet: bool,
 }
 
+/// Placements along one of so many directions are checked in rational arithmetic, which is slow.
+const CHECKED: usize = 20;
+
 /// Two solids and their placements.
 pub(crate) struct Pair {
     pub(crate) first: Rc<Solid>,
@@ -66,10 +70,18 @@ impl Pair {
     /// The second comes in towards the first from so many directions.
     pub(crate) fn approaching(solids: &Solids, shapes: [Shape; 2], directions: usize) -> Pair {
         let [first, second] = shapes.map(|shape| solids.get(shape));
-        let placements = (0..directions)
-            .filter_map(|i| approach(&first, &second, direction(i, directions)))
-            .flatten()
-            .collect();
+        let mut placements = Vec::new();
+        for i in 0..directions {
+            let line = approach(&first, &second, direction(i, directions));
+            if i % CHECKED == 0 {
+                for (_, placement) in line.iter().flatten() {
+                    let meet =
+                        parry_tree(&first, &second, placement.offset, rationals::triangles_meet);
+                    assert_eq!(meet, placement.meet, "{placement:?}");
+                }
+            }
+            placements.extend(line.into_iter().flatten());
+        }
         Pair {
             first,
             second,

@@ -167,7 +167,7 @@ fn at_features(mesh: &Mesh, most: usize) -> [Vec<Ray>; 2] {
 pub(crate) fn bench(c: &mut Criterion, solids: &Solids, scope: Scope) -> Table {
     let mut table = Table::new(
         "Rays against the cow: nearest hit, and misses where a ray cannot miss",
-        [
+        &[
             "cow",
             "method",
             "ns a ray",

@@ -47,13 +47,13 @@ pub(crate) fn sweep<T, R>(
         bencher.iter_custom(|sweeps| {
             let mut total = Duration::ZERO;
             for _ in 0..sweeps {
-                for ((case, times), &repeats) in cases.iter().zip(&mut times).zip(&repeats) {
+                for (i, case) in cases.iter().enumerate() {
                     let start = Instant::now();
-                    for _ in 0..repeats {
+                    for _ in 0..repeats[i] {
                         black_box(run(black_box(case)));
                     }
-                    let time = start.elapsed().as_secs_f64() / f64::from(repeats);
-                    times.push(time);
+                    let time = start.elapsed().as_secs_f64() / f64::from(repeats[i]);
+                    times[i].push(time);
                     total += Duration::from_secs_f64(time);
                 }
             }

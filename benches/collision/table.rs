@@ -9,10 +9,10 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    pub(crate) fn new<const N: usize>(title: &str, header: [&str; N]) -> Table {
+    pub(crate) fn new(title: &str, header: &[&str]) -> Table {
         Table {
             title: title.into(),
-            header: header.map(Into::into).to_vec(),
+            header: header.iter().map(|&cell| cell.into()).collect(),
             rows: Vec::new(),
         }
     }
