@@ -6,6 +6,7 @@ use std::hint::black_box;
 use criterion::{BenchmarkGroup, Criterion, measurement::WallTime};
 
 use crate::Scope;
+use crate::degenerate::Degenerate;
 use crate::meshes::{Shape, Solids};
 use crate::peers::Method;
 use crate::placements::{Class, Pair, Placement};
@@ -135,6 +136,26 @@ fn outcome(
     })
 }
 
+/// No answer of ours may be wrong, at any level and with or without trees.
+pub(crate) fn assert_ours_is_right(outcomes: &[Outcome], degenerate: &[Degenerate]) {
+    for outcome in outcomes.iter().filter(|o| o.method.is_ours()) {
+        let (class, pair, method) = (outcome.class.name(), outcome.pair, outcome.method.name());
+        assert_eq!(outcome.wrong, 0, "wrong answers: {method}, {class}, {pair}");
+    }
+    for method in Method::with_trees().into_iter().chain([Method::Naive]) {
+        for d in degenerate.iter().filter(|_| method.is_ours()) {
+            let meet = method.meet(&d.first, &d.second, d.placement.offset);
+            assert_eq!(
+                meet,
+                d.placement.meet,
+                "{}: {:?}",
+                method.name(),
+                d.placement
+            );
+        }
+    }
+}
+
 /// Asks ours about every placement of a class, so many times, with the smaller pairs: for
 /// counting instructions.
 pub(crate) fn repeat(class: &str, times: usize) {
@@ -142,6 +163,7 @@ pub(crate) fn repeat(class: &str, times: usize) {
     let scope = Scope {
         directions: 20,
         largest: 20_000,
+        is_timed: false,
     };
     for pair in pairs(&solids, scope) {
         for class in Class::ALL.into_iter().filter(|c| c.name() == class) {

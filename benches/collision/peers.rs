@@ -29,6 +29,10 @@ impl Method {
         levels.map(Method::Tree).chain(peers).collect()
     }
 
+    pub(crate) fn is_ours(self) -> bool {
+        matches!(self, Method::Tree(_) | Method::Naive)
+    }
+
     pub(crate) fn best_tree() -> Method {
         Method::Tree(Level::best())
     }

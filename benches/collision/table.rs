@@ -1,4 +1,4 @@
-//! Tables, as Markdown for people and CSV for programs.
+//! Tables for people, and figures as they read best.
 
 use std::fmt::Write;
 
@@ -52,14 +52,6 @@ impl Table {
             line(row);
         }
         text
-    }
-
-    pub(crate) fn csv(&self) -> String {
-        let title = format!("# {}\n", self.title);
-        let lines = [&self.header].into_iter().chain(&self.rows);
-        let quote = |cell: &String| format!("\"{}\"", cell.replace('"', "\"\""));
-        let line = |row: &Vec<String>| row.iter().map(quote).collect::<Vec<_>>().join(",") + "\n";
-        title + &lines.map(line).collect::<String>()
     }
 }
 
