@@ -82,7 +82,7 @@ impl Solid {
     }
 }
 
-pub(crate) fn parry_mesh(mesh: &Mesh) -> TriMesh {
+fn parry_mesh(mesh: &Mesh) -> TriMesh {
     let vertices = mesh
         .vertices()
         .iter()
@@ -99,9 +99,12 @@ pub(crate) struct Solids {
 impl Solids {
     pub(crate) fn get(&self, shape: Shape) -> Rc<Solid> {
         let mut made = self.made.borrow_mut();
-        let solid = made
-            .entry(shape)
-            .or_insert_with(|| Rc::new(Solid::of(shape.make())));
+        let solid = made.entry(shape).or_insert_with(|| {
+            let mesh = shape.make();
+            let volume = mesh.volume().expect("shapes are closed and oriented");
+            assert!(volume > 0.0, "shapes are wound outward");
+            Rc::new(Solid::of(mesh))
+        });
         Rc::clone(solid)
     }
 }

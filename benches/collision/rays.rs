@@ -31,7 +31,21 @@ struct Ray {
     direction: Vec3,
 }
 
-const METHODS: [&str; 4] = ["ours", "parry", "obvhs medium", "bvh"];
+/// Who casts rays.
+#[derive(Clone, Copy)]
+enum Caster {
+    Ours,
+    Parry,
+    Obvhs,
+    Bvh,
+}
+
+const CASTERS: [(&str, Caster); 4] = [
+    ("ours", Caster::Ours),
+    ("parry", Caster::Parry),
+    ("obvhs medium", Caster::Obvhs),
+    ("bvh", Caster::Bvh),
+];
 
 /// The mesh as each peer wants it.
 struct Peers<'a> {
@@ -66,16 +80,16 @@ impl<'a> Peers<'a> {
     }
 
     /// The nearest hit, in lengths of the direction.
-    fn cast(&self, method: &str, ray: &Ray) -> Option<f64> {
-        match method {
-            "ours" => {
+    fn cast(&self, caster: Caster, ray: &Ray) -> Option<f64> {
+        match caster {
+            Caster::Ours => {
                 let hit = self
                     .solid
                     .bvh
                     .ray(ray.origin.as_dvec3(), ray.direction.as_dvec3());
                 hit.map(|hit| hit.t)
             }
-            "parry" => {
+            Caster::Parry => {
                 let vector = |v: Vec3| Vector::from_array(v.to_array());
                 let ray = ParryRay::new(vector(ray.origin), vector(ray.direction));
                 self.solid
@@ -83,7 +97,7 @@ impl<'a> Peers<'a> {
                     .cast_local_ray(&ray, f32::MAX, false)
                     .map(f64::from)
             }
-            "obvhs medium" => {
+            Caster::Obvhs => {
                 let ray = ObvhsRay::new_inf(Vec3A::from(ray.origin), Vec3A::from(ray.direction));
                 let mut hit = RayHit::none();
                 self.obvhs.ray_traverse(ray, &mut hit, |ray, id| {
@@ -91,7 +105,7 @@ impl<'a> Peers<'a> {
                 });
                 hit.t.is_finite().then_some(f64::from(hit.t))
             }
-            _ => {
+            Caster::Bvh => {
                 let direction = Vector3::from(ray.direction.to_array());
                 // This peer makes the direction a unit vector.
                 let unit = 1.0 / f64::from(direction.norm());
@@ -199,8 +213,8 @@ pub(crate) fn bench(c: &mut Criterion, solids: &Solids, scope: Scope) -> Table {
         };
         let mut group = c.benchmark_group(format!("rays/{}", shape.name()));
         let mut ours = None;
-        for method in METHODS {
-            let run = |ray: &Ray| prepare().0.cast(method, ray);
+        for (method, caster) in CASTERS {
+            let run = |ray: &Ray| prepare().0.cast(caster, ray);
             let Some(swept) = sweep(&mut group, method, || prepare().1.clone(), run) else {
                 continue;
             };
