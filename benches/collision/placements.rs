@@ -89,7 +89,7 @@ impl Pair {
         }
     }
 
-    /// The second inside the first, displaced by up to `slack` times its size.
+    /// The second inside the first, displaced by up to `slack` times its size, less than the gap.
     pub(crate) fn nested(
         solids: &Solids,
         shapes: [Shape; 2],
@@ -101,6 +101,7 @@ impl Pair {
         let placements = (0..directions).map(|i| {
             let part = slack * i as f64 / directions as f64;
             let placement = place(&first, &second, direction(i, directions) * part * size);
+            assert!(!placement.meet, "one is inside the other");
             (Class::Nested, placement)
         });
         let placements = placements.collect();
