@@ -137,6 +137,7 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
         triangles,
         origin: origins(mesh),
         depth,
+        closed: mesh.is_closed(),
     }
 }
 

@@ -30,6 +30,7 @@ pub struct Bvh {
     /// By triangle of the mesh.
     origin: Vec<Origin>,
     depth: usize,
+    closed: bool,
 }
 
 /// The corners and edges of a triangle in its mesh, and which of them it owns.
@@ -105,8 +106,22 @@ impl Bvh {
             .filter_map(move |(level, bounds)| (level == depth).then_some(bounds))
     }
 
+    /// Whether the mesh is closed ([`Mesh::is_closed`]).
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
     pub(crate) fn root(&self) -> u32 {
         self.root
+    }
+
+    /// Any leaf.
+    pub(crate) fn first_leaf(&self) -> &Node {
+        let mut code = self.root;
+        while code & LEAF == 0 {
+            code = self.node(code).child[0];
+        }
+        self.node(code)
     }
 
     /// The node or leaf of a code.

@@ -10,6 +10,7 @@ mod pairs;
 mod placement;
 mod plane;
 pub mod predicates;
+mod solid;
 pub mod touch;
 pub mod tree;
 
@@ -17,4 +18,5 @@ pub use hit::{Hit, Side};
 pub use pairs::Level;
 pub use placement::Placement;
 pub(crate) use placement::snap;
+pub use solid::{Place, contains, each_in_box, locate, segment_meets};
 pub use touch::{Feature, Touch};

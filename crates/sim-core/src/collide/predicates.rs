@@ -93,6 +93,11 @@ fn sides(abc: [DVec3; 3], points: [DVec3; 3]) -> [Ordering; 3] {
     points.map(|p| exact_side(plane, abc, p))
 }
 
+/// Whether a point lies above the plane of `abc`, on the side where it is counter-clockwise.
+pub(super) fn above(abc: [DVec3; 3], p: DVec3) -> bool {
+    side(abc, p) == Ordering::Greater
+}
+
 fn side(abc: [DVec3; 3], p: DVec3) -> Ordering {
     exact_side(Plane::of(abc), abc, p)
 }
@@ -154,7 +159,7 @@ pub fn segments_meet(p: DVec3, q: DVec3, a: DVec3, b: DVec3) -> bool {
 
 /// The axis along which a plane is projected.
 #[derive(Clone, Copy)]
-enum Axis {
+pub(super) enum Axis {
     X,
     Y,
     Z,
@@ -164,7 +169,7 @@ impl Axis {
     const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
     /// The exact sign of the projected triangle's area.
-    fn orient(self, a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    pub(super) fn orient(self, a: DVec3, b: DVec3, c: DVec3) -> f64 {
         let at = |p: DVec3| match self {
             Axis::X => Coord { x: p.y, y: p.z },
             Axis::Y => Coord { x: p.z, y: p.x },
