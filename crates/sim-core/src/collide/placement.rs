@@ -46,9 +46,9 @@ impl Placement {
         self.turn.as_ref()
     }
 
-    /// A vertex of the second mesh in the first one's frame.
+    /// A vertex of the second mesh in the first one's frame, m.
     #[inline(always)]
-    pub(super) fn place(&self, v: Vec3) -> DVec3 {
+    pub fn place(&self, v: Vec3) -> DVec3 {
         let v = v.as_dvec3();
         match self.turn {
             None => v + self.offset,
