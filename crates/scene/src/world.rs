@@ -18,6 +18,7 @@ impl Scene {
             dt: self.dt,
             method: self.method,
             collision: self.collision,
+            ..Settings::default()
         };
         let mut world =
             World::new(settings).map_err(|error| self.world_error(None, None, error))?;
