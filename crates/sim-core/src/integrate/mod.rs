@@ -8,13 +8,19 @@ mod backward_euler;
 pub(crate) mod ballistic;
 mod forward_euler;
 mod implicit;
+mod implicit_midpoint;
 mod krylov;
 mod rk4;
 mod scratch;
+mod sdirk4;
+mod splitting;
 pub(crate) mod stability;
 mod stepper;
+mod symplectic4;
+mod symplectic8;
 mod symplectic_euler;
 mod system;
+mod velocity_verlet;
 
 use glam::DVec3;
 
@@ -52,11 +58,16 @@ pub struct Method {
 }
 
 /// Every method, the course's four first.
-pub static METHODS: [&Method; 4] = [
+pub static METHODS: [&Method; 9] = [
     &forward_euler::METHOD,
     &backward_euler::METHOD,
     &symplectic_euler::METHOD,
     &rk4::METHOD,
+    &velocity_verlet::METHOD,
+    &implicit_midpoint::METHOD,
+    &symplectic4::METHOD,
+    &symplectic8::METHOD,
+    &sdirk4::METHOD,
 ];
 
 impl Method {
@@ -114,3 +125,6 @@ pub enum Failure {
         steps: u32,
     },
 }
+
+#[cfg(test)]
+mod tests;
