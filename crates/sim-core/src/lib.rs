@@ -68,6 +68,7 @@ pub mod impulse;
 mod integrate;
 mod measure;
 mod mesh;
+pub mod ode;
 #[cfg(test)]
 mod test_meshes;
 mod world;
@@ -80,4 +81,5 @@ pub use force::{BodyLaw, BodyMotion, Force, ForceError, Law, PairLaw, PairMotion
 pub use glam::{DMat3, DQuat, DVec3, Vec3};
 pub use integrate::{Failure, Jacobians, METHODS, Method, Scratch, Step, Stepper, System};
 pub use mesh::{Mesh, MeshError, Repairs};
+pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
 pub use world::{Collision, Impact, Settings, StepError, World, WorldError};

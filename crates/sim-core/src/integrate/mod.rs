@@ -4,8 +4,11 @@
 //! tests, benchmarks, scene files and the control panel go through the table. A method from
 //! outside is the same value, given to [`Settings`](crate::Settings) without an entry.
 
+mod adaptive;
 mod backward_euler;
 pub(crate) mod ballistic;
+mod dop853;
+mod dopri5;
 mod forward_euler;
 mod implicit;
 mod implicit_midpoint;
@@ -58,7 +61,7 @@ pub struct Method {
 }
 
 /// Every method, the course's four first.
-pub static METHODS: [&Method; 9] = [
+pub static METHODS: [&Method; 11] = [
     &forward_euler::METHOD,
     &backward_euler::METHOD,
     &symplectic_euler::METHOD,
@@ -68,6 +71,8 @@ pub static METHODS: [&Method; 9] = [
     &symplectic4::METHOD,
     &symplectic8::METHOD,
     &sdirk4::METHOD,
+    &dopri5::METHOD,
+    &dop853::METHOD,
 ];
 
 impl Method {
