@@ -92,7 +92,11 @@ macro_rules! both {
 fn kepler(eccentricity: f64) -> Problem<4> {
     let start = kepler::start(eccentricity);
     Problem {
-        name: if eccentricity == 0.6 { "kepler 0.6" } else { "kepler 0.9" },
+        name: if eccentricity == 0.6 {
+            "kepler 0.6"
+        } else {
+            "kepler 0.9"
+        },
         slope: kepler::slope,
         start,
         time: 200.0 * std::f64::consts::PI,

@@ -78,13 +78,8 @@ fn solve<E: Embedded, Y: State>(
 ) -> Result<(), ()> {
     let mut start = room();
     start.as_mut().copy_from_slice(y.as_ref());
-    let mut solver = Solver::<E::Stages<Y>, Y, _>::with_room(
-        f,
-        0.0,
-        start,
-        Tolerance::of(tolerance),
-        room,
-    );
+    let mut solver =
+        Solver::<E::Stages<Y>, Y, _>::with_room(f, 0.0, start, Tolerance::of(tolerance), room);
     solver.most_steps = u64::from(MOST_STEPS);
     solver.try_step(dt);
     let done = solver.advance(dt);
