@@ -16,9 +16,12 @@ use glam::{DMat3, DVec3};
 
 use super::{Failure, Jacobians, System, krylov, scratch::Newton};
 
-/// Size of the last correction, relative to the greatest of the velocities and of `x/d`. Newton's
+/// Size of the last correction, relative to the greatest of the velocities and of `x/h`. Newton's
 /// method squares its error, so what is left is rounding.
 const TOLERANCE: f64 = 1e-12;
+
+/// Size from which on corrections may stop to shrink.
+const LOOSE_TOLERANCE: f64 = 1e-8;
 
 /// Corrections after which a solution is given up. From a good start it takes two or three.
 const ITERATIONS: u32 = 40;
@@ -47,12 +50,15 @@ impl Equation<'_> {
     ) -> Result<(), Failure> {
         let mut worst = (0, f64::INFINITY);
         for _ in 0..ITERATIONS {
+            let last = worst.1;
             worst = if system.is_coupled() {
                 self.correct_together(system, w, room)
             } else {
                 self.correct_each(system, w, room)
             };
-            if worst.1 <= TOLERANCE {
+            // Corrections that no longer shrink are rounding, where large forces cancel.
+            let stalled = worst.1 <= LOOSE_TOLERANCE && worst.1 > 0.5 * last;
+            if worst.1 <= TOLERANCE || stalled {
                 return Ok(());
             }
             if !worst.1.is_finite() {
@@ -150,10 +156,7 @@ impl Equation<'_> {
     /// leaves few of them to the velocity that moves it.
     fn scale(&self, i: usize, w: DVec3) -> f64 {
         let moving = largest(self.velocity[i]).max(largest(w));
-        let placed = match self.drift {
-            0.0 => 0.0,
-            drift => largest(self.position[i]) / drift.abs(),
-        };
+        let placed = largest(self.position[i]) / self.h.abs();
         moving.max(placed).max(f64::MIN_POSITIVE)
     }
 }

@@ -23,17 +23,23 @@ const GROWTH: f64 = 1e6;
 
 impl World {
     pub(super) fn integrate(&mut self) -> Result<(), StepError> {
-        let plan = self.plan.take();
-        let plan = plan.unwrap_or_else(|| Plan::new(&self.forces, self.len()));
-        let outcome = self.integrate_all(&plan);
-        self.plan = Some(plan);
-        outcome.map_err(|(body, cause)| {
-            self.current.copy_from(&self.previous);
-            self.step_error(body, cause)
-        })
+        let plan = self.plan.get_or_insert_with(|| Plan::new(&self.forces, self.mass.len()));
+        let moved = match self.settings.method.fall {
+            Some(fall) if plan.sections.is_empty() => self.fall(0..self.len(), fall),
+            _ => self.integrate_sections(),
+        };
+        moved.map_err(|(body, cause)| self.failed(body, cause))
     }
 
-    fn integrate_all(&mut self, plan: &Plan) -> Result<(), (usize, Cause)> {
+    fn integrate_sections(&mut self) -> Result<(), (usize, Cause)> {
+        // Out of the world while the world is changed.
+        let plan = self.plan.take().unwrap_or_default();
+        let outcome = self.integrate_by(&plan);
+        self.plan = Some(plan);
+        outcome
+    }
+
+    fn integrate_by(&mut self, plan: &Plan) -> Result<(), (usize, Cause)> {
         let mut done = 0;
         let mut fastest = (0.0, 0);
         for section in &plan.sections {
@@ -42,27 +48,28 @@ impl World {
             done = section.bodies.end;
         }
         self.free(plan, done..self.len(), &mut fastest)?;
-        if plan.sections.is_empty() {
-            return Ok(());
-        }
         self.watch_growth(plan, fastest)
     }
 
-    /// Bodies under constant forces alone.
+    /// Bodies on which constant forces alone act.
     fn free(
         &mut self,
         plan: &Plan,
         bodies: Range<usize>,
         fastest: &mut (f64, usize),
     ) -> Result<(), (usize, Cause)> {
-        let Settings { dt, method, .. } = self.settings;
-        let Some(fall) = method.fall else {
-            let section = Section {
-                bodies,
-                is_coupled: false,
-            };
-            return self.forced(plan, &section, fastest);
+        if let Some(fall) = self.settings.method.fall {
+            return self.fall(bodies, fall);
+        }
+        let section = Section {
+            bodies,
+            is_coupled: false,
         };
+        self.forced(plan, &section, fastest)
+    }
+
+    /// The same in one loop, for a method of which it is known where it puts them.
+    fn fall(&mut self, bodies: Range<usize>, fall: f64) -> Result<(), (usize, Cause)> {
         let within = ballistic::step(
             (
                 &self.previous.position[bodies.clone()],
@@ -73,13 +80,14 @@ impl World {
                 &mut self.current.position[bodies.clone()],
                 &mut self.current.velocity[bodies.clone()],
             ),
-            (dt, fall),
+            (self.settings.dt, fall),
             error::LARGEST,
         );
         if within {
             return Ok(());
         }
-        Err((self.beyond(bodies).unwrap_or(0), Cause::Range))
+        let lost = self.beyond(bodies.clone());
+        Err((lost.unwrap_or(bodies.start), Cause::Range))
     }
 
     /// Bodies that other forces act on.
@@ -204,7 +212,10 @@ impl World {
         stability::largest_stable_step(self.settings.method, &part, self.time(), x, v)
     }
 
-    fn step_error(&mut self, body: usize, cause: Cause) -> StepError {
+    /// Puts every body back, and says why.
+    #[cold]
+    fn failed(&mut self, body: usize, cause: Cause) -> StepError {
+        self.current.copy_from(&self.previous);
         let (step, method) = (self.steps + 1, self.settings.method.title);
         let stable_dt = self.plan.take().and_then(|plan| {
             let stable_dt = self.stable_dt(&plan, body);
