@@ -23,7 +23,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (free, spring) = (cost(free, 1_000_000)?, cost(spring, 100_000)?);
         let chains = [chain(method, 100)?, chain(method, 1000)?];
         let [short, long] = chains.map(|world| cost(world, 20).map_or(f64::NAN, |ns| 1e-3 * ns));
-        println!("{:<18} {free:7.1} {spring:9.1} {short:9.0} {long:9.0}", method.name);
+        println!(
+            "{:<18} {free:7.1} {spring:9.1} {short:9.0} {long:9.0}",
+            method.name
+        );
     }
     million()
 }
@@ -92,6 +95,8 @@ fn million() -> Result<(), Box<dyn std::error::Error>> {
         black_box(&mut to);
         copy = copy.min(clock.elapsed().as_secs_f64() * 1e9 / N as f64);
     }
-    println!("a million free bodies: {step:.2} ns each, 120 bytes; copying 120 bytes: {copy:.2} ns");
+    println!(
+        "a million free bodies: {step:.2} ns each, 120 bytes; copying 120 bytes: {copy:.2} ns"
+    );
     Ok(())
 }

@@ -23,14 +23,36 @@ const GROWTH: f64 = 1e6;
 
 impl World {
     pub(super) fn integrate(&mut self) -> Result<(), StepError> {
-        let plan = self.plan.get_or_insert_with(|| Plan::new(&self.forces, self.mass.len()));
-        let moved = match self.settings.method.fall {
-            Some(fall) if plan.sections.is_empty() => self.fall(0..self.len(), fall),
-            _ => self.integrate_sections(),
-        };
+        if self.plan.is_none() {
+            self.make_plan();
+        }
+        let is_free = self
+            .plan
+            .as_ref()
+            .is_some_and(|plan| plan.sections.is_empty());
+        if let Some(fall) = self.settings.method.fall.filter(|_| is_free) {
+            let within = ballistic::step(
+                (&self.previous.position, &self.previous.velocity),
+                &self.acceleration,
+                (&mut self.current.position, &mut self.current.velocity),
+                (self.settings.dt, fall),
+                error::LARGEST,
+            );
+            if within {
+                return Ok(());
+            }
+        }
+        let moved = self.integrate_sections();
         moved.map_err(|(body, cause)| self.failed(body, cause))
     }
 
+    #[cold]
+    fn make_plan(&mut self) {
+        self.plan = Some(Plan::new(&self.forces, self.len()));
+    }
+
+    // Apart, so that free bodies do not pay for its frame.
+    #[inline(never)]
     fn integrate_sections(&mut self) -> Result<(), (usize, Cause)> {
         // Out of the world while the world is changed.
         let plan = self.plan.take().unwrap_or_default();
