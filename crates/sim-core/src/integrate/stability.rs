@@ -49,7 +49,7 @@ impl Method {
 
     /// The greatest eigenvalue of a step on that oscillator, in absolute value. An oscillator that
     /// cannot be stepped grows.
-    fn growth(&self, k: f64, c: f64, dt: f64) -> f64 {
+    pub(super) fn growth(&self, k: f64, c: f64, dt: f64) -> f64 {
         let mut scratch = Scratch::default();
         let mut column = |x: f64, v: f64| {
             let (mut x1, mut v1) = (DVec3::ZERO, DVec3::ZERO);

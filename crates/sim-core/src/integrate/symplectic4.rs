@@ -17,8 +17,8 @@ pub(super) static METHOD: Method = Method {
 
 const A: [f64; 3] = [0.0792036964311957, 0.353172906049774, -0.0420650803577195];
 const MIDDLE: f64 = 1.0 - 2.0 * (A[0] + A[1] + A[2]);
-const DRIFTS: [f64; 7] = [A[0], A[1], A[2], MIDDLE, A[2], A[1], A[0]];
+pub(super) const DRIFTS: [f64; 7] = [A[0], A[1], A[2], MIDDLE, A[2], A[1], A[0]];
 
 const B: [f64; 2] = [0.209515106613362, -0.143851773179818];
 const INNER: f64 = 0.5 - (B[0] + B[1]);
-const KICKS: [f64; 6] = [B[0], B[1], INNER, INNER, B[1], B[0]];
+pub(super) const KICKS: [f64; 6] = [B[0], B[1], INNER, INNER, B[1], B[0]];

@@ -28,7 +28,7 @@ const GAMMA: [f64; 9] = [
     -0.605_508_533_830_034_5,
 ];
 
-const KICKS: [f64; 17] = {
+pub(super) const KICKS: [f64; 17] = {
     let mut kicks = [0.0; 17];
     let mut i = 0;
     while i < 9 {
@@ -40,7 +40,7 @@ const KICKS: [f64; 17] = {
 };
 
 /// Half of the step before a kick and half of the step after it, in one.
-const DRIFTS: [f64; 18] = {
+pub(super) const DRIFTS: [f64; 18] = {
     let mut drifts = [0.5 * GAMMA[0]; 18];
     let mut i = 1;
     while i < 17 {
