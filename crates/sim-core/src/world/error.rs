@@ -192,7 +192,7 @@ pub(super) fn check_force(index: usize, force: &Force) -> Result<(), WorldError>
 }
 
 pub(super) fn check_tolerance(value: f64) -> Result<(), WorldError> {
-    if (1e-15..=1.0).contains(&value) {
+    if super::Settings::TOLERANCES.contains(&value) {
         Ok(())
     } else {
         Err(WorldError::Tolerance { value })

@@ -11,6 +11,7 @@ mod system;
 mod tests;
 
 use alloc::{sync::Arc, vec::Vec};
+use core::ops::RangeInclusive;
 use glam::DVec3;
 
 use crate::{
@@ -102,6 +103,11 @@ pub enum Collision {
     Naive,
     /// Through bounding volume hierarchies.
     Bvh,
+}
+
+impl Settings {
+    /// Least and greatest tolerance.
+    pub const TOLERANCES: RangeInclusive<f64> = 1e-15..=1.0;
 }
 
 impl Default for Settings {
