@@ -270,11 +270,15 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
                 self.rejected_last = false;
                 return Ok(());
             }
-            self.rejected += u64::from(self.steps > 0);
+            self.rejected += 1;
             self.rejected_last = true;
             let [exponent, _] = P::CONTROL;
-            let change = SAFETY * power_of_2(-exponent * rough_log2(error));
-            self.next = h * factor::<P, Y>(change).min(1.0);
+            let [least, _] = P::FACTORS;
+            let change = match error.is_finite() {
+                true => SAFETY * power_of_2(-exponent * rough_log2(error)),
+                false => least,
+            };
+            self.next = h * factor::<P, Y>(change).min(SAFETY);
         }
     }
 
@@ -293,7 +297,7 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
         self.steps
     }
 
-    /// Steps tried in vain, but for the first one's.
+    /// Steps tried in vain.
     pub fn rejected(&self) -> u64 {
         self.rejected
     }

@@ -88,7 +88,7 @@ pub enum StepError {
     },
     /// Speeds have grown a millionfold, and the step is longer than the method is stable for.
     #[error(
-        "step {step}: the motion of body {body} grows without bound: dt is too long for {method},          which is stable here up to {stable_dt:.4e} s"
+        "step {step}: the motion of body {body} grows without bound: dt is too long for {method}, which is stable here up to {stable_dt:.4e} s"
     )]
     Unstable {
         /// Index of the fastest body.
