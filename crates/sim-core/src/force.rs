@@ -6,6 +6,8 @@
 //! where they have a potential. A law from outside is a type that implements one of the traits.
 
 mod laws;
+#[cfg(test)]
+mod tests;
 
 use alloc::sync::Arc;
 use core::fmt::Debug;

@@ -56,9 +56,12 @@ impl Equation<'_> {
             } else {
                 self.correct_each(system, w, room)
             };
+            // The next correction would be smaller than this one by at least as much again.
+            let next = worst.1 * (worst.1 / last);
+            let solved = worst.1 <= TOLERANCE || last.is_finite() && next <= 0.01 * TOLERANCE;
             // Corrections that no longer shrink are rounding, where large forces cancel.
             let stalled = worst.1 <= LOOSE_TOLERANCE && worst.1 > 0.5 * last;
-            if worst.1 <= TOLERANCE || stalled {
+            if solved || stalled {
                 return Ok(());
             }
             if !worst.1.is_finite() {
