@@ -24,6 +24,30 @@ pub static SCENES: &[GalleryScene] = &[
         name: "two-cubes",
         text: include_str!("../../../assets/scenes/two-cubes.toml"),
     },
+    GalleryScene {
+        name: "spring",
+        text: include_str!("../../../assets/scenes/spring.toml"),
+    },
+    GalleryScene {
+        name: "stiff-spring",
+        text: include_str!("../../../assets/scenes/stiff-spring.toml"),
+    },
+    GalleryScene {
+        name: "oscillator",
+        text: include_str!("../../../assets/scenes/oscillator.toml"),
+    },
+    GalleryScene {
+        name: "drag",
+        text: include_str!("../../../assets/scenes/drag.toml"),
+    },
+    GalleryScene {
+        name: "kepler",
+        text: include_str!("../../../assets/scenes/kepler.toml"),
+    },
+    GalleryScene {
+        name: "pleiades",
+        text: include_str!("../../../assets/scenes/pleiades.toml"),
+    },
 ];
 
 /// A scene of the gallery.

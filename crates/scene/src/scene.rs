@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{self, Path};
 
 use glam::DVec3;
-use sim_core::{Collision, Method};
+use sim_core::{Collision, Force, Method};
 
 use crate::gallery::SCENES;
 use crate::scene_file::{self, MeshSource};
@@ -25,8 +25,12 @@ pub struct Scene {
     pub method: &'static Method,
     /// How collisions are searched for.
     pub collision: Collision,
+    /// Error that adaptive methods may make in a step, from 1e-15 to 1.
+    pub tolerance: f64,
     /// The bodies in the order of the file; may be empty.
     pub bodies: Vec<SceneBody>,
+    /// Forces beside the constant ones of the bodies, which they name by their place in `bodies`.
+    pub forces: Vec<Force>,
 }
 
 /// A body of a scene.
@@ -84,9 +88,15 @@ impl Scene {
 
     /// The text of a scene file that gives this scene again in the same folder.
     ///
-    /// Colours are rounded to the 256 steps that a file can hold.
+    /// Colours are rounded to the 256 steps that a file can hold. Forces whose law is not data
+    /// ([`Force::Body`], [`Force::Pair`]) have no text and are left out.
     pub fn to_toml(&self) -> String {
         scene_file::write(self)
+    }
+
+    pub(crate) fn body_name(&self, body: usize) -> String {
+        let body = self.bodies.get(body);
+        body.map_or_else(String::new, |body| body.name.clone())
     }
 
     /// Writes the scene to a file. Meshes of other folders keep their place.

@@ -18,6 +18,7 @@ impl Scene {
             dt: self.dt,
             method: self.method,
             collision: self.collision,
+            tolerance: self.tolerance,
         };
         let mut world =
             World::new(settings).map_err(|error| self.world_error(None, None, error))?;
@@ -43,6 +44,11 @@ impl Scene {
                 force: body.force,
             });
             added.map_err(|error| self.world_error(Some(body), None, error))?;
+        }
+        for (i, force) in self.forces.iter().enumerate() {
+            let field = format!("force {}", i + 1);
+            let added = world.add_force(force.clone());
+            added.map_err(|error| self.world_error(None, Some(&field), error))?;
         }
         Ok(world)
     }

@@ -153,7 +153,7 @@ colour = "#c8553d"
         (
             "\"rk4\"",
             "\"rk5\"",
-            ":3: method: must be one of forward-euler, backward-euler, symplectic-euler, rk4, is `rk5`",
+            ":3: method: must be one of forward-euler, backward-euler, symplectic-euler, rk4, ",
         ),
         (
             "\"rk4\"",
@@ -590,7 +590,9 @@ fn scene() -> impl Strategy<Value = Scene> {
                 dt,
                 method: METHODS[method],
                 collision,
+                tolerance: 1e-9,
                 bodies,
+                forces: Vec::new(),
             }
         })
 }

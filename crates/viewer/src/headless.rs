@@ -89,8 +89,11 @@ pub fn check(file: &Path, json: bool) -> Result<String, Failure> {
 
 /// A failed step in words: in which scene, and the body by its name.
 pub fn step_error(scene: &Scene, error: &StepError) -> String {
-    let StepError::OutOfRange { body, .. } = *error;
-    format!("scene `{}`: {}", scene.name, with_name(scene, body, error))
+    format!(
+        "scene `{}`: {}",
+        scene.name,
+        with_name(scene, error.body(), error)
+    )
 }
 
 /// An error's message with a body's name in place of its index.

@@ -1,5 +1,6 @@
 //! Scene files: TOML text to a [`Scene`](crate::Scene) and back.
 
+mod force;
 mod meshes;
 mod number;
 mod parse;

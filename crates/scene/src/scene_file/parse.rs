@@ -9,8 +9,9 @@ use glam::DVec3;
 use serde::Deserialize;
 use sim_core::{Collision, FixedStep, METHODS, Method, Settings};
 use toml::Spanned;
-use toml::de::{DeTable, DeValue, ValueDeserializer};
+use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 
+use super::force;
 use super::meshes::MeshSource;
 use super::number::{Number, Triple};
 use super::text::{Body, Header};
@@ -35,11 +36,13 @@ pub(super) fn collision_name(collision: Collision) -> &'static str {
 /// Parses a scene file. The stem of `file` becomes the name of the scene.
 pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<Scene, SceneError> {
     let source = Source { text, file };
-    let table = DeTable::parse(text).map_err(|error| source.toml_error(&error, None, &[]))?;
+    let table =
+        DeTable::parse(text).map_err(|error| source.toml_error(&error, Subject::Scene, &[]))?;
     let span = table.span();
     let mut table = table.into_inner();
-    let bodies = body_tables(&source, table.remove("body"))?;
-    let header: Header = source.read(Spanned::new(span, DeValue::Table(table)), None)?;
+    let bodies = tables(&source, "body", table.remove("body"))?;
+    let forces = tables(&source, "force", table.remove("force"))?;
+    let header: Header = source.read(Spanned::new(span, DeValue::Table(table)), Subject::Scene)?;
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let mut scene = Scene {
         title: header.title.clone().unwrap_or_else(|| name.to_string()),
@@ -48,7 +51,9 @@ pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<S
         dt: dt(&source, &header)?,
         method: method(&source, header.method)?,
         collision: collision(&source, header.collision)?,
+        tolerance: tolerance(&source, header.tolerance)?,
         bodies: Vec::new(),
+        forces: Vec::new(),
     };
     let mut lines = HashMap::new();
     for (i, table) in bodies.into_iter().enumerate() {
@@ -58,27 +63,70 @@ pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<S
         };
         let body: Body = source.read(
             Spanned::new(table.span(), DeValue::Table(table.into_inner())),
-            Some(&called),
+            Subject::Body(&called),
         )?;
         let line = source.line(body.name.span().start);
         if let Some(first) = lines.insert(called, line) {
-            let place = Place::new(&source, Some(body.name.get_ref()));
+            let place = Place::new(&source, Subject::Body(body.name.get_ref()));
             let what = format!("the body in line {first} has this name too: choose another");
             return Err(place.error(body.name.span(), "name", what));
         }
         scene.bodies.push(scene_body(&source, body, &mut meshes)?);
     }
+    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    for (i, table) in forces.into_iter().enumerate() {
+        scene
+            .forces
+            .push(force::parse(&source, i + 1, table, &names)?);
+    }
     Ok(scene)
 }
 
 /// The text, to tell where an error is.
-struct Source<'a> {
+pub(super) struct Source<'a> {
     text: &'a str,
     file: &'a Path,
 }
 
+/// What a value belongs to.
+#[derive(Clone, Copy)]
+pub(super) enum Subject<'a> {
+    /// What stands above the bodies.
+    Scene,
+    /// The body of that name.
+    Body(&'a str),
+    /// The force of that number, from 1.
+    Force(usize),
+}
+
+impl Subject<'_> {
+    fn body(self) -> Option<String> {
+        match self {
+            Subject::Body(name) => Some(name.to_owned()),
+            Subject::Scene | Subject::Force(_) => None,
+        }
+    }
+
+    fn field(self, field: Option<&str>) -> Option<String> {
+        match (self, field) {
+            (Subject::Force(number), Some(field)) => Some(format!("force {number}, {field}")),
+            (Subject::Force(number), None) => Some(format!("force {number}")),
+            (_, field) => field.map(str::to_owned),
+        }
+    }
+}
+
 /// The fields of a table, with the text from each name to the end of its value.
-type Fields = Vec<(String, Range<usize>)>;
+pub(super) type Fields = Vec<(String, Range<usize>)>;
+
+pub(super) fn fields(table: &DeTable<'_>) -> Fields {
+    let entries = table.into_iter();
+    let place = |(key, value): (&Spanned<DeString<'_>>, &Spanned<DeValue<'_>>)| {
+        let span = key.span().start..value.span().end;
+        (key.get_ref().to_string(), span)
+    };
+    entries.map(place).collect()
+}
 
 impl Source<'_> {
     fn line(&self, offset: usize) -> usize {
@@ -87,30 +135,20 @@ impl Source<'_> {
     }
 
     /// Reads a table by serde, which knows the fields and their types.
-    fn read<'t, T: Deserialize<'t>>(
+    pub(super) fn read<'t, T: Deserialize<'t>>(
         &self,
         table: Spanned<DeValue<'t>>,
-        body: Option<&str>,
+        subject: Subject<'_>,
     ) -> Result<T, SceneError> {
-        let entries = table.get_ref().as_table();
-        let fields: Fields = entries
-            .into_iter()
-            .flatten()
-            .map(|(key, value)| {
-                (
-                    key.get_ref().to_string(),
-                    key.span().start..value.span().end,
-                )
-            })
-            .collect();
+        let fields = table.get_ref().as_table().map(fields).unwrap_or_default();
         T::deserialize(ValueDeserializer::from(table))
-            .map_err(|error| self.toml_error(&error, body, &fields))
+            .map_err(|error| self.toml_error(&error, subject, &fields))
     }
 
     fn toml_error(
         &self,
         error: &toml::de::Error,
-        body: Option<&str>,
+        subject: Subject<'_>,
         fields: &[(String, Range<usize>)],
     ) -> SceneError {
         let start = error.span().map(|span| span.start);
@@ -118,30 +156,30 @@ impl Source<'_> {
         SceneError::Content {
             file: self.file.to_owned(),
             line: start.map(|start| self.line(start)),
-            body: body.map(str::to_owned),
-            field: field.map(|(name, _)| name.clone()),
+            body: subject.body(),
+            field: subject.field(field.map(|(name, _)| name.as_str())),
             what: error.message().to_owned(),
         }
     }
 }
 
-/// A place for errors: a body of the file, or none.
-struct Place<'a> {
+/// A place for errors.
+pub(super) struct Place<'a> {
     source: &'a Source<'a>,
-    body: Option<&'a str>,
+    pub(super) subject: Subject<'a>,
 }
 
 impl<'a> Place<'a> {
-    fn new(source: &'a Source<'a>, body: Option<&'a str>) -> Place<'a> {
-        Place { source, body }
+    pub(super) fn new(source: &'a Source<'a>, subject: Subject<'a>) -> Place<'a> {
+        Place { source, subject }
     }
 
-    fn error(&self, span: Range<usize>, field: &str, what: impl Display) -> SceneError {
+    pub(super) fn error(&self, span: Range<usize>, field: &str, what: impl Display) -> SceneError {
         SceneError::Content {
             file: self.source.file.to_owned(),
             line: Some(self.source.line(span.start)),
-            body: self.body.map(str::to_owned),
-            field: Some(field.to_owned()),
+            body: self.subject.body(),
+            field: self.subject.field(Some(field)),
             what: what.to_string(),
         }
     }
@@ -160,17 +198,19 @@ impl<'a> Place<'a> {
     }
 }
 
-/// The bodies, which must be an array of tables.
-fn body_tables<'t>(
+/// The bodies or the forces, which must be an array of tables.
+fn tables<'t>(
     source: &Source,
+    name: &str,
     value: Option<Spanned<DeValue<'t>>>,
 ) -> Result<Vec<Spanned<DeTable<'t>>>, SceneError> {
     let Some(value) = value else {
         return Ok(Vec::new());
     };
     let wrong = |span| {
-        let what = "must be an array of tables: start each body with a line `[[body]]`";
-        Place::new(source, None).error(span, "body", what)
+        let what =
+            format!("must be an array of tables: start each {name} with a line `[[{name}]]`");
+        Place::new(source, Subject::Scene).error(span, name, what)
     };
     let span = value.span();
     let DeValue::Array(array) = value.into_inner() else {
@@ -178,9 +218,9 @@ fn body_tables<'t>(
     };
     array
         .into_iter()
-        .map(|body| {
-            let span = body.span();
-            match body.into_inner() {
+        .map(|table| {
+            let span = table.span();
+            match table.into_inner() {
                 DeValue::Table(table) => Ok(Spanned::new(span, table)),
                 _ => Err(wrong(span)),
             }
@@ -189,7 +229,7 @@ fn body_tables<'t>(
 }
 
 fn dt(source: &Source, header: &Header) -> Result<f64, SceneError> {
-    let place = Place::new(source, None);
+    let place = Place::new(source, Subject::Scene);
     let (field, value, dt) = match (&header.rate, &header.dt) {
         (Some(rate), None) => ("rate", rate, 1.0 / rate.get_ref().0),
         (None, Some(dt)) => ("dt", dt, dt.get_ref().0),
@@ -231,7 +271,7 @@ fn method(source: &Source, name: Option<Spanned<String>>) -> Result<&'static Met
             known.join(", "),
             name.get_ref()
         );
-        Place::new(source, None).error(name.span(), "method", what)
+        Place::new(source, Subject::Scene).error(name.span(), "method", what)
     })
 }
 
@@ -242,8 +282,20 @@ fn collision(source: &Source, name: Option<Spanned<String>>) -> Result<Collision
     let known = COLLISIONS.iter().find(|known| known.0 == name.get_ref());
     known.map(|known| known.1).ok_or_else(|| {
         let what = format!("must be naive or bvh, is `{}`", name.get_ref());
-        Place::new(source, None).error(name.span(), "collision", what)
+        Place::new(source, Subject::Scene).error(name.span(), "collision", what)
     })
+}
+
+fn tolerance(source: &Source, value: Option<Spanned<Number>>) -> Result<f64, SceneError> {
+    let Some(value) = value else {
+        return Ok(Settings::default().tolerance);
+    };
+    let Number(tolerance) = *value.get_ref();
+    if !Settings::TOLERANCES.contains(&tolerance) {
+        let what = format!("must be from 1e-15 to 1, is {tolerance}");
+        return Err(Place::new(source, Subject::Scene).error(value.span(), "tolerance", what));
+    }
+    Ok(tolerance)
 }
 
 fn scene_body(
@@ -252,7 +304,7 @@ fn scene_body(
     meshes: &mut MeshSource,
 ) -> Result<SceneBody, SceneError> {
     let name = body.name.get_ref().clone();
-    let place = Place::new(source, Some(&name));
+    let place = Place::new(source, Subject::Body(&name));
     if name.trim().is_empty() {
         return Err(place.error(body.name.span(), "name", "must not be empty"));
     }

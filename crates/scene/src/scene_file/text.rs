@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
+use super::force::ForceText;
 use super::number::{Number, Scale, Triple};
 
 /// What stands above the bodies.
@@ -15,6 +16,7 @@ pub(super) struct Header {
     pub(super) dt: Option<Spanned<Number>>,
     pub(super) method: Option<Spanned<String>>,
     pub(super) collision: Option<Spanned<String>>,
+    pub(super) tolerance: Option<Spanned<Number>>,
 }
 
 /// A `[[body]]`.
@@ -39,4 +41,6 @@ pub(super) struct File {
     pub(super) header: Header,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) body: Vec<Body>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) force: Vec<ForceText>,
 }

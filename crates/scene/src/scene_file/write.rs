@@ -1,7 +1,9 @@
 //! A scene to TOML text.
 
+use sim_core::Settings;
 use toml::Spanned;
 
+use super::force;
 use super::number::{Number, Scale, Triple};
 use super::parse::collision_name;
 use super::text::{Body, File, Header};
@@ -20,10 +22,17 @@ pub(crate) fn write(scene: &Scene) -> String {
         dt: (!has_rate).then(|| spanned(Number(scene.dt))),
         method: Some(spanned(scene.method.name.to_owned())),
         collision: Some(spanned(collision_name(scene.collision).to_owned())),
+        tolerance: (scene.tolerance != Settings::default().tolerance)
+            .then(|| spanned(Number(scene.tolerance))),
     };
     let file = File {
         header,
         body: scene.bodies.iter().map(body).collect(),
+        force: scene
+            .forces
+            .iter()
+            .filter_map(|force| force::write(force, |body| scene.body_name(body)))
+            .collect(),
     };
     toml::to_string(&file).expect("strings, numbers and arrays of them have a TOML form")
 }

@@ -1,39 +1,78 @@
-//! Time integration: one fixed step from a state to the next.
+//! Time integration: one step from a state to the next.
 //!
 //! A [`Method`] is a value in the table [`METHODS`]. A new one is a file here and a line there;
-//! tests, benchmarks, scene files and the control panel go through the table.
+//! tests, benchmarks, scene files and the control panel go through the table. A method from
+//! outside is the same value, given to [`Settings`](crate::Settings) without an entry.
 
+mod adaptive;
 mod backward_euler;
+pub(crate) mod ballistic;
+mod dop853;
+mod dopri5;
 mod forward_euler;
+mod implicit;
+mod implicit_midpoint;
+mod krylov;
 mod rk4;
+mod scratch;
+mod sdirk4;
+mod splitting;
+pub(crate) mod stability;
+mod stepper;
+mod symplectic4;
+mod symplectic8;
 mod symplectic_euler;
+mod system;
+mod velocity_verlet;
 
-use alloc::vec::Vec;
 use glam::DVec3;
 
-/// A way to step `x' = v`, `v' = F/m` forward by `dt`.
+pub use scratch::Scratch;
+pub use stepper::Stepper;
+pub use system::{Jacobians, System};
+
+/// A way to step `x'' = a(t, x, v)` forward by `dt`.
 #[derive(Debug)]
 pub struct Method {
     /// Name in scene files and on the command line.
     pub name: &'static str,
     /// Name in prose.
     pub title: &'static str,
-    /// Order of convergence: the error at a fixed time shrinks as `dt` to this power.
+    /// Order of convergence: the error at a fixed time shrinks as `dt` to this power. For a
+    /// method that controls its error, the order of its steps.
     pub order: u32,
     /// Stability on `x'' = -ω² x`, in a few words.
     pub stability: &'static str,
     /// Where it is described.
     pub source: &'static str,
-    /// Steps every body: reads the state before, writes the state after.
-    pub(crate) step: fn(&State, &mut State, &Forces<'_>, f64),
+    /// Whether it keeps the symplectic form of forces that have a potential: energy does not
+    /// drift.
+    pub symplectic: bool,
+    /// Whether a step with `-dt` undoes a step with `dt`, up to rounding.
+    pub reversible: bool,
+    /// Whether it takes as many steps within `dt` as [`Step::tolerance`] asks for.
+    pub adaptive: bool,
+    /// What a constant acceleration `a` does to a position: a step is then
+    /// `x + dt v + fall dt² a`, `v + dt a`, and bodies on which nothing else acts are moved by
+    /// that, without [`Method::step`]. With `None` it is always called.
+    pub fall: Option<f64>,
+    /// Writes the motion at the end of a step.
+    pub step: fn(&dyn System, Step<'_>) -> Result<(), Failure>,
 }
 
-/// Every method, the course's four in its order.
-pub static METHODS: [&Method; 4] = [
+/// Every method, the course's four first.
+pub static METHODS: [&Method; 11] = [
     &forward_euler::METHOD,
     &backward_euler::METHOD,
     &symplectic_euler::METHOD,
     &rk4::METHOD,
+    &velocity_verlet::METHOD,
+    &implicit_midpoint::METHOD,
+    &symplectic4::METHOD,
+    &symplectic8::METHOD,
+    &sdirk4::METHOD,
+    &dopri5::METHOD,
+    &dop853::METHOD,
 ];
 
 impl Method {
@@ -49,128 +88,48 @@ impl PartialEq for Method {
     }
 }
 
-/// Motion of all bodies, in columns.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct State {
-    pub(crate) position: Vec<DVec3>,
-    pub(crate) velocity: Vec<DVec3>,
+/// One step of a system: what is known, and where to write what is not. All columns have the
+/// length of the system.
+#[derive(Debug)]
+pub struct Step<'a> {
+    /// Time at the start, s.
+    pub time: f64,
+    /// Length of the step, s; not 0. Negative goes back.
+    pub dt: f64,
+    /// Error that adaptive methods may make, relative and, in m and m/s, absolute.
+    pub tolerance: f64,
+    /// Positions at the start, m.
+    pub position: &'a [DVec3],
+    /// Velocities at the start, m/s.
+    pub velocity: &'a [DVec3],
+    /// Positions at the end, m, to be written.
+    pub new_position: &'a mut [DVec3],
+    /// Velocities at the end, m/s, to be written.
+    pub new_velocity: &'a mut [DVec3],
+    /// Room for intermediate results, kept from step to step.
+    pub scratch: &'a mut Scratch,
 }
 
-impl State {
-    pub(crate) fn push(&mut self, position: DVec3, velocity: DVec3) {
-        self.position.push(position);
-        self.velocity.push(velocity);
-    }
-
-    pub(crate) fn copy_from(&mut self, other: &State) {
-        self.position.copy_from_slice(&other.position);
-        self.velocity.copy_from_slice(&other.velocity);
-    }
-
-    /// The first body with a component of position or velocity beyond ±`largest`, or NaN.
-    pub(crate) fn beyond(&self, largest: f64) -> Option<usize> {
-        let largest = DVec3::splat(largest);
-        let within = |x: &DVec3| x.abs().cmple(largest).all();
-        let lost = |(x, v): (&DVec3, &DVec3)| !(within(x) && within(v));
-        self.position.iter().zip(&self.velocity).position(lost)
-    }
-
-    /// Writes the state that `step` makes of each body of `before` and its acceleration.
-    fn fill(
-        &mut self,
-        before: &State,
-        forces: &Forces<'_>,
-        step: impl Fn(DVec3, DVec3, DVec3) -> (DVec3, DVec3),
-    ) {
-        let start = before.position.iter().zip(&before.velocity);
-        let end = self.position.iter_mut().zip(&mut self.velocity);
-        let drive = forces.force.iter().zip(forces.mass);
-        for (((x, v), (x_end, v_end)), (&force, &mass)) in start.zip(end).zip(drive) {
-            (*x_end, *v_end) = step(*x, *v, force / mass);
-        }
-    }
-}
-
-/// What drives each body: its constant resultant force (N) on its mass (kg).
-pub(crate) struct Forces<'a> {
-    pub(crate) force: &'a [DVec3],
-    pub(crate) mass: &'a [f64],
+/// Why a method could not do a step.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// The equations of an implicit method have not been solved.
+    #[error("its equations were not solved in {iterations} iterations")]
+    NotConverged {
+        /// The body farthest from a solution, as an index of the system.
+        body: usize,
+        /// Iterations of Newton's method.
+        iterations: u32,
+    },
+    /// An adaptive method would need more steps than it may take.
+    #[error("the tolerance asks for more than {steps} steps in one")]
+    TooManySteps {
+        /// The body whose error is largest, as an index of the system.
+        body: usize,
+        /// Steps taken.
+        steps: u32,
+    },
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Body, Settings, World};
-
-    /// A 2 kg point from the origin at (1, 2, 3) m/s under (0, -1, 4) N, after `steps`.
-    fn fall(method: &'static Method, dt: f64, steps: u32) -> (DVec3, DVec3) {
-        let settings = Settings {
-            dt,
-            method,
-            ..Settings::default()
-        };
-        let mut world = World::new(settings).unwrap();
-        let body = world.add(Body {
-            velocity: DVec3::new(1.0, 2.0, 3.0),
-            force: DVec3::new(0.0, -1.0, 4.0),
-            mass: 2.0,
-            ..Body::default()
-        });
-        let body = body.unwrap();
-        for _ in 0..steps {
-            world.step().unwrap();
-        }
-        (world.position(body), world.velocity(body))
-    }
-
-    #[test]
-    fn names_are_unique_and_found() {
-        for method in METHODS {
-            assert!(core::ptr::eq(Method::named(method.name).unwrap(), method));
-        }
-        assert_eq!(Method::named("euler"), None);
-    }
-
-    #[test]
-    fn each_method_meets_its_own_exact_discrete_solution() {
-        let (v, a) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.0, -0.5, 2.0));
-        for method in METHODS {
-            // After n steps x = n dt v + k dt² a, with k the sum of the weights of a.
-            let weight = |n: f64| match method.name {
-                "forward-euler" => n * (n - 1.0) / 2.0,
-                "backward-euler" | "symplectic-euler" => n * (n + 1.0) / 2.0,
-                _ => n * n / 2.0,
-            };
-            for (dt, steps) in [(0.2, 20), (1.0 / 60.0, 240), (1.0 / 240.0, 960)] {
-                let n = f64::from(steps);
-                let (x, w) = fall(method, dt, steps);
-                let exact = n * dt * v + weight(n) * dt * dt * a;
-                assert!(
-                    (x - exact).length() < 1e-12,
-                    "{} {dt}: {x} {exact}",
-                    method.name
-                );
-                assert!(
-                    (w - (v + n * dt * a)).length() < 1e-12,
-                    "{} {dt}",
-                    method.name
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn order_one_methods_halve_their_error_with_dt_and_rk4_has_none() {
-        let exact = DVec3::new(1.0, 2.0 - 0.25, 3.0 + 1.0);
-        for method in METHODS {
-            let error = |n: u32| (fall(method, 1.0 / f64::from(n), n).0 - exact).length();
-            match method.order {
-                1 => {
-                    let order = libm::log2(error(64) / error(128));
-                    assert!((order - 1.0).abs() < 1e-9, "{} {order}", method.name);
-                }
-                _ => assert!(error(64) < 1e-13),
-            }
-        }
-    }
-}
+mod tests;

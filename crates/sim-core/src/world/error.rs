@@ -1,6 +1,9 @@
 //! What a world refuses.
 
+use alloc::{format, string::String};
 use glam::DVec3;
+
+use crate::{Force, force::ForceError};
 
 /// A value that no body or setting can have.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -31,6 +34,30 @@ pub enum WorldError {
         /// How many bodies there are.
         bodies: usize,
     },
+    /// A number that a force cannot have.
+    #[error("force {index} ({kind}): {error}")]
+    Force {
+        /// Its place in the list of forces.
+        index: usize,
+        /// Name of its kind.
+        kind: &'static str,
+        /// Which field, and why.
+        error: ForceError,
+    },
+    /// A force that does not exist.
+    #[error("there is no force {index}: the world has {forces}, counted from 0")]
+    NoForce {
+        /// Place asked for.
+        index: usize,
+        /// How many forces there are.
+        forces: usize,
+    },
+    /// A tolerance that is no error to aim at.
+    #[error("the tolerance is {value}: it must be between 1e-15 and 1")]
+    Tolerance {
+        /// The value refused.
+        value: f64,
+    },
     /// A step that is not a length of time.
     #[error("dt is {value} s: it must be between 1e-100 and 1e100")]
     Dt {
@@ -39,13 +66,14 @@ pub enum WorldError {
     },
 }
 
-/// A step that could not be done.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+/// A step that could not be done. Every variant names the body, the step (from 1) and the title
+/// of the method.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// A position or velocity beyond ±1e100, or not a number.
     #[error(
-        "step {step}: the motion of body {body} under {method} left the range of ±1e100; \
-         lower dt, the force or the velocity"
+        "step {step}: the motion of body {body} under {method} left the range of ±1e100; {}",
+        remedy(*stable_dt)
     )]
     OutOfRange {
         /// Index of the body.
@@ -54,7 +82,74 @@ pub enum StepError {
         step: u64,
         /// Title of the method.
         method: &'static str,
+        /// The largest `dt` at which the method is stable on the forces there, s, if it can be
+        /// told: 0 for none at all.
+        stable_dt: Option<f64>,
     },
+    /// Speeds have grown a millionfold, and the step is longer than the method is stable for.
+    #[error(
+        "step {step}: the motion of body {body} grows without bound: dt is too long for \
+         {method}, which is stable here up to {stable_dt:.4e} s"
+    )]
+    Unstable {
+        /// Index of the fastest body.
+        body: usize,
+        /// The step that failed, from 1.
+        step: u64,
+        /// Title of the method.
+        method: &'static str,
+        /// The largest stable `dt`, s.
+        stable_dt: f64,
+    },
+    /// An implicit method found no solution of its equations.
+    #[error(
+        "step {step}: {method} found no motion of body {body} in {iterations} iterations; lower dt"
+    )]
+    NotConverged {
+        /// Index of the body farthest from a solution.
+        body: usize,
+        /// The step that failed, from 1.
+        step: u64,
+        /// Title of the method.
+        method: &'static str,
+        /// Iterations of Newton's method.
+        iterations: u32,
+    },
+    /// An adaptive method did not reach the end of the step.
+    #[error(
+        "step {step}: {method} needs more than {steps} steps within dt to hold the tolerance for \
+         body {body}; lower dt or raise the tolerance"
+    )]
+    TooManySteps {
+        /// Index of the body.
+        body: usize,
+        /// The step that failed, from 1.
+        step: u64,
+        /// Title of the method.
+        method: &'static str,
+        /// Steps taken.
+        steps: u32,
+    },
+}
+
+impl StepError {
+    /// Index of the body where it happened.
+    pub fn body(&self) -> usize {
+        match *self {
+            StepError::OutOfRange { body, .. }
+            | StepError::Unstable { body, .. }
+            | StepError::NotConverged { body, .. }
+            | StepError::TooManySteps { body, .. } => body,
+        }
+    }
+}
+
+fn remedy(stable_dt: Option<f64>) -> String {
+    match stable_dt {
+        Some(0.0) => "the method is unstable here at every dt: choose another one".into(),
+        Some(dt) if dt.is_finite() => format!("the method is stable here up to dt = {dt:.4e} s"),
+        _ => "lower dt, the force or the velocity".into(),
+    }
 }
 
 /// Squares and products of quantities within these bounds stay finite.
@@ -87,5 +182,21 @@ pub(super) fn check_dt(value: f64) -> Result<(), WorldError> {
         Ok(())
     } else {
         Err(WorldError::Dt { value })
+    }
+}
+
+pub(super) fn check_force(index: usize, force: &Force) -> Result<(), WorldError> {
+    force.check().map_err(|error| WorldError::Force {
+        index,
+        kind: force.kind(),
+        error,
+    })
+}
+
+pub(super) fn check_tolerance(value: f64) -> Result<(), WorldError> {
+    if super::Settings::TOLERANCES.contains(&value) {
+        Ok(())
+    } else {
+        Err(WorldError::Tolerance { value })
     }
 }

@@ -2,18 +2,26 @@
 
 mod collision;
 mod error;
+mod forces;
+mod plan;
+mod state;
+mod stepping;
+mod system;
 #[cfg(test)]
 mod tests;
 
 use alloc::{sync::Arc, vec::Vec};
+use core::ops::RangeInclusive;
 use glam::DVec3;
 
 use crate::{
-    Body, Bvh, Mesh,
-    integrate::{Forces, Method, State},
+    Body, Bvh, Force, Mesh,
+    integrate::{Method, Scratch},
 };
 pub use collision::Impact;
 pub use error::{StepError, WorldError};
+use plan::Plan;
+use state::State;
 
 /// Bodies, their motion, and how it goes on.
 ///
@@ -42,6 +50,17 @@ pub struct World {
     previous: State,
     mass: Vec<f64>,
     force: Vec<DVec3>,
+    /// What constant forces and weight do to each body, m/s².
+    acceleration: Vec<DVec3>,
+    /// Acceleration by all weights.
+    weight: DVec3,
+    forces: Vec<Force>,
+    /// Who is stepped with whom; `None` when bodies or forces have changed.
+    plan: Option<Plan>,
+    scratch: Scratch,
+    /// Greatest component of a velocity, m/s, from which growth is counted; `None` before the
+    /// first step under a force that depends on the motion.
+    speed_scale: Option<f64>,
     /// The shape of each body, as an index of `shapes`; `None` is a point.
     shape: Vec<Option<u32>>,
     shapes: Vec<Shape>,
@@ -72,6 +91,9 @@ pub struct Settings {
     pub method: &'static Method,
     /// How overlap is detected.
     pub collision: Collision,
+    /// Error that adaptive methods may make in a step, from 1e-15 to 1: relative and, in m and
+    /// m/s, absolute.
+    pub tolerance: f64,
 }
 
 /// How the overlap of two meshes is detected. Both give the same answer.
@@ -83,13 +105,19 @@ pub enum Collision {
     Bvh,
 }
 
+impl Settings {
+    /// Least and greatest tolerance.
+    pub const TOLERANCES: RangeInclusive<f64> = 1e-15..=1.0;
+}
+
 impl Default for Settings {
-    /// 60 Hz, symplectic Euler, through hierarchies.
+    /// 60 Hz, symplectic Euler, through hierarchies; a tolerance of 1e-9.
     fn default() -> Settings {
         Settings {
             dt: 1.0 / 60.0,
             method: Method::named("symplectic-euler").expect("it is in the table"),
             collision: Collision::Bvh,
+            tolerance: 1e-9,
         }
     }
 }
@@ -98,12 +126,19 @@ impl World {
     /// An empty world at time 0.
     pub fn new(settings: Settings) -> Result<World, WorldError> {
         error::check_dt(settings.dt)?;
+        error::check_tolerance(settings.tolerance)?;
         Ok(World {
             settings,
             current: State::default(),
             previous: State::default(),
             mass: Vec::new(),
             force: Vec::new(),
+            acceleration: Vec::new(),
+            weight: DVec3::ZERO,
+            forces: Vec::new(),
+            plan: None,
+            scratch: Scratch::default(),
+            speed_scale: None,
             shape: Vec::new(),
             shapes: Vec::new(),
             solid: Vec::new(),
@@ -126,6 +161,9 @@ impl World {
         self.previous.push(body.position, body.velocity);
         self.mass.push(body.mass);
         self.force.push(body.force);
+        self.acceleration.push(self.constant_acceleration(index));
+        self.plan = None;
+        self.speed_scale = None;
         let shape = body.mesh.map(|mesh| self.share(mesh));
         self.solid.extend(shape.map(|_| index));
         self.shape.push(shape);
@@ -142,24 +180,6 @@ impl World {
         self.integrate()?;
         self.collide();
         self.steps += 1;
-        Ok(())
-    }
-
-    fn integrate(&mut self) -> Result<(), StepError> {
-        let forces = Forces {
-            force: &self.force,
-            mass: &self.mass,
-        };
-        let Settings { dt, method, .. } = self.settings;
-        (method.step)(&self.previous, &mut self.current, &forces, dt);
-        if let Some(body) = self.current.beyond(error::LARGEST) {
-            self.current.copy_from(&self.previous);
-            return Err(StepError::OutOfRange {
-                body,
-                step: self.steps + 1,
-                method: method.title,
-            });
-        }
         Ok(())
     }
 
@@ -226,7 +246,7 @@ impl World {
         self.mass[body]
     }
 
-    /// Resultant force on a body, N.
+    /// Constant resultant force on a body, N.
     pub fn force(&self, body: usize) -> DVec3 {
         self.force[body]
     }
@@ -254,6 +274,7 @@ impl World {
         error::check_vector(body, "position", position)?;
         self.current.position[body] = position;
         self.previous.position[body] = position;
+        self.speed_scale = None;
         self.overlapping.retain(|&(i, j)| i != body && j != body);
         self.note_overlaps_of(body);
         Ok(())
@@ -264,14 +285,16 @@ impl World {
         self.check_body(body)?;
         error::check_vector(body, "velocity", velocity)?;
         self.current.velocity[body] = velocity;
+        self.speed_scale = None;
         Ok(())
     }
 
-    /// Sets a resultant force, N.
+    /// Sets a constant resultant force, N.
     pub fn set_force(&mut self, body: usize, force: DVec3) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_vector(body, "force", force)?;
         self.force[body] = force;
+        self.acceleration[body] = self.constant_acceleration(body);
         Ok(())
     }
 
@@ -280,6 +303,8 @@ impl World {
         self.check_body(body)?;
         error::check_mass(body, mass)?;
         self.mass[body] = mass;
+        self.acceleration[body] = self.constant_acceleration(body);
+        self.speed_scale = None;
         Ok(())
     }
 
@@ -291,6 +316,8 @@ impl World {
     /// Changes how the world steps, from the next step on.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), WorldError> {
         error::check_dt(settings.dt)?;
+        error::check_tolerance(settings.tolerance)?;
+        self.speed_scale = None;
         if settings.dt != self.settings.dt {
             self.since = (self.time(), self.steps);
         }

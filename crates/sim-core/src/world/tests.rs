@@ -305,7 +305,9 @@ fn motion_beyond_numbers_names_the_body_and_leaves_the_world_as_it_was() {
         };
         world.add(wild).unwrap();
         let error = (0..10).find_map(|_| world.step().err()).unwrap();
-        let StepError::OutOfRange { body, step, .. } = error;
+        let StepError::OutOfRange { body, step, .. } = error else {
+            panic!("{}: {error}", method.name);
+        };
         assert_eq!((body, step), (1, world.steps() + 1), "{}", method.name);
         assert!(world.position(1).is_finite() && world.previous_position(1).is_finite());
     }

@@ -1,0 +1,378 @@
+//! Forces on bodies, as data.
+//!
+//! Every force but [`Force::Gravity`] is a law of one of two kinds: of the motion of one body
+//! ([`BodyLaw`]), or of the relative motion of two ([`PairLaw`]), on which it acts with opposite
+//! signs, so that momentum stays. Both have analytic Jacobians, for implicit methods, and an energy
+//! where they have a potential. A law from outside is a type that implements one of the traits.
+
+mod laws;
+#[cfg(test)]
+mod tests;
+
+use alloc::sync::Arc;
+use core::fmt::Debug;
+use glam::DVec3;
+
+use crate::Jacobians;
+
+/// A force of a world.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Force {
+    /// Weight: every body falls with the same acceleration.
+    Gravity {
+        /// m/s².
+        acceleration: DVec3,
+    },
+    /// Stokes' drag, `F = -c v`.
+    LinearDrag {
+        /// The body it acts on; `None`: every body.
+        body: Option<usize>,
+        /// `c`, kg/s, from 0.
+        coefficient: f64,
+    },
+    /// Newton's drag, `F = -c |v| v`.
+    QuadraticDrag {
+        /// The body it acts on; `None`: every body.
+        body: Option<usize>,
+        /// `c`, kg/m, from 0.
+        coefficient: f64,
+    },
+    /// A spring and a damper between a body and a fixed point, `F = -k (1 - L/|d|) d - c v` with
+    /// `d` from the anchor to the body. The damper works against motion in every direction. With
+    /// `L > 0` a body exactly at the anchor is pushed nowhere.
+    Anchor {
+        /// The body it acts on.
+        body: usize,
+        /// The fixed point, m.
+        anchor: DVec3,
+        /// Rest length `L`, m, from 0.
+        rest_length: f64,
+        /// `k`, N/m, from 0.
+        stiffness: f64,
+        /// `c`, kg/s, from 0.
+        damping: f64,
+    },
+    /// A spring and a damper between two bodies, along the line through them:
+    /// `F = (k (|d| - L) + c n·w) n` on the first, with `d = |d| n` and `w` the place and velocity
+    /// of the second as seen from the first.
+    Spring {
+        /// The bodies, two different ones.
+        bodies: [usize; 2],
+        /// Rest length `L`, m, from 0.
+        rest_length: f64,
+        /// `k`, N/m, from 0.
+        stiffness: f64,
+        /// `c`, kg/s, from 0.
+        damping: f64,
+    },
+    /// Attraction to a fixed point as by a large mass there, `F = -m μ d / |d|³`.
+    Attraction {
+        /// The body it acts on; `None`: every body.
+        body: Option<usize>,
+        /// The point, m.
+        centre: DVec3,
+        /// `μ = G M`, m³/s², from 0.
+        strength: f64,
+    },
+    /// Newton's gravitation between all bodies, `F = G m₁ m₂ d / |d|³`.
+    Gravitation {
+        /// `G`, m³/(kg s²), from 0.
+        constant: f64,
+    },
+    /// A law of one body's motion from outside.
+    Body {
+        /// The body it acts on; `None`: every body.
+        body: Option<usize>,
+        /// The law.
+        law: Law<dyn BodyLaw>,
+    },
+    /// A law of two bodies' relative motion from outside.
+    Pair {
+        /// The bodies it acts on, two different ones; `None`: every two.
+        bodies: Option<[usize; 2]>,
+        /// The law.
+        law: Law<dyn PairLaw>,
+    },
+}
+
+/// The motion of one body, as a law sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyMotion {
+    /// Time, s.
+    pub time: f64,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Position, m.
+    pub position: DVec3,
+    /// Velocity, m/s.
+    pub velocity: DVec3,
+}
+
+/// The relative motion of two bodies, as a law sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairMotion {
+    /// Time, s.
+    pub time: f64,
+    /// Masses, kg.
+    pub mass: [f64; 2],
+    /// From the first to the second, m.
+    pub position: DVec3,
+    /// Velocity of the second less that of the first, m/s.
+    pub velocity: DVec3,
+}
+
+/// A force on one body.
+///
+/// ```
+/// use sim_core::{Body, BodyLaw, BodyMotion, DVec3, Force, Law, Settings, World};
+///
+/// /// A wind that blows along x, stronger with height.
+/// #[derive(Debug)]
+/// struct Wind(f64);
+///
+/// impl BodyLaw for Wind {
+///     fn force(&self, at: &BodyMotion) -> DVec3 {
+///         self.0 * at.position.y * DVec3::X - 0.1 * at.velocity
+///     }
+/// }
+///
+/// let mut world = World::new(Settings::default())?;
+/// world.add(Body { position: DVec3::Y, ..Body::default() })?;
+/// world.add_force(Force::Body { body: None, law: Law::new(Wind(2.0)) })?;
+/// world.step()?;
+/// assert!(world.velocity(0).x > 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub trait BodyLaw: Debug + Send + Sync {
+    /// The force, N.
+    fn force(&self, at: &BodyMotion) -> DVec3;
+
+    /// How the force changes with the body's position and velocity, N/m and kg/s. Unless it is
+    /// given, central differences, right to about ten digits.
+    fn jacobians(&self, at: &BodyMotion) -> Jacobians {
+        laws::differences(at.position, at.velocity, |position, velocity| {
+            self.force(&BodyMotion {
+                position,
+                velocity,
+                ..*at
+            })
+        })
+    }
+
+    /// Potential energy, J, if the force is the slope of one.
+    fn potential(&self, _at: &BodyMotion) -> Option<f64> {
+        None
+    }
+}
+
+/// A force between two bodies.
+pub trait PairLaw: Debug + Send + Sync {
+    /// The force on the first, N; the second one feels the opposite.
+    fn force(&self, at: &PairMotion) -> DVec3;
+
+    /// How the force changes with the relative position and velocity, N/m and kg/s. Unless it is
+    /// given, central differences, right to about ten digits.
+    fn jacobians(&self, at: &PairMotion) -> Jacobians {
+        laws::differences(at.position, at.velocity, |position, velocity| {
+            self.force(&PairMotion {
+                position,
+                velocity,
+                ..*at
+            })
+        })
+    }
+
+    /// Potential energy, J, if the force is the slope of one.
+    fn potential(&self, _at: &PairMotion) -> Option<f64> {
+        None
+    }
+}
+
+/// A law from outside, shared. Two are equal if they are the same one.
+#[derive(Debug)]
+pub struct Law<T: ?Sized>(pub Arc<T>);
+
+impl<T: ?Sized> Clone for Law<T> {
+    fn clone(&self) -> Law<T> {
+        Law(self.0.clone())
+    }
+}
+
+impl<T: ?Sized> PartialEq for Law<T> {
+    fn eq(&self, other: &Law<T>) -> bool {
+        core::ptr::addr_eq(Arc::as_ptr(&self.0), Arc::as_ptr(&other.0))
+    }
+}
+
+impl Law<dyn BodyLaw> {
+    /// A law of one body.
+    pub fn new(law: impl BodyLaw + 'static) -> Law<dyn BodyLaw> {
+        Law(Arc::new(law))
+    }
+}
+
+impl Law<dyn PairLaw> {
+    /// A law of two bodies.
+    pub fn of_pair(law: impl PairLaw + 'static) -> Law<dyn PairLaw> {
+        Law(Arc::new(law))
+    }
+}
+
+/// Whom a force acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Reach {
+    /// Every body alike, as a constant acceleration.
+    Weight,
+    Body(usize),
+    EachBody,
+    Pair([usize; 2]),
+    EachPair,
+}
+
+impl Force {
+    /// Name of its kind, as in scene files.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Force::Gravity { .. } => "gravity",
+            Force::LinearDrag { .. } => "linear-drag",
+            Force::QuadraticDrag { .. } => "quadratic-drag",
+            Force::Anchor { .. } => "anchor",
+            Force::Spring { .. } => "spring",
+            Force::Attraction { .. } => "attraction",
+            Force::Gravitation { .. } => "gravitation",
+            Force::Body { .. } | Force::Pair { .. } => "custom",
+        }
+    }
+
+    /// The bodies it names; others may feel it too.
+    pub fn bodies(&self) -> impl Iterator<Item = usize> + use<> {
+        let [first, second] = match self.reach() {
+            Reach::Body(body) => [Some(body), None],
+            Reach::Pair(bodies) => bodies.map(Some),
+            Reach::Weight | Reach::EachBody | Reach::EachPair => [None, None],
+        };
+        first.into_iter().chain(second)
+    }
+
+    pub(crate) fn reach(&self) -> Reach {
+        match *self {
+            Force::Gravity { .. } => Reach::Weight,
+            Force::Anchor { body, .. } => Reach::Body(body),
+            Force::LinearDrag { body, .. }
+            | Force::QuadraticDrag { body, .. }
+            | Force::Attraction { body, .. }
+            | Force::Body { body, .. } => body.map_or(Reach::EachBody, Reach::Body),
+            Force::Spring { bodies, .. } => Reach::Pair(bodies),
+            Force::Gravitation { .. } => Reach::EachPair,
+            Force::Pair { bodies, .. } => bodies.map_or(Reach::EachPair, Reach::Pair),
+        }
+    }
+
+    /// Whether it depends on velocities.
+    pub(crate) fn depends_on_velocity(&self) -> bool {
+        match *self {
+            Force::Gravity { .. } | Force::Attraction { .. } | Force::Gravitation { .. } => false,
+            Force::Anchor { damping, .. } | Force::Spring { damping, .. } => damping > 0.0,
+            Force::LinearDrag { .. }
+            | Force::QuadraticDrag { .. }
+            | Force::Body { .. }
+            | Force::Pair { .. } => true,
+        }
+    }
+
+    /// The first number of it that is out of range, by the name of its field.
+    pub fn check(&self) -> Result<(), ForceError> {
+        let least = |field, value| match value {
+            0.0..=LARGEST => Ok(()),
+            _ => Err(ForceError::Number { field, value }),
+        };
+        let vector = |field, value: DVec3| {
+            if value.abs().cmple(DVec3::splat(LARGEST)).all() {
+                Ok(())
+            } else {
+                Err(ForceError::Vector { field, value })
+            }
+        };
+        match *self {
+            Force::Gravity { acceleration } => vector("acceleration", acceleration)?,
+            Force::LinearDrag { coefficient, .. } | Force::QuadraticDrag { coefficient, .. } => {
+                least("coefficient", coefficient)?;
+            }
+            Force::Anchor {
+                anchor,
+                rest_length,
+                stiffness,
+                damping,
+                ..
+            } => {
+                vector("anchor", anchor)?;
+                least("rest_length", rest_length)?;
+                least("stiffness", stiffness)?;
+                least("damping", damping)?;
+            }
+            Force::Spring {
+                rest_length,
+                stiffness,
+                damping,
+                ..
+            } => {
+                least("rest_length", rest_length)?;
+                least("stiffness", stiffness)?;
+                least("damping", damping)?;
+            }
+            Force::Attraction {
+                centre, strength, ..
+            } => {
+                vector("centre", centre)?;
+                least("strength", strength)?;
+            }
+            Force::Gravitation { constant } => least("constant", constant)?,
+            Force::Body { .. } | Force::Pair { .. } => {}
+        }
+        match self.reach() {
+            Reach::Pair([first, second]) if first == second => {
+                Err(ForceError::SameBody { body: first })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A number or a body that a force cannot have.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ForceError {
+    /// A number that is negative, NaN or huge.
+    #[error("{field} is {value}: it must be between 0 and 1e100")]
+    Number {
+        /// Which field.
+        field: &'static str,
+        /// The value refused.
+        value: f64,
+    },
+    /// A vector with a component that is NaN, infinite or huge.
+    #[error("{field} is {value}: every component must be a number within ±1e100")]
+    Vector {
+        /// Which field.
+        field: &'static str,
+        /// The value refused.
+        value: DVec3,
+    },
+    /// A pair of a body and itself.
+    #[error("bodies are {body} and {body}: they must be two different ones")]
+    SameBody {
+        /// The body.
+        body: usize,
+    },
+}
+
+impl ForceError {
+    /// The field that is wrong.
+    pub fn field(&self) -> &'static str {
+        match self {
+            ForceError::Number { field, .. } | ForceError::Vector { field, .. } => field,
+            ForceError::SameBody { .. } => "bodies",
+        }
+    }
+}
+
+const LARGEST: f64 = 1e100;

@@ -1,0 +1,88 @@
+//! A solver that chooses its steps, at work within one `dt`.
+//!
+//! Each `dt` is a problem of its own, begun with the attempt to do it in one step: nothing but the
+//! motion goes from one to the next, so that a body may be moved in between.
+
+use bytemuck::{cast_slice, cast_slice_mut};
+use core::slice;
+use glam::DVec3;
+
+use super::{Failure, Step, System};
+use crate::ode::{Embedded, Solver, State, Tolerance};
+
+/// Steps tried within one `dt` before it is given up.
+const MOST_STEPS: u32 = 100_000;
+
+/// Columns of the scratch: state, both ends of a step, one more, and up to 16 stages.
+const COLUMNS: usize = 20;
+
+/// One step of `dt`: a body alone in an array, several in columns of the scratch.
+pub(super) fn step<E: Embedded>(system: &dyn System, s: Step<'_>) -> Result<(), Failure> {
+    let n = s.position.len();
+    // Counted from the start of the step, time has all its digits.
+    let span = [s.dt, s.tolerance];
+    let failure = |body| Failure::TooManySteps {
+        body,
+        steps: MOST_STEPS,
+    };
+    if n == 1 {
+        let (x, v) = (s.position[0], s.velocity[0]);
+        let mut y = [x.x, x.y, x.z, v.x, v.y, v.z];
+        let f = |t, y: &[f64; 6], dy: &mut [f64; 6]| {
+            let mut a = DVec3::ZERO;
+            let x = DVec3::new(y[0], y[1], y[2]);
+            let v = DVec3::new(y[3], y[4], y[5]);
+            system.accelerations(
+                s.time + t,
+                slice::from_ref(&x),
+                slice::from_ref(&v),
+                slice::from_mut(&mut a),
+            );
+            *dy = [v.x, v.y, v.z, a.x, a.y, a.z];
+        };
+        let done = solve::<E, [f64; 6]>(f, &mut y, span, &mut || [0.0; 6]);
+        let [x, y, z, u, v, w] = y;
+        s.new_position[0] = DVec3::new(x, y, z);
+        s.new_velocity[0] = DVec3::new(u, v, w);
+        return done.map_err(|()| failure(0));
+    }
+    // Positions first, then velocities.
+    let mut columns = s.scratch.columns::<COLUMNS>(2 * n).into_iter();
+    let mut room = || cast_slice_mut(columns.next().unwrap_or_default());
+    let mut y: &mut [f64] = room();
+    y[..3 * n].copy_from_slice(cast_slice(s.position));
+    y[3 * n..].copy_from_slice(cast_slice(s.velocity));
+    let f = |t, y: &&mut [f64], dy: &mut &mut [f64]| {
+        let (x, v) = y.split_at(3 * n);
+        let (dx, dv) = dy.split_at_mut(3 * n);
+        dx.copy_from_slice(v);
+        system.accelerations(s.time + t, cast_slice(x), cast_slice(v), cast_slice_mut(dv));
+    };
+    let done = solve::<E, &mut [f64]>(f, &mut y, span, &mut room);
+    let (x, v) = y.split_at(3 * n);
+    s.new_position.copy_from_slice(cast_slice(x));
+    s.new_velocity.copy_from_slice(cast_slice(v));
+    done.map_err(|()| {
+        // The body that moved farthest is the one that asks for the shortest steps.
+        let moved = |i: usize| (s.new_position[i] - s.position[i]).length_squared();
+        failure((0..n).fold(0, |most, i| if moved(i) > moved(most) { i } else { most }))
+    })
+}
+
+/// Solves from `y` to the end of the step and leaves the state there.
+fn solve<E: Embedded, Y: State>(
+    f: impl FnMut(f64, &Y, &mut Y),
+    y: &mut Y,
+    [dt, tolerance]: [f64; 2],
+    room: &mut dyn FnMut() -> Y,
+) -> Result<(), ()> {
+    let mut start = room();
+    start.as_mut().copy_from_slice(y.as_ref());
+    let mut solver =
+        Solver::<E::Stages<Y>, Y, _>::with_room(f, 0.0, start, Tolerance::of(tolerance), room);
+    solver.most_steps = u64::from(MOST_STEPS);
+    solver.try_step(dt);
+    let done = solver.advance(dt);
+    y.as_mut().copy_from_slice(solver.state().as_ref());
+    done.map_err(|_| ())
+}

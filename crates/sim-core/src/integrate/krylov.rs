@@ -1,0 +1,92 @@
+//! Linear systems of coupled bodies by products with their matrix alone.
+//!
+//! BiCGSTAB (van der Vorst 1992, "Bi-CGSTAB: a fast and smoothly converging variant of Bi-CG",
+//! SIAM J. Sci. Stat. Comput. 13(2), p. 635), preconditioned from the right by the inverted 3×3
+//! blocks on the diagonal. Dampers make the matrices unsymmetric, which conjugate gradients do not
+//! allow, and its memory is a few columns, unlike that of GMRES.
+
+use glam::DVec3;
+
+use super::Jacobians;
+
+/// Columns of room that [`solve`] needs.
+pub(super) const COLUMNS: usize = 7;
+
+/// The residual to reach, relative to the right-hand side. Newton's method goes on from there.
+const TOLERANCE: f64 = 1e-8;
+
+/// Writes into `solution` an approximation of the solution of `apply(solution) = right`. The
+/// preconditioner is the `position` of each of `blocks`.
+///
+/// It stops at [`TOLERANCE`], after as many products as the matrix has rows and some, or when the
+/// recurrence breaks down; the caller looks at what came out.
+pub(super) fn solve(
+    apply: &mut impl FnMut(&[DVec3], &mut [DVec3]),
+    blocks: &[Jacobians],
+    right: &[DVec3],
+    solution: &mut [DVec3],
+    room: [&mut [DVec3]; COLUMNS],
+) {
+    let [
+        residual,
+        shadow,
+        direction,
+        image,
+        ready,
+        second,
+        ready_second,
+    ] = room;
+    let condition = |from: &[DVec3], to: &mut [DVec3]| {
+        for ((to, from), block) in to.iter_mut().zip(from).zip(blocks) {
+            *to = block.position * *from;
+        }
+    };
+    solution.fill(DVec3::ZERO);
+    residual.copy_from_slice(right);
+    shadow.copy_from_slice(right);
+    direction.copy_from_slice(right);
+    let goal = TOLERANCE * TOLERANCE * dot(right, right);
+    let mut rho = dot(shadow, residual);
+    for _ in 0..50 + 3 * right.len() {
+        if !(rho != 0.0) || !(dot(residual, residual) > goal) {
+            return;
+        }
+        condition(direction, ready);
+        apply(ready, image);
+        let alpha = rho / dot(shadow, image);
+        add(residual, -alpha, image);
+        condition(residual, ready_second);
+        apply(ready_second, second);
+        let squared = dot(second, second);
+        let omega = if squared > 0.0 {
+            dot(second, residual) / squared
+        } else {
+            0.0
+        };
+        add(solution, alpha, ready);
+        add(solution, omega, ready_second);
+        add(residual, -omega, second);
+        let next = dot(shadow, residual);
+        let beta = next / rho * (alpha / omega);
+        rho = next;
+        if !beta.is_finite() {
+            return;
+        }
+        for ((d, r), i) in direction.iter_mut().zip(&*residual).zip(&*image) {
+            *d = *r + beta * (*d - omega * *i);
+        }
+    }
+}
+
+fn add(to: &mut [DVec3], factor: f64, what: &[DVec3]) {
+    for (to, what) in to.iter_mut().zip(what) {
+        *to += factor * *what;
+    }
+}
+
+fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| a.x * b.x + a.y * b.y + a.z * b.z)
+        .sum()
+}

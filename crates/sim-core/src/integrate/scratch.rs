@@ -1,0 +1,58 @@
+//! Room for intermediate results.
+
+use alloc::vec::Vec;
+use glam::DVec3;
+
+use super::Jacobians;
+
+/// Columns for the intermediate results of a method, kept so that only the first step allocates.
+/// What is in them at the start of a step has no meaning.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    stages: Vec<DVec3>,
+    pub(super) newton: Newton,
+}
+
+/// Room for an implicit equation, apart from the stages around it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Newton {
+    columns: Vec<DVec3>,
+    pub(super) jacobians: Vec<Jacobians>,
+}
+
+impl Scratch {
+    /// `N` columns of `len` vectors.
+    pub fn columns<const N: usize>(&mut self, len: usize) -> [&mut [DVec3]; N] {
+        columns(&mut self.stages, len)
+    }
+
+    /// `N` columns of `len` vectors, and the room for an implicit equation beside them.
+    pub(super) fn with_newton<const N: usize>(
+        &mut self,
+        len: usize,
+    ) -> ([&mut [DVec3]; N], &mut Newton) {
+        (columns(&mut self.stages, len), &mut self.newton)
+    }
+}
+
+impl Newton {
+    /// `N` columns of `len` vectors, and the matrices.
+    pub(super) fn columns<const N: usize>(
+        &mut self,
+        len: usize,
+    ) -> ([&mut [DVec3]; N], &mut Vec<Jacobians>) {
+        (columns(&mut self.columns, len), &mut self.jacobians)
+    }
+}
+
+fn columns<const N: usize>(room: &mut Vec<DVec3>, len: usize) -> [&mut [DVec3]; N] {
+    if room.len() < N * len {
+        room.resize(N * len, DVec3::ZERO);
+    }
+    let mut rest = &mut room[..N * len];
+    core::array::from_fn(|_| {
+        let (column, others) = core::mem::take(&mut rest).split_at_mut(len);
+        rest = others;
+        column
+    })
+}

@@ -1,0 +1,125 @@
+//! The forces of a world: adding, changing, removing them.
+
+use glam::DVec3;
+
+use super::{World, WorldError, error};
+use crate::{
+    Force,
+    force::{BodyMotion, PairMotion, Reach},
+};
+
+impl World {
+    /// Adds a force beside the constant resultants of the bodies, and returns its place in
+    /// [`World::forces`].
+    pub fn add_force(&mut self, force: Force) -> Result<usize, WorldError> {
+        let index = self.forces.len();
+        self.check_force(index, &force)?;
+        self.forces.push(force);
+        self.forces_changed();
+        Ok(index)
+    }
+
+    /// Puts another force in the place of one.
+    pub fn replace_force(&mut self, index: usize, force: Force) -> Result<(), WorldError> {
+        self.check_force(index, &force)?;
+        let forces = self.forces.len();
+        let place = self.forces.get_mut(index);
+        *place.ok_or(WorldError::NoForce { index, forces })? = force;
+        self.forces_changed();
+        Ok(())
+    }
+
+    /// Removes a force; those after it move up by one place.
+    pub fn remove_force(&mut self, index: usize) -> Result<Force, WorldError> {
+        let forces = self.forces.len();
+        if index >= forces {
+            return Err(WorldError::NoForce { index, forces });
+        }
+        let force = self.forces.remove(index);
+        self.forces_changed();
+        Ok(force)
+    }
+
+    /// The forces beside the constant resultants of the bodies.
+    pub fn forces(&self) -> &[Force] {
+        &self.forces
+    }
+
+    /// Potential energy of all forces that have one, J: 0 for a constant force or weight on a body
+    /// at the origin, for a spring at rest, and for attraction from infinitely far away.
+    pub fn potential_energy(&self) -> f64 {
+        let bodies = 0..self.len();
+        let constant: f64 = bodies
+            .clone()
+            .map(|i| -self.force(i).dot(self.position(i)))
+            .sum();
+        let of_body = |force: &Force, i| force.body_potential(&self.body_motion(i)).unwrap_or(0.0);
+        let of_pair = |force: &Force, i, j| {
+            let potential = force.pair_potential(&self.pair_motion(i, j));
+            potential.unwrap_or(0.0)
+        };
+        let mut energy = constant;
+        for force in &self.forces {
+            energy += match force.reach() {
+                Reach::Weight | Reach::EachBody => {
+                    bodies.clone().map(|i| of_body(force, i)).sum::<f64>()
+                }
+                Reach::Body(i) => of_body(force, i),
+                Reach::Pair([i, j]) => of_pair(force, i, j),
+                Reach::EachPair => bodies
+                    .clone()
+                    .flat_map(|j| (0..j).map(move |i| (i, j)))
+                    .map(|(i, j)| of_pair(force, i, j))
+                    .sum(),
+            };
+        }
+        energy
+    }
+
+    /// What constant forces and weight do to a body, m/s².
+    pub(super) fn constant_acceleration(&self, body: usize) -> DVec3 {
+        self.force[body] / self.mass[body] + self.weight
+    }
+
+    fn forces_changed(&mut self) {
+        self.plan = None;
+        self.speed_scale = None;
+        let weights = self.forces.iter().filter_map(|force| match force {
+            Force::Gravity { acceleration } => Some(*acceleration),
+            _ => None,
+        });
+        let weight = weights.sum();
+        if weight != self.weight {
+            self.weight = weight;
+            for body in 0..self.len() {
+                self.acceleration[body] = self.constant_acceleration(body);
+            }
+        }
+    }
+
+    fn check_force(&self, index: usize, force: &Force) -> Result<(), WorldError> {
+        error::check_force(index, force)?;
+        for body in force.bodies() {
+            self.check_body(body)?;
+        }
+        Ok(())
+    }
+
+    fn body_motion(&self, i: usize) -> BodyMotion {
+        BodyMotion {
+            time: self.time(),
+            mass: self.mass(i),
+            position: self.position(i),
+            velocity: self.velocity(i),
+        }
+    }
+
+    fn pair_motion(&self, i: usize, j: usize) -> PairMotion {
+        PairMotion {
+            time: self.time(),
+            mass: [self.mass(i), self.mass(j)],
+            position: self.position(j) - self.position(i),
+            velocity: self.velocity(j) - self.velocity(i),
+        }
+    }
+}

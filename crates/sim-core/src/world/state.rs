@@ -1,0 +1,34 @@
+//! Motion in columns.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+use glam::DVec3;
+
+/// Motion of all bodies.
+#[derive(Clone, Debug, Default)]
+pub(super) struct State {
+    pub(super) position: Vec<DVec3>,
+    pub(super) velocity: Vec<DVec3>,
+}
+
+impl State {
+    pub(super) fn push(&mut self, position: DVec3, velocity: DVec3) {
+        self.position.push(position);
+        self.velocity.push(velocity);
+    }
+
+    pub(super) fn copy_from(&mut self, other: &State) {
+        self.position.copy_from_slice(&other.position);
+        self.velocity.copy_from_slice(&other.velocity);
+    }
+
+    /// The first of some bodies with a component of position or velocity beyond ±`largest`, or
+    /// NaN, counted from the first of them.
+    pub(super) fn beyond(&self, bodies: Range<usize>, largest: f64) -> Option<usize> {
+        let largest = DVec3::splat(largest);
+        let within = |x: &DVec3| x.abs().cmple(largest).all();
+        let lost = |(x, v): (&DVec3, &DVec3)| !(within(x) && within(v));
+        let position = self.position[bodies.clone()].iter();
+        position.zip(&self.velocity[bodies]).position(lost)
+    }
+}

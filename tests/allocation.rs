@@ -1,0 +1,88 @@
+//! No step but the first allocates.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use sim_core::{Body, DVec3, Force, METHODS, Settings, World};
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// The system's allocator, counting on each thread.
+struct Counting;
+
+#[allow(unsafe_code)]
+// SAFETY: every call goes to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn allocations(act: impl FnOnce()) -> u64 {
+    let before = ALLOCATIONS.with(Cell::get);
+    act();
+    ALLOCATIONS.with(Cell::get) - before
+}
+
+#[test]
+fn what_is_allocated_is_counted() {
+    assert_eq!(allocations(|| drop(std::hint::black_box(vec![0; 9]))), 1);
+}
+
+#[test]
+fn steps_after_the_first_do_not_allocate() {
+    let drag = Force::QuadraticDrag {
+        body: None,
+        coefficient: 0.1,
+    };
+    let spring = Force::Spring {
+        bodies: [3, 9],
+        rest_length: 1.0,
+        stiffness: 20.0,
+        damping: 0.5,
+    };
+    let gravitation = Force::Gravitation { constant: 1e-3 };
+    let forces: [&[Force]; 4] = [
+        &[],
+        &[drag.clone()],
+        &[drag.clone(), spring],
+        &[drag, gravitation],
+    ];
+    for forces in forces {
+        for method in METHODS {
+            let settings = Settings {
+                method,
+                ..Settings::default()
+            };
+            let mut world = World::new(settings).expect("settings");
+            for i in 0..20 {
+                world
+                    .add(Body {
+                        position: f64::from(i) * DVec3::X,
+                        velocity: DVec3::new(0.0, 1.0, 0.1 * f64::from(i)),
+                        force: -DVec3::Y,
+                        ..Body::default()
+                    })
+                    .expect("a body");
+            }
+            for force in forces {
+                world.add_force(force.clone()).expect("a force");
+            }
+            world.step().expect("a step");
+            let later = allocations(|| (0..20).for_each(|_| world.step().expect("a step")));
+            assert_eq!(later, 0, "{} {forces:?}", method.name);
+        }
+    }
+}
