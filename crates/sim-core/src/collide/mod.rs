@@ -20,3 +20,15 @@ pub use placement::Placement;
 pub(crate) use placement::snap;
 pub use solid::{Place, contains, each_in_box, locate, segment_meets};
 pub use touch::{Feature, Touch};
+
+/// What an answer to whether two meshes meet has cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Work {
+    /// The answer.
+    pub meet: bool,
+    /// Pairs of boxes compared.
+    pub boxes: u64,
+    /// Tests of triangles: of an edge against a triangle in the naive search, of two triangles
+    /// through trees.
+    pub tests: u64,
+}

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 use glam::DVec3;
 
-use super::{Hit, Placement, Side, plane::Plane, predicates::segment_meets_triangle};
+use super::{Hit, Placement, Side, Work, plane::Plane, predicates::segment_meets_triangle};
 use crate::Mesh;
 
 /// Whether the surfaces of two meshes meet, the second one placed: displaced by a `DVec3` (m), or
@@ -14,6 +14,29 @@ use crate::Mesh;
 /// between its edges.
 pub fn intersect(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> bool {
     each_hit(first, second, &at.into(), |_| ControlFlow::Break(())).is_break()
+}
+
+/// What [`intersect`] costs here: tests of an edge against a triangle, until the first hit.
+pub fn work(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> Work {
+    let tests = |edges_of: &Mesh, faces: usize| (faces * edges_of.edges().len()) as u64;
+    let all_of_first = tests(first, second.triangles().len());
+    let all_of_second = tests(second, first.triangles().len());
+    let (mut meet, mut done) = (false, all_of_first + all_of_second);
+    let _ = each_hit(first, second, &at.into(), |pair| {
+        let (side, edge, _) = pair.edge;
+        let (face, edge) = (pair.face.0 as usize, u64::from(edge) + 1);
+        done = match side {
+            Side::First => tests(first, face) + edge,
+            Side::Second => all_of_first + tests(second, face) + edge,
+        };
+        meet = true;
+        ControlFlow::Break(())
+    });
+    Work {
+        meet,
+        boxes: 0,
+        tests: done,
+    }
 }
 
 /// Every edge of one mesh in a triangle of the other, the first mesh's edges first, by edge and

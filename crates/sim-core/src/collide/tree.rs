@@ -4,9 +4,9 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
 use super::{
-    Hit, Level, Placement, Side,
+    Hit, Level, Placement, Side, Work,
     apart::maybe_meet,
-    pairs::{Lanes, Meshes, Question, Reach, each_pair},
+    pairs::{Lanes, Meshes, Question, Reach, TILE, each_pair},
     predicates::{segment_meets_triangle, triangles_meet},
 };
 use crate::bvh::{Bvh, WIDTH};
@@ -54,6 +54,45 @@ fn any_meets(meshes: Meshes<'_>, leaves: (u32, u32), pairs: u32) -> bool {
         let s = s.map(|v| v.as_dvec3());
         triangles_meet(s, t.map(|v| meshes.at.place(v)))
     })
+}
+
+/// What [`intersect`] costs here: pairs of boxes compared, and pairs of triangles whose boxes meet.
+pub fn work(first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> Work {
+    let at = &at.into();
+    let meshes = Meshes { first, second, at };
+    let mut counted = Counted::default();
+    let meet = each_pair(Level::best(), meshes, &mut counted).is_break();
+    Work {
+        meet,
+        boxes: counted.tiles * TILE as u64,
+        tests: counted.pairs,
+    }
+}
+
+/// [`AnyHit`], counted.
+#[derive(Default)]
+struct Counted {
+    tiles: u64,
+    pairs: u64,
+}
+
+impl Question for Counted {
+    #[inline(always)]
+    fn triangles<L: Lanes>(
+        &mut self,
+        meshes: Meshes<'_>,
+        leaves: (u32, u32),
+        pairs: u32,
+        reach: Option<&Reach>,
+    ) -> ControlFlow<()> {
+        self.pairs += u64::from(pairs.count_ones());
+        AnyHit.triangles::<L>(meshes, leaves, pairs, reach)
+    }
+
+    #[inline(always)]
+    fn tile(&mut self) {
+        self.tiles += 1;
+    }
 }
 
 /// Every edge of one mesh in a triangle of the other, in no order, until `found` stops it.
@@ -163,4 +202,42 @@ fn pair_hits(
                         .then(|| Hit::new((side, edges_of.edges[i], edge), (face, corners)))
                 })
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collide::naive;
+    use crate::test_meshes::sphere;
+    use glam::DVec3;
+
+    #[test]
+    fn work_is_counted_and_far_less_through_trees() {
+        let ball = sphere(24);
+        let tree = Bvh::build(&ball);
+        let (edges, faces) = (ball.edges().len(), ball.triangles().len());
+        let miss = DVec3::new(1.5, 1.5, 0.1);
+        let (plain, fast) = (naive::work(&ball, &ball, miss), work(&tree, &tree, miss));
+        assert!(!plain.meet && !fast.meet);
+        assert_eq!(plain.tests, 2 * (edges * faces) as u64);
+        assert!(fast.boxes > 16 && fast.boxes + fast.tests < plain.tests / 1000);
+        let hit = DVec3::new(1.0, 0.2, 0.1);
+        let (plain, fast) = (naive::work(&ball, &ball, hit), work(&tree, &tree, hit));
+        assert!(plain.meet && fast.meet && fast.tests > 0);
+        // The naive search ends with the first hit of its list.
+        let first = naive::hits(&ball, &ball, hit)
+            .into_iter()
+            .filter(|h| h.edge_of == Side::First)
+            .min_by_key(|h| (h.face, h.edge))
+            .expect("an edge of the first ball");
+        let before = u64::from(first.face) * edges as u64 + u64::from(first.edge) + 1;
+        assert_eq!(plain.tests, before);
+    }
+
+    #[test]
+    fn far_apart_nothing_is_compared() {
+        let tree = Bvh::build(&sphere(8));
+        let far = work(&tree, &tree, DVec3::X * 3.0);
+        assert_eq!((far.meet, far.boxes, far.tests), (false, 0, 0));
+    }
 }

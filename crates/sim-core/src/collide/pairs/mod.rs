@@ -23,7 +23,7 @@ pub(super) use reach::{Reach, dot, dot0, splat};
 pub(super) use stack::Stack;
 
 /// Pairs in a tile.
-pub(super) const TILE: usize = WIDTH * WIDTH;
+pub(in crate::collide) const TILE: usize = WIDTH * WIDTH;
 
 /// What a descent does with boxes and triangles.
 pub(super) trait Tiles {

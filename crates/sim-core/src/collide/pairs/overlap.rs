@@ -26,6 +26,9 @@ pub(in crate::collide) trait Question {
         pairs: u32,
         reach: Option<&Reach>,
     ) -> ControlFlow<()>;
+
+    /// Hears of each tile whose boxes are compared.
+    fn tile(&mut self) {}
 }
 
 /// Asks about the pairs of triangles whose boxes meet, nearest first as far as depth-first goes,
@@ -86,6 +89,7 @@ impl<L: Lanes, Q: Question, const TURNED: bool> Tiles for Overlaps<'_, L, Q, TUR
 
     #[inline(always)]
     fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, L) {
+        self.question.tile();
         let a = Placed::<L>::first(first);
         let b = Placed::<L>::second::<TURNED>(second, &self.reach);
         let x = separation(&a, &b, 0);
@@ -154,6 +158,7 @@ impl<Q: Question> Tiles for Wide<'_, Q> {
     type Lanes = Portable;
 
     fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, Portable) {
+        self.question.tile();
         let at = self.meshes.at;
         let meet = |pair: &usize| {
             let (i, j) = (pair / WIDTH, pair % WIDTH);
