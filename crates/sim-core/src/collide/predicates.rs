@@ -68,26 +68,31 @@ pub fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
 /// its side and none in the plane: whether the parts overlap in which they cut the line that the
 /// planes share (Guigue, Devillers 2003, "Fast and robust triangle-triangle overlap test using
 /// orientation predicates", sec. 3).
+#[inline]
 fn crossing_meet(s: [DVec3; 3], s_above: bool, t: [DVec3; 3], t_above: bool) -> bool {
     // Wound so that each first corner lies above the other's plane.
-    let [p1, q1, r1] = if t_above { s } else { [s[0], s[2], s[1]] };
-    let [p2, q2, r2] = if s_above { t } else { [t[0], t[2], t[1]] };
+    let wound =
+        |c: [DVec3; 3], above: bool| [c[0], c[2 - usize::from(above)], c[1 + usize::from(above)]];
+    let ([p1, q1, r1], [p2, q2, r2]) = (wound(s, t_above), wound(t, s_above));
     side([p1, q1, p2], q2) != Ordering::Greater && side([p1, r1, r2], p2) != Ordering::Greater
 }
 
 /// The triangle turned so that its first corner is alone on its side of a plane, and whether it is
-/// above; none if a corner lies in the plane.
-fn lone([a, b, c]: [DVec3; 3], sides: [Ordering; 3]) -> Option<([DVec3; 3], bool)> {
-    let above = |side| side == Ordering::Greater;
-    match sides {
-        [Ordering::Equal, _, _] | [_, Ordering::Equal, _] | [_, _, Ordering::Equal] => None,
-        [x, y, z] if y == z => Some(([a, b, c], above(x))),
-        [x, y, z] if x == z => Some(([b, c, a], above(y))),
-        [_, _, z] => Some(([c, a, b], above(z))),
+/// above; none if a corner lies in the plane. Which one it is, is anyone's guess, so it is looked
+/// up and not branched on.
+#[inline]
+fn lone(corners: [DVec3; 3], sides: [Ordering; 3]) -> Option<([DVec3; 3], bool)> {
+    if sides.contains(&Ordering::Equal) {
+        return None;
     }
+    let above = sides.map(|side| usize::from(side == Ordering::Greater));
+    let alone = [0, 0, 1, 2, 2, 1, 0, 0][above[0] | above[1] << 1 | above[2] << 2];
+    let corner = |i: usize| corners[[0, 1, 2, 0, 1][alone + i]];
+    Some(([corner(0), corner(1), corner(2)], above[alone] == 1))
 }
 
 /// On which side of the plane of `abc` some points lie: above is where it is counter-clockwise.
+#[inline]
 fn sides(abc: [DVec3; 3], points: [DVec3; 3]) -> [Ordering; 3] {
     let plane = Plane::of(abc);
     points.map(|p| exact_side(plane, abc, p))
@@ -98,15 +103,28 @@ pub(super) fn above(abc: [DVec3; 3], p: DVec3) -> bool {
     side(abc, p) == Ordering::Greater
 }
 
+#[inline]
 fn side(abc: [DVec3; 3], p: DVec3) -> Ordering {
     exact_side(Plane::of(abc), abc, p)
 }
 
 #[inline]
-fn exact_side(plane: Plane, [a, b, c]: [DVec3; 3], p: DVec3) -> Ordering {
+fn exact_side(plane: Plane, abc: [DVec3; 3], p: DVec3) -> Ordering {
     match plane.side(p) {
-        Ordering::Equal => 0.0_f64.total_cmp(&(orient3d(a, b, c, p) + 0.0)),
+        Ordering::Equal => side_by_expansion(abc, p),
         side => side,
+    }
+}
+
+#[cold]
+fn side_by_expansion([a, b, c]: [DVec3; 3], p: DVec3) -> Ordering {
+    let height = -orient3d(a, b, c, p);
+    if height > 0.0 {
+        Ordering::Greater
+    } else if height < 0.0 {
+        Ordering::Less
+    } else {
+        Ordering::Equal
     }
 }
 
