@@ -1,9 +1,11 @@
 //! Bounding volume hierarchy over the triangles of a mesh.
 
 mod build;
+mod grid;
 mod node;
 mod ray;
 mod slabs;
+mod split;
 
 use alloc::vec::Vec;
 

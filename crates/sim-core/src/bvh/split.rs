@@ -1,0 +1,336 @@
+//! Cutting runs of boxes in two by the binned surface area heuristic (Wald 2007, "On fast
+//! construction of SAH-based bounding volume hierarchies"), and those again until there are four
+//! (Wald, Benthin, Boulos 2008, "Getting rid of packets").
+
+use alloc::vec::Vec;
+use core::ops::Range;
+use glam::Vec4;
+
+use super::{MAX_DEPTH, WIDTH};
+
+/// Candidate split planes, less one; a power of two.
+const BINS: usize = 16;
+/// The same of short runs.
+const FEW_BINS: usize = 8;
+/// Runs up to this are short.
+const SHORT: usize = 32;
+/// From this level on, runs are halved by count. It leaves a quarter at most to each child, and a
+/// mesh has fewer than 4^16 triangles, so the tree stays within `MAX_DEPTH`.
+pub(super) const HALVE_FROM: usize = MAX_DEPTH - 16;
+
+/// A box in two SIMD registers, and in their fourth lanes the number of what is in it.
+#[derive(Clone, Copy)]
+pub(super) struct Bounds {
+    pub(super) min: Vec4,
+    pub(super) max: Vec4,
+}
+
+impl Bounds {
+    pub(super) const EMPTY: Bounds = Bounds {
+        min: Vec4::INFINITY,
+        max: Vec4::NEG_INFINITY,
+    };
+
+    #[inline]
+    pub(super) fn union(self, other: Bounds) -> Bounds {
+        Bounds {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+
+    /// A fourth lane for a number: the float whose bits it is, past those that processors are slow
+    /// with.
+    #[inline]
+    pub(super) fn lane(number: u32) -> f32 {
+        f32::from_bits(number + f32::MIN_POSITIVE.to_bits())
+    }
+
+    #[inline]
+    pub(super) fn number(&self) -> u32 {
+        self.max.w.to_bits() - f32::MIN_POSITIVE.to_bits()
+    }
+
+    /// Twice the centre; infinite for a huge box, which then counts as one that no plane separates.
+    #[inline]
+    pub(super) fn centre(&self) -> Vec4 {
+        self.min + self.max
+    }
+
+    /// Twice the centre along an axis, straight from memory rather than from a register.
+    #[inline]
+    fn along(&self, axis: usize) -> f32 {
+        let (min, max): (&[f32; 4], &[f32; 4]) = (self.min.as_ref(), self.max.as_ref());
+        min[axis] + max[axis]
+    }
+
+    /// Half of the surface area; infinite for huge boxes, and then no plane is the best.
+    #[inline]
+    fn half_area(&self) -> f32 {
+        let e = self.max - self.min;
+        e.x * (e.y + e.z) + e.y * e.z
+    }
+}
+
+/// What is to be divided into a tree, in an order that changes run by run. Each run is in one of
+/// two buffers; a split writes its parts to the other one.
+#[derive(Default)]
+pub(super) struct Items {
+    pub(super) bounds: [Vec<Bounds>; 2],
+}
+
+/// Items on their way to becoming a child.
+#[derive(Clone, Copy)]
+pub(super) struct Run {
+    pub(super) start: u32,
+    pub(super) end: u32,
+    pub(super) buffer: u32,
+    /// Triangles in the items.
+    pub(super) count: u32,
+    pub(super) bounds: Bounds,
+}
+
+impl Run {
+    const NONE: Run = Run {
+        start: 0,
+        end: 0,
+        buffer: 0,
+        count: 0,
+        bounds: Bounds::EMPTY,
+    };
+
+    pub(super) fn len(&self) -> usize {
+        self.range().len()
+    }
+
+    pub(super) fn range(&self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
+
+/// What triangles in a box cost a query that reaches the box's parent, by the leaves that they
+/// fill.
+#[inline]
+fn cost(bounds: &Bounds, count: u32) -> f32 {
+    bounds.half_area() * count.div_ceil(WIDTH as u32) as f32
+}
+
+impl Items {
+    pub(super) fn of(&self, run: &Run) -> &[Bounds] {
+        &self.bounds[run.buffer as usize][run.range()]
+    }
+
+    /// Makes room for as many items as are in the first buffer.
+    pub(super) fn mirror(&mut self) {
+        let len = self.bounds[0].len();
+        if self.bounds[1].len() < len {
+            self.bounds[1].resize(len, Bounds::EMPTY);
+        }
+    }
+
+    /// Cuts a run into two to four runs, none of them empty, reordering items. It has more than
+    /// four triangles and more than one item. `count` tells how many triangles are in an item.
+    pub(super) fn divide(
+        &mut self,
+        run: Run,
+        level: usize,
+        count: impl Fn(&Bounds) -> u32,
+    ) -> ([Run; WIDTH], usize) {
+        let mut runs = [run, Run::NONE, Run::NONE, Run::NONE];
+        let mut costs = [f32::INFINITY; WIDTH];
+        let mut parts = 1;
+        while parts < WIDTH {
+            let mut dearest = None;
+            for i in 0..parts {
+                let dearer = dearest.is_none_or(|j: usize| costs[i] > costs[j]);
+                if runs[i].count > WIDTH as u32 && runs[i].len() > 1 && dearer {
+                    dearest = Some(i);
+                }
+            }
+            let Some(i) = dearest else {
+                break;
+            };
+            (runs[i], runs[parts]) = self.split(&runs[i], level, &count);
+            for i in [i, parts] {
+                // Below the level of halving, the longest run has to go first.
+                costs[i] = if level < HALVE_FROM {
+                    cost(&runs[i].bounds, runs[i].count)
+                } else {
+                    runs[i].count as f32
+                };
+            }
+            parts += 1;
+        }
+        (runs, parts)
+    }
+
+    /// Cuts a run of two or more in two, along the axis on which centres lie farthest apart.
+    #[inline]
+    fn split(&mut self, run: &Run, level: usize, count: &impl Fn(&Bounds) -> u32) -> (Run, Run) {
+        let items = self.of(run);
+        let Centres { axis, low, high } = Centres::of(items);
+        if level >= HALVE_FROM || !(high > low && high - low < f32::INFINITY) {
+            return self.halve(run, count);
+        }
+        let best = if run.len() <= SHORT {
+            best_plane::<FEW_BINS>(items, run.count, axis, low, high, count)
+        } else {
+            best_plane::<BINS>(items, run.count, axis, low, high, count)
+        };
+        let Some(best) = best else {
+            return self.halve(run, count);
+        };
+        let at = if run.len() <= SHORT {
+            self.partition(run, |item| {
+                bin::<FEW_BINS>(item, axis, low, best.scale) <= best.last_left
+            })
+        } else {
+            self.partition(run, |item| bin::<BINS>(item, axis, low, best.scale) <= best.last_left)
+        };
+        let buffer = 1 - run.buffer;
+        let left = Run {
+            end: at,
+            count: best.count,
+            bounds: best.left,
+            buffer,
+            ..*run
+        };
+        let right = Run {
+            start: at,
+            count: run.count - best.count,
+            bounds: best.right,
+            buffer,
+            ..*run
+        };
+        (left, right)
+    }
+
+    /// Cuts a run where it is whose centres no plane separates.
+    #[cold]
+    fn halve(&self, run: &Run, count: &impl Fn(&Bounds) -> u32) -> (Run, Run) {
+        let middle = run.start + run.len() as u32 / 2;
+        let part = |start, end| {
+            let part = Run { start, end, ..*run };
+            let items = self.of(&part).iter();
+            Run {
+                count: items.clone().map(count).sum(),
+                bounds: items.fold(Bounds::EMPTY, |all, &item| all.union(item)),
+                ..part
+            }
+        };
+        (part(run.start, middle), part(middle, run.end))
+    }
+
+    /// Writes a run to the other buffer, items that go left in front; returns where the others
+    /// begin.
+    #[inline]
+    fn partition(&mut self, run: &Run, goes_left: impl Fn(&Bounds) -> bool) -> u32 {
+        let [zero, one] = &mut self.bounds;
+        let [from, to] = if run.buffer == 0 { [zero, one] } else { [one, zero] };
+        let (from, to) = (&from[run.range()], &mut to[run.range()]);
+        // Those on the left from the left end, the others from the right: which of the two is a
+        // toss-up, so it is an index and not a branch.
+        let (mut left, mut right) = (0, from.len());
+        for item in from {
+            let goes_left = goes_left(item);
+            let place = if goes_left { left } else { right - 1 };
+            to[place] = *item;
+            left += usize::from(goes_left);
+            right -= usize::from(!goes_left);
+        }
+        run.start + left as u32
+    }
+}
+
+/// The axis along which the centres of some boxes lie farthest apart, and twice the outer ones.
+struct Centres {
+    axis: usize,
+    low: f32,
+    high: f32,
+}
+
+impl Centres {
+    #[inline]
+    fn of(items: &[Bounds]) -> Centres {
+        let (mut low, mut high) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
+        for item in items {
+            low = low.min(item.centre());
+            high = high.max(item.centre());
+        }
+        let extent = (high - low).to_array();
+        let mut axis = usize::from(extent[1] > extent[0]);
+        if extent[2] > extent[axis] {
+            axis = 2;
+        }
+        Centres {
+            axis,
+            low: low[axis],
+            high: high[axis],
+        }
+    }
+}
+
+/// A plane that items are split by: up to a bin to the left, how many triangles these are, and the
+/// boxes of both sides.
+struct Plane {
+    scale: f32,
+    last_left: u32,
+    count: u32,
+    left: Bounds,
+    right: Bounds,
+}
+
+/// Adding this to a small float rounds it to whole numbers, which are then its last bits.
+const WHOLE: f32 = (3 << 22) as f32;
+
+#[inline]
+fn bin<const N: usize>(item: &Bounds, axis: usize, origin: f32, scale: f32) -> u32 {
+    ((item.along(axis) - origin) * scale - 0.5 + WHOLE).to_bits() & N as u32 - 1
+}
+
+/// The plane across an axis with the least area of boxes times leaves to fill in them.
+///
+/// Planes across the other two axes as well would take three times as long and save queries at
+/// best a few tiles in a hundred.
+#[inline]
+fn best_plane<const N: usize>(
+    items: &[Bounds],
+    count: u32,
+    axis: usize,
+    low: f32,
+    high: f32,
+    count_of: &impl Fn(&Bounds) -> u32,
+) -> Option<Plane> {
+    // A little less than the bins, so that the highest centre still lies in the last one.
+    let scale = N as f32 * (1.0 - 1e-6) / (high - low);
+    let mut bins = [Bounds::EMPTY; N];
+    let mut counts = [0u32; N];
+    for item in items {
+        let bin = bin::<N>(item, axis, low, scale) as usize;
+        bins[bin] = bins[bin].union(*item);
+        counts[bin] += count_of(item);
+    }
+    // What lies to the right of each plane, swept from the right.
+    let mut right = [Bounds::EMPTY; N];
+    for i in (1..N).rev() {
+        right[i - 1] = right[i].union(bins[i]);
+    }
+    let (mut left, mut on_left, mut best, mut least) = (Bounds::EMPTY, 0, None, f32::INFINITY);
+    for last_left in 0..N - 1 {
+        left = left.union(bins[last_left]);
+        on_left += counts[last_left];
+        let right = right[last_left];
+        let cost = cost(&left, on_left) + cost(&right, count - on_left);
+        if on_left > 0 && on_left < count && cost < least {
+            least = cost;
+            best = Some(Plane {
+                scale,
+                last_left: last_left as u32,
+                count: on_left,
+                left,
+                right,
+            });
+        }
+    }
+    best
+}
