@@ -4,7 +4,7 @@ use alloc::{vec, vec::Vec};
 use glam::{Mat4, Vec3A, Vec4};
 
 use super::grid::Grid;
-use super::slabs::slabs;
+use super::slabs::{self, Below, Slabs};
 use super::split::{Bounds, HALVE_FROM, Items, Run};
 use super::{Boxes, Bvh, LEAF, MAX_DEPTH, Node, Origin, Triangles, WIDTH};
 use crate::Mesh;
@@ -29,6 +29,8 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
     let mut items = Items::default();
     let mut nodes: Vec<Node> = Vec::with_capacity(count / 2 + 1);
     let mut triangles = Vec::with_capacity(count * 3 / 8 + 1);
+    let mut slabs = Vec::with_capacity(nodes.capacity());
+    let mut below = Vec::with_capacity(nodes.capacity());
     let mut depth = 0;
     let bounds = mesh.bounds();
     let all = Run {
@@ -72,6 +74,9 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
                 count: run.count,
                 triangles: triangles.len() as u32,
             });
+            let (of_leaf, sum) = leaf.slabs(run.count as usize, triangles.len() as u32 + 1);
+            slabs.push(of_leaf);
+            below.push(sum);
             triangles.push(leaf);
             continue;
         }
@@ -82,8 +87,11 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
         };
         nodes.push(Node {
             count: count as u32,
+            triangles: triangles.len() as u32,
             ..Node::EMPTY
         });
+        slabs.push(Slabs::NONE);
+        below.push(Below::NONE);
         for lane in (0..count).rev() {
             pending.push(Pending {
                 run: children[lane],
@@ -94,12 +102,13 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
             });
         }
     }
+    slabs::fill(&nodes, &triangles, &mut below, &mut slabs);
     debug_assert!(depth <= MAX_DEPTH);
     Bvh {
         bounds: mesh.bounds(),
         root: if count <= WIDTH { LEAF } else { 0 },
         count,
-        slabs: slabs(&nodes, &triangles),
+        slabs,
         nodes,
         triangles,
         origin: origins(mesh),

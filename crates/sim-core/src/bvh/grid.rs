@@ -84,9 +84,8 @@ impl Grid {
         let triangles = &mut items.bounds[0];
         triangles.clear();
         for cell in self.cells.of(run) {
-            for &face in self.faces(cell) {
-                triangles.push(bounds(mesh, face as usize, Bounds::lane(face)));
-            }
+            let faces = self.faces(cell).iter();
+            triangles.extend(faces.map(|&face| bounds(mesh, face as usize, Bounds::lane(face))));
         }
         items.mirror();
         Run {

@@ -10,10 +10,12 @@ use super::{MAX_DEPTH, WIDTH};
 
 /// Candidate split planes, less one; a power of two.
 const BINS: usize = 16;
-/// The same of short runs.
+/// The same for runs up to `FEW`.
 const FEW_BINS: usize = 8;
-/// Runs up to this are short.
-const SHORT: usize = 32;
+const FEW: usize = 32;
+/// Runs up to this are sorted and cut near the middle of their centres: of so few triangles the
+/// heuristic makes nothing better.
+const SHORT: usize = 16;
 /// From this level on, runs are halved by count. It leaves a quarter at most to each child, and a
 /// mesh has fewer than 4^16 triangles, so the tree stays within `MAX_DEPTH`.
 pub(super) const HALVE_FROM: usize = MAX_DEPTH - 16;
@@ -61,7 +63,7 @@ impl Bounds {
     #[inline]
     fn along(&self, axis: usize) -> f32 {
         let (min, max): (&[f32; 4], &[f32; 4]) = (self.min.as_ref(), self.max.as_ref());
-        min[axis] + max[axis]
+        min[axis & 3] + max[axis & 3]
     }
 
     /// Half of the surface area; infinite for huge boxes, and then no plane is the best.
@@ -169,23 +171,34 @@ impl Items {
     fn split(&mut self, run: &Run, level: usize, count: &impl Fn(&Bounds) -> u32) -> (Run, Run) {
         let items = self.of(run);
         let Centres { axis, low, high } = Centres::of(items);
+        if run.len() == run.count as usize && run.len() <= SHORT {
+            // An infinite middle does no harm.
+            let middle = if level < HALVE_FROM { Some(0.5 * low + 0.5 * high) } else { None };
+            return if run.len() <= SHORT / 2 {
+                self.sort::<{ SHORT / 2 }>(run, axis, middle)
+            } else {
+                self.sort::<SHORT>(run, axis, middle)
+            };
+        }
         if level >= HALVE_FROM || !(high > low && high - low < f32::INFINITY) {
             return self.halve(run, count);
         }
-        let best = if run.len() <= SHORT {
-            best_plane::<FEW_BINS>(items, run.count, axis, low, high, count)
-        } else {
-            best_plane::<BINS>(items, run.count, axis, low, high, count)
-        };
-        let Some(best) = best else {
-            return self.halve(run, count);
-        };
-        let at = if run.len() <= SHORT {
-            self.partition(run, |item| {
+        let (best, at) = if run.len() <= FEW {
+            let Some(best) = best_plane::<FEW_BINS>(items, run.count, axis, low, high, count) else {
+                return self.halve(run, count);
+            };
+            let at = self.partition(run, |item| {
                 bin::<FEW_BINS>(item, axis, low, best.scale) <= best.last_left
-            })
+            });
+            (best, at)
         } else {
-            self.partition(run, |item| bin::<BINS>(item, axis, low, best.scale) <= best.last_left)
+            let Some(best) = best_plane::<BINS>(items, run.count, axis, low, high, count) else {
+                return self.halve(run, count);
+            };
+            let at = self.partition(run, |item| {
+                bin::<BINS>(item, axis, low, best.scale) <= best.last_left
+            });
+            (best, at)
         };
         let buffer = 1 - run.buffer;
         let left = Run {
@@ -203,6 +216,54 @@ impl Items {
             ..*run
         };
         (left, right)
+    }
+
+    /// Sorts a run of five to `N` triangles along an axis and cuts it near a place, or in the
+    /// middle, so that the parts fill no more leaves than the whole.
+    #[inline]
+    fn sort<const N: usize>(&mut self, run: &Run, axis: usize, place: Option<f32>) -> (Run, Run) {
+        let [zero, one] = &mut self.bounds;
+        let [from, to] = if run.buffer == 0 { [zero, one] } else { [one, zero] };
+        let (from, to) = (&from[run.range()], &mut to[run.range()]);
+        let mut keys = [f32::INFINITY; N];
+        let mut before = 0;
+        for (i, (key, item)) in keys.iter_mut().zip(from).enumerate() {
+            let along = item.along(axis).clamp(f32::MIN, f32::MAX);
+            before += u32::from(place.is_some_and(|place| along <= place));
+            // No two are the same: the last bits are the item's number.
+            *key = f32::from_bits(along.to_bits() & !(N as u32 - 1) | i as u32);
+        }
+        let mut ranks = [0u32; N];
+        for &key in &keys[..from.len()] {
+            for (rank, &other) in ranks.iter_mut().zip(&keys) {
+                *rank += u32::from(key < other);
+            }
+        }
+        for (&rank, item) in ranks.iter().zip(from) {
+            to[rank as usize] = *item;
+        }
+        let (count, width) = (run.count, WIDTH as u32);
+        if place.is_none() {
+            before = count / 2;
+        }
+        let spare = count.div_ceil(width) * width - count;
+        let fits = |&n: &u32| n >= 1 && n < count && n.div_ceil(width) * width - n <= spare;
+        let mut cut = before.clamp(1, count - 1);
+        if !fits(&cut) {
+            let up = (cut + 1..count).find(fits).unwrap_or(count);
+            let down = (1..cut).rev().find(fits).unwrap_or(0);
+            cut = if up - cut < cut - down && up < count || down == 0 { up } else { down };
+        }
+        let part = |start: u32, end: u32| Run {
+            start: run.start + start,
+            end: run.start + end,
+            buffer: 1 - run.buffer,
+            count: end - start,
+            bounds: to[start as usize..end as usize]
+                .iter()
+                .fold(Bounds::EMPTY, |all, &item| all.union(item)),
+        };
+        (part(0, cut), part(cut, count))
     }
 
     /// Cuts a run where it is whose centres no plane separates.
