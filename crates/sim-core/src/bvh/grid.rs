@@ -4,7 +4,7 @@
 //! (Pantaleoni, Luebke 2010, "HLBVH", sec. 3: there the cells are of a space filling curve).
 
 use alloc::{vec, vec::Vec};
-use glam::{DVec3, Vec4};
+use glam::{Vec3, Vec4};
 
 use super::split::{Bounds, Items, Run};
 use crate::Mesh;
@@ -129,17 +129,12 @@ impl Frame {
             .max(extent.max_element() * PER_CELL / count);
         let scale = (0.5 / size) as f32;
         let usable = scale > 0.0 && scale < f32::INFINITY && bounds.max.abs().max(bounds.min.abs()).max_element() < 1e37;
-        let counts = if usable {
-            extent / size
-        } else {
-            DVec3::ZERO
-        };
-        let counts = (counts + 1.0).as_ivec3();
+        let counts = extent.to_array().map(|e| if usable { (e / size) as u32 + 1 } else { 1 });
         Frame {
             origin: (2.0 * bounds.min).extend(0.0),
             scale: if usable { scale } else { 0.0 },
-            last: (counts - 1).as_vec3().extend(0.0),
-            counts: counts.to_array().map(|n| n as u32),
+            last: Vec3::from_array(counts.map(|n| (n - 1) as f32)).extend(0.0),
+            counts,
         }
     }
 

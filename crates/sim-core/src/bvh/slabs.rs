@@ -6,7 +6,6 @@
 //! root of it (Gottschalk, Lin, Manocha 1996, "OBBTree", sec. 5, on boxes of any orientation; here
 //! it is a box and one slab).
 
-use alloc::vec::Vec;
 use glam::{BVec4A, Vec4};
 
 use super::{LEAF, Node, Triangles, WIDTH};
