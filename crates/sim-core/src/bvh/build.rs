@@ -14,18 +14,11 @@ use crate::Mesh;
 const FEW_CELLS: usize = 8;
 const FEW: u32 = 64;
 
-/// A run of cells or of triangles that waits to become a child.
-struct Pending {
-    run: Run,
-    of_cells: bool,
-    level: u8,
-    lane: u8,
-    parent: u32,
-}
-
 pub(super) fn build(mesh: &Mesh) -> Bvh {
     let count = mesh.triangles().len();
-    let mut grid = Grid::of(mesh);
+    // With a fourth coordinate each is one load.
+    let vertices: Vec<Vec4> = mesh.vertices().iter().map(|v| v.extend(0.0)).collect();
+    let mut grid = Grid::of(mesh, &vertices);
     let mut items = Items::default();
     let mut nodes: Vec<Node> = Vec::with_capacity(count / 2 + 1);
     let mut triangles = Vec::with_capacity(count * 3 / 8 + 1);
@@ -33,41 +26,39 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
     let mut below = Vec::with_capacity(nodes.capacity());
     let mut depth = 0;
     let bounds = mesh.bounds();
-    let all = Run {
+    // Those that wait to become children, the next one last.
+    let mut runs = vec![Run {
         start: 0,
         end: grid.cells.bounds[0].len() as u32,
-        buffer: 0,
         count: count as u32,
         bounds: Bounds {
             min: bounds.min.extend(0.0),
             max: bounds.max.extend(0.0),
         },
-    };
-    let mut pending = vec![Pending {
-        run: all,
-        of_cells: true,
-        level: 0,
-        lane: 0,
         parent: u32::MAX,
+        lane: 0,
+        level: 0,
+        buffer: 0,
+        of_cells: true,
     }];
-    while let Some(Pending { mut run, mut of_cells, level, lane, parent }) = pending.pop() {
-        // Depth first, so nobody else's triangles wait in `items` when it is filled anew.
-        let few = run.len() <= FEW_CELLS || run.count <= FEW || level as usize >= HALVE_FROM;
-        if of_cells && few {
-            run = grid.gather(mesh, &run, &mut items);
-            of_cells = false;
+    while let Some(mut run) = runs.pop() {
+        let level = usize::from(run.level);
+        // Depth first, so no other triangles wait in `items` when it is filled anew.
+        let few = run.len() <= FEW_CELLS || run.count <= FEW || level >= HALVE_FROM;
+        if run.of_cells && few {
+            run = grid.gather(mesh, &vertices, &run, &mut items);
         }
-        depth = depth.max(level as usize + 1);
+        depth = depth.max(level + 1);
         let index = nodes.len() as u32;
         let is_leaf = run.count <= WIDTH as u32;
         let code = index | if is_leaf { LEAF } else { 0 };
-        if let Some(parent) = nodes.get_mut(parent as usize) {
-            let Bounds { min, max } = run.bounds;
-            parent.boxes.set(lane as usize, Vec3A::from_vec4(min), Vec3A::from_vec4(max));
-            parent.child[lane as usize] = code;
+        if let Some(parent) = nodes.get_mut(run.parent as usize) {
+            let (lane, Bounds { min, max }) = (usize::from(run.lane), run.bounds);
+            parent.boxes.set(lane, Vec3A::from_vec4(min), Vec3A::from_vec4(max));
+            parent.child[lane] = code;
         }
         if is_leaf {
-            let leaf = leaf(mesh, items.of(&run));
+            let leaf = leaf(mesh, &vertices, items.of(&run));
             nodes.push(Node {
                 boxes: leaf.boxes(run.count as usize),
                 child: [code; WIDTH],
@@ -80,27 +71,25 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
             triangles.push(leaf);
             continue;
         }
-        let (children, count) = if of_cells {
-            grid.divide(run, level as usize)
+        let first = runs.len();
+        runs.push(run);
+        if run.of_cells {
+            grid.divide(&mut runs);
         } else {
-            items.divide(run, level as usize, |_| 1)
-        };
+            items.divide(&mut runs, |_| 1);
+        }
+        for (lane, child) in runs[first..].iter_mut().enumerate() {
+            child.parent = index;
+            child.lane = lane as u8;
+            child.level = run.level + 1;
+        }
         nodes.push(Node {
-            count: count as u32,
+            count: (runs.len() - first) as u32,
             triangles: triangles.len() as u32,
             ..Node::EMPTY
         });
         slabs.push(Slabs::NONE);
         below.push(Below::NONE);
-        for lane in (0..count).rev() {
-            pending.push(Pending {
-                run: children[lane],
-                of_cells,
-                level: level + 1,
-                lane: lane as u8,
-                parent: index,
-            });
-        }
     }
     slabs::fill(&nodes, &triangles, &mut below, &mut slabs);
     debug_assert!(depth <= MAX_DEPTH);
@@ -118,13 +107,13 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
 
 /// The triangles of a leaf side by side.
 #[inline]
-fn leaf(mesh: &Mesh, items: &[Bounds]) -> Triangles {
+fn leaf(mesh: &Mesh, vertices: &[Vec4], items: &[Bounds]) -> Triangles {
     // Lanes that hold nothing repeat the last one, so that they widen nothing.
     let face = core::array::from_fn(|lane| items[lane.min(items.len() - 1)].number());
-    let of_lane = face.map(|face| mesh.corners(face as usize));
+    let of_lane = face.map(|face: u32| mesh.triangles()[face as usize]);
     let mut corners = [[0.0; WIDTH]; 9];
     for k in 0..3 {
-        let [a, b, c, d] = of_lane.map(|corners| corners[k].extend(0.0));
+        let [a, b, c, d] = of_lane.map(|corners| vertices[corners[k] as usize]);
         let columns = Mat4::from_cols(a, b, c, d).transpose();
         corners[3 * k] = columns.x_axis.to_array();
         corners[3 * k + 1] = columns.y_axis.to_array();

@@ -6,7 +6,7 @@
 use alloc::{vec, vec::Vec};
 use glam::{Vec3, Vec4};
 
-use super::split::{Bounds, Items, Run};
+use super::split::{Bounds, Items, Run, WHOLE, whole};
 use crate::Mesh;
 
 /// Triangles in a cell that holds any, about: where they cover a surface of the size of the mesh's
@@ -22,16 +22,16 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    pub(super) fn of(mesh: &Mesh) -> Grid {
+    pub(super) fn of(mesh: &Mesh, vertices: &[Vec4]) -> Grid {
         let frame = Frame::of(mesh);
         let count = mesh.triangles().len();
         // Numbers of cells from 1, in the order in which triangles come; 0 for none yet.
         let mut numbers = vec![0u32; frame.cells()];
         let mut cells: Vec<Bounds> = Vec::with_capacity(count / 4);
         let mut ends: Vec<u32> = Vec::with_capacity(count / 4);
-        let mut of_face = Vec::with_capacity(count);
-        for face in 0..count {
-            let bounds = bounds(mesh, face, 0.0);
+        let mut of_face: Vec<u32> = Vec::with_capacity(count);
+        of_face.extend(mesh.triangles().iter().map(|&corners| {
+            let bounds = bounds(vertices, corners);
             let number = &mut numbers[frame.cell(&bounds)];
             if *number == 0 {
                 cells.push(Bounds::EMPTY);
@@ -41,11 +41,10 @@ impl Grid {
             let cell = *number as usize - 1;
             cells[cell] = cells[cell].union(bounds);
             ends[cell] += 1;
-            of_face.push(cell as u32);
-        }
+            cell as u32
+        }));
         for (number, cell) in cells.iter_mut().enumerate() {
-            cell.min.w = Bounds::lane(number as u32);
-            cell.max.w = cell.min.w;
+            cell.set_number(number as u32);
         }
         // Counts become starts, and these ends as triangles come in.
         let mut start = 0;
@@ -70,9 +69,9 @@ impl Grid {
     }
 
     /// Cuts a run of cells, see [`Items::divide`].
-    pub(super) fn divide(&mut self, run: Run, level: usize) -> ([Run; super::WIDTH], usize) {
+    pub(super) fn divide(&mut self, runs: &mut Vec<Run>) {
         let ends = &self.ends[..];
-        self.cells.divide(run, level, |cell| {
+        self.cells.divide(runs, |cell| {
             let cell = cell.number() as usize;
             let start = if cell == 0 { 0 } else { ends[cell - 1] };
             ends[cell] - start
@@ -80,27 +79,38 @@ impl Grid {
     }
 
     /// The triangles of a run of cells, as items.
-    pub(super) fn gather(&self, mesh: &Mesh, run: &Run, items: &mut Items) -> Run {
+    pub(super) fn gather(
+        &self,
+        mesh: &Mesh,
+        vertices: &[Vec4],
+        run: &Run,
+        items: &mut Items,
+    ) -> Run {
         let triangles = &mut items.bounds[0];
         triangles.clear();
         for cell in self.cells.of(run) {
             let faces = self.faces(cell).iter();
-            triangles.extend(faces.map(|&face| bounds(mesh, face as usize, Bounds::lane(face))));
+            triangles.extend(faces.map(|&face| {
+                let mut bounds = bounds(vertices, mesh.triangles()[face as usize]);
+                bounds.set_number(face);
+                bounds
+            }));
         }
         items.mirror();
         Run {
             start: 0,
             end: run.count,
             buffer: 0,
+            of_cells: false,
             ..*run
         }
     }
 }
 
-/// The box of a triangle, with a fourth lane.
+/// The box of a triangle.
 #[inline]
-fn bounds(mesh: &Mesh, face: usize, lane: f32) -> Bounds {
-    let [a, b, c] = mesh.corners(face).map(|v| v.extend(lane));
+fn bounds(vertices: &[Vec4], corners: [u32; 3]) -> Bounds {
+    let [a, b, c] = corners.map(|i| vertices[i as usize]);
     Bounds {
         min: a.min(b).min(c),
         max: a.max(b).max(c),
@@ -129,7 +139,7 @@ impl Frame {
             .max(extent.max_element() * PER_CELL / count);
         let scale = (0.5 / size) as f32;
         let usable = scale > 0.0 && scale < f32::INFINITY && bounds.max.abs().max(bounds.min.abs()).max_element() < 1e37;
-        let counts = extent.to_array().map(|e| if usable { (e / size) as u32 + 1 } else { 1 });
+        let counts = extent.to_array().map(|e| if usable { ((e / size) as u32).min(1 << 20) + 1 } else { 1 });
         Frame {
             origin: (2.0 * bounds.min).extend(0.0),
             scale: if usable { scale } else { 0.0 },
@@ -145,8 +155,8 @@ impl Frame {
     #[inline]
     fn cell(&self, bounds: &Bounds) -> usize {
         let at = ((bounds.centre() - self.origin) * self.scale).min(self.last);
-        // Neither negative nor beyond the cells.
-        let [x, y, z] = [at.x, at.y, at.z].map(|x| x as u32 as usize);
+        // Not negative.
+        let [x, y, z, _] = (at - 0.5 + WHOLE).to_array().map(|x| whole(x) as usize);
         let [_, ny, nz] = self.counts.map(|n| n as usize);
         (x * ny + y) * nz + z
     }

@@ -98,7 +98,7 @@ pub(super) fn fill(nodes: &[Node], triangles: &[Triangles], below: &mut [Below],
         let mut all = Below::NONE;
         for lane in node.lanes() {
             let of_lane = &below[(node.child[lane] & !LEAF) as usize];
-            all.end = of_lane.end;
+            all.end = all.end.max(of_lane.end);
             for axis in 0..3 {
                 area[axis][lane] = of_lane.area[axis];
                 all.area[axis] += of_lane.area[axis];

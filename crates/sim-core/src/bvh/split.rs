@@ -20,7 +20,7 @@ const SHORT: usize = 16;
 /// mesh has fewer than 4^16 triangles, so the tree stays within `MAX_DEPTH`.
 pub(super) const HALVE_FROM: usize = MAX_DEPTH - 16;
 
-/// A box in two SIMD registers, and in their fourth lanes the number of what is in it.
+/// A box in two SIMD registers, and in the last lane the number of what is in it.
 #[derive(Clone, Copy)]
 pub(super) struct Bounds {
     pub(super) min: Vec4,
@@ -41,11 +41,10 @@ impl Bounds {
         }
     }
 
-    /// A fourth lane for a number: the float whose bits it is, past those that processors are slow
-    /// with.
+    /// The number as the float of the same bits, past those that processors are slow with.
     #[inline]
-    pub(super) fn lane(number: u32) -> f32 {
-        f32::from_bits(number + f32::MIN_POSITIVE.to_bits())
+    pub(super) fn set_number(&mut self, number: u32) {
+        self.max.w = f32::from_bits(number + f32::MIN_POSITIVE.to_bits());
     }
 
     #[inline]
@@ -84,23 +83,19 @@ pub(super) struct Items {
 /// Items on their way to becoming a child.
 #[derive(Clone, Copy)]
 pub(super) struct Run {
+    pub(super) bounds: Bounds,
     pub(super) start: u32,
     pub(super) end: u32,
-    pub(super) buffer: u32,
     /// Triangles in the items.
     pub(super) count: u32,
-    pub(super) bounds: Bounds,
+    pub(super) parent: u32,
+    pub(super) lane: u8,
+    pub(super) level: u8,
+    pub(super) buffer: u8,
+    pub(super) of_cells: bool,
 }
 
 impl Run {
-    const NONE: Run = Run {
-        start: 0,
-        end: 0,
-        buffer: 0,
-        count: 0,
-        bounds: Bounds::EMPTY,
-    };
-
     pub(super) fn len(&self) -> usize {
         self.range().len()
     }
@@ -130,45 +125,44 @@ impl Items {
         }
     }
 
-    /// Cuts a run into two to four runs, none of them empty, reordering items. It has more than
-    /// four triangles and more than one item. `count` tells how many triangles are in an item.
-    pub(super) fn divide(
-        &mut self,
-        run: Run,
-        level: usize,
-        count: impl Fn(&Bounds) -> u32,
-    ) -> ([Run; WIDTH], usize) {
-        let mut runs = [run, Run::NONE, Run::NONE, Run::NONE];
+    /// Cuts the last of some runs into two to four, none of them empty, reordering items. It has
+    /// more than four triangles and more than one item. `count` tells how many triangles are in an
+    /// item.
+    pub(super) fn divide(&mut self, runs: &mut Vec<Run>, count: impl Fn(&Bounds) -> u32) {
+        let first = runs.len() - 1;
         let mut costs = [f32::INFINITY; WIDTH];
-        let mut parts = 1;
-        while parts < WIDTH {
-            let mut dearest = None;
-            for i in 0..parts {
-                let dearer = dearest.is_none_or(|j: usize| costs[i] > costs[j]);
-                if runs[i].count > WIDTH as u32 && runs[i].len() > 1 && dearer {
-                    dearest = Some(i);
+        let mut dearest = 0;
+        for part in 1..WIDTH {
+            let (left, right) = self.split(&runs[first + dearest], &count);
+            // Below the level of halving, the longest run has to go first.
+            let cost = |run: &Run| {
+                if run.count <= WIDTH as u32 || run.len() == 1 {
+                    -1.0
+                } else if usize::from(run.level) < HALVE_FROM {
+                    cost(&run.bounds, run.count)
+                } else {
+                    run.count as f32
+                }
+            };
+            (costs[dearest], costs[part]) = (cost(&left), cost(&right));
+            runs[first + dearest] = left;
+            runs.push(right);
+            dearest = 0;
+            for i in 1..=part {
+                if costs[i] > costs[dearest] {
+                    dearest = i;
                 }
             }
-            let Some(i) = dearest else {
+            if costs[dearest] < 0.0 {
                 break;
-            };
-            (runs[i], runs[parts]) = self.split(&runs[i], level, &count);
-            for i in [i, parts] {
-                // Below the level of halving, the longest run has to go first.
-                costs[i] = if level < HALVE_FROM {
-                    cost(&runs[i].bounds, runs[i].count)
-                } else {
-                    runs[i].count as f32
-                };
             }
-            parts += 1;
         }
-        (runs, parts)
     }
 
     /// Cuts a run of two or more in two, along the axis on which centres lie farthest apart.
     #[inline]
-    fn split(&mut self, run: &Run, level: usize, count: &impl Fn(&Bounds) -> u32) -> (Run, Run) {
+    fn split(&mut self, run: &Run, count: &impl Fn(&Bounds) -> u32) -> (Run, Run) {
+        let level = usize::from(run.level);
         let items = self.of(run);
         let Centres { axis, low, high } = Centres::of(items);
         if run.len() == run.count as usize && run.len() <= SHORT {
@@ -188,7 +182,7 @@ impl Items {
                 return self.halve(run, count);
             };
             let at = self.partition(run, |item| {
-                bin::<FEW_BINS>(item, axis, low, best.scale) <= best.last_left
+                place(item, axis, low, best.scale) <= best.last_left
             });
             (best, at)
         } else {
@@ -196,7 +190,7 @@ impl Items {
                 return self.halve(run, count);
             };
             let at = self.partition(run, |item| {
-                bin::<BINS>(item, axis, low, best.scale) <= best.last_left
+                place(item, axis, low, best.scale) <= best.last_left
             });
             (best, at)
         };
@@ -257,11 +251,12 @@ impl Items {
         let part = |start: u32, end: u32| Run {
             start: run.start + start,
             end: run.start + end,
-            buffer: 1 - run.buffer,
             count: end - start,
             bounds: to[start as usize..end as usize]
                 .iter()
                 .fold(Bounds::EMPTY, |all, &item| all.union(item)),
+            buffer: 1 - run.buffer,
+            ..*run
         };
         (part(0, cut), part(cut, count))
     }
@@ -331,22 +326,28 @@ impl Centres {
     }
 }
 
-/// A plane that items are split by: up to a bin to the left, how many triangles these are, and the
+/// A plane that items are split by: up to a [`place`] to the left, how many triangles these are, and the
 /// boxes of both sides.
 struct Plane {
     scale: f32,
-    last_left: u32,
+    last_left: f32,
     count: u32,
     left: Bounds,
     right: Bounds,
 }
 
 /// Adding this to a small float rounds it to whole numbers, which are then its last bits.
-const WHOLE: f32 = (3 << 22) as f32;
+pub(super) const WHOLE: f32 = (3 << 22) as f32;
 
 #[inline]
-fn bin<const N: usize>(item: &Bounds, axis: usize, origin: f32, scale: f32) -> u32 {
-    ((item.along(axis) - origin) * scale - 0.5 + WHOLE).to_bits() & N as u32 - 1
+pub(super) fn whole(sum: f32) -> u32 {
+    sum.to_bits() & (1 << 22) - 1
+}
+
+/// The bin of an item, plus `WHOLE`.
+#[inline]
+fn place(item: &Bounds, axis: usize, origin: f32, scale: f32) -> f32 {
+    (item.along(axis) - origin) * scale - 0.5 + WHOLE
 }
 
 /// The plane across an axis with the least area of boxes times leaves to fill in them.
@@ -367,7 +368,7 @@ fn best_plane<const N: usize>(
     let mut bins = [Bounds::EMPTY; N];
     let mut counts = [0u32; N];
     for item in items {
-        let bin = bin::<N>(item, axis, low, scale) as usize;
+        let bin = whole(place(item, axis, low, scale)) as usize & (N - 1);
         bins[bin] = bins[bin].union(*item);
         counts[bin] += count_of(item);
     }
@@ -376,22 +377,22 @@ fn best_plane<const N: usize>(
     for i in (1..N).rev() {
         right[i - 1] = right[i].union(bins[i]);
     }
-    let (mut left, mut on_left, mut best, mut least) = (Bounds::EMPTY, 0, None, f32::INFINITY);
+    let (mut left, mut on_left) = (Bounds::EMPTY, 0);
+    let (mut best, mut least) = (None, f32::INFINITY);
     for last_left in 0..N - 1 {
         left = left.union(bins[last_left]);
         on_left += counts[last_left];
-        let right = right[last_left];
-        let cost = cost(&left, on_left) + cost(&right, count - on_left);
-        if on_left > 0 && on_left < count && cost < least {
+        let cost = cost(&left, on_left) + cost(&right[last_left], count - on_left);
+        if cost < least && on_left > 0 && on_left < count {
             least = cost;
-            best = Some(Plane {
-                scale,
-                last_left: last_left as u32,
-                count: on_left,
-                left,
-                right,
-            });
+            best = Some((last_left, on_left, left));
         }
     }
-    best
+    best.map(|(last_left, count, left)| Plane {
+        scale,
+        last_left: last_left as f32 + WHOLE,
+        count,
+        left,
+        right: right[last_left],
+    })
 }
