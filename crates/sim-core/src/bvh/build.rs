@@ -5,14 +5,14 @@ use glam::{Mat4, Vec3A, Vec4};
 
 use super::grid::Grid;
 use super::slabs::{self, Below, Slabs};
-use super::split::{Bounds, HALVE_FROM, Items, Run};
+use super::split::{Bounds, HALVE_FROM, Items, Run, SHORT};
 use super::{Boxes, Bvh, LEAF, MAX_DEPTH, Node, Origin, Triangles, WIDTH};
 use crate::Mesh;
 
 /// Runs of cells up to this are built over triangles, as are those with no more triangles than
 /// `FEW`: so near the leaves the borders of cells would show.
-const FEW_CELLS: usize = 8;
-const FEW: u32 = 64;
+const FEW_CELLS: usize = 4;
+const FEW: u32 = 32;
 
 pub(super) fn build(mesh: &Mesh) -> Bvh {
     let count = mesh.triangles().len();
@@ -20,10 +20,7 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
     let vertices: Vec<Vec4> = mesh.vertices().iter().map(|v| v.extend(0.0)).collect();
     let mut grid = Grid::of(mesh, &vertices);
     let mut items = Items::default();
-    let mut nodes: Vec<Node> = Vec::with_capacity(count / 2 + 1);
-    let mut triangles = Vec::with_capacity(count * 3 / 8 + 1);
-    let mut slabs = Vec::with_capacity(nodes.capacity());
-    let mut below = Vec::with_capacity(nodes.capacity());
+    let mut tree = Tree::with_capacity(count);
     let mut depth = 0;
     let bounds = mesh.bounds();
     // Those that wait to become children, the next one last.
@@ -49,26 +46,26 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
             run = grid.gather(mesh, &vertices, &run, &mut items);
         }
         depth = depth.max(level + 1);
-        let index = nodes.len() as u32;
-        let is_leaf = run.count <= WIDTH as u32;
-        let code = index | if is_leaf { LEAF } else { 0 };
-        if let Some(parent) = nodes.get_mut(run.parent as usize) {
-            let (lane, Bounds { min, max }) = (usize::from(run.lane), run.bounds);
-            parent.boxes.set(lane, Vec3A::from_vec4(min), Vec3A::from_vec4(max));
-            parent.child[lane] = code;
+        let leaf = run.count <= WIDTH as u32;
+        let index = tree.nodes.len() as u32;
+        if run.parent != u32::MAX {
+            let code = index | if leaf { LEAF } else { 0 };
+            tree.adopt(run.parent, usize::from(run.lane), code, &run.bounds);
         }
-        if is_leaf {
-            let leaf = leaf(mesh, &vertices, items.of(&run));
-            nodes.push(Node {
-                boxes: leaf.boxes(run.count as usize),
-                child: [code; WIDTH],
-                count: run.count,
-                triangles: triangles.len() as u32,
+        if leaf {
+            tree.push_leaf(mesh, &vertices, items.of(&run));
+            continue;
+        }
+        tree.push_node();
+        if !run.of_cells && run.count as usize <= SHORT {
+            let mut lane = 0;
+            items.leaves(&run, |items| {
+                let code = tree.nodes.len() as u32 | LEAF;
+                tree.adopt(index, lane, code, &Bounds::around(items));
+                tree.push_leaf(mesh, &vertices, items);
+                lane += 1;
             });
-            let (of_leaf, sum) = leaf.slabs(run.count as usize, triangles.len() as u32 + 1);
-            slabs.push(of_leaf);
-            below.push(sum);
-            triangles.push(leaf);
+            depth = depth.max(level + 2);
             continue;
         }
         let first = runs.len();
@@ -83,25 +80,72 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
             child.lane = lane as u8;
             child.level = run.level + 1;
         }
-        nodes.push(Node {
-            count: (runs.len() - first) as u32,
-            triangles: triangles.len() as u32,
-            ..Node::EMPTY
-        });
-        slabs.push(Slabs::NONE);
-        below.push(Below::NONE);
     }
-    slabs::fill(&nodes, &triangles, &mut below, &mut slabs);
+    slabs::fill(&tree.nodes, &tree.triangles, &mut tree.below, &mut tree.slabs);
     debug_assert!(depth <= MAX_DEPTH);
     Bvh {
         bounds: mesh.bounds(),
         root: if count <= WIDTH { LEAF } else { 0 },
         count,
-        slabs,
-        nodes,
-        triangles,
+        nodes: tree.nodes,
+        slabs: tree.slabs,
+        triangles: tree.triangles,
         origin: origins(mesh),
         depth,
+    }
+}
+
+/// A tree that grows, and what its nodes tell their parents.
+struct Tree {
+    nodes: Vec<Node>,
+    slabs: Vec<Slabs>,
+    below: Vec<Below>,
+    triangles: Vec<Triangles>,
+}
+
+impl Tree {
+    fn with_capacity(count: usize) -> Tree {
+        let nodes = count / 2 + 1;
+        Tree {
+            nodes: Vec::with_capacity(nodes),
+            slabs: Vec::with_capacity(nodes),
+            below: Vec::with_capacity(nodes),
+            triangles: Vec::with_capacity(count * 3 / 8 + 1),
+        }
+    }
+
+    #[inline]
+    fn adopt(&mut self, parent: u32, lane: usize, code: u32, bounds: &Bounds) {
+        let parent = &mut self.nodes[parent as usize];
+        let (min, max) = (Vec3A::from_vec4(bounds.min), Vec3A::from_vec4(bounds.max));
+        parent.boxes.set(lane, min, max);
+        parent.child[lane] = code;
+        parent.count += 1;
+    }
+
+    fn push_node(&mut self) {
+        self.nodes.push(Node {
+            triangles: self.triangles.len() as u32,
+            ..Node::EMPTY
+        });
+        self.slabs.push(Slabs::NONE);
+        self.below.push(Below::NONE);
+    }
+
+    #[inline]
+    fn push_leaf(&mut self, mesh: &Mesh, vertices: &[Vec4], items: &[Bounds]) {
+        let leaf = leaf(mesh, vertices, items);
+        let place = self.triangles.len() as u32;
+        self.nodes.push(Node {
+            boxes: leaf.boxes(items.len()),
+            child: [self.nodes.len() as u32 | LEAF; WIDTH],
+            count: items.len() as u32,
+            triangles: place,
+        });
+        let (slabs, below) = leaf.slabs(items.len(), place + 1);
+        self.slabs.push(slabs);
+        self.below.push(below);
+        self.triangles.push(leaf);
     }
 }
 

@@ -12,7 +12,7 @@ use super::{LEAF, Node, Triangles, WIDTH};
 
 /// Of larger subtrees, in leaves, slabs are put around slabs below and not around each corner.
 /// They are wider for it, but so large a patch is curved or else its parts are all flat.
-const LARGE: usize = 32;
+const LARGE: usize = 16;
 
 /// A slab for each lane of a node, `|n·x - middle| <= half` but for rounding: heights are computed
 /// in f32 and err by less than `2^-20` of the largest coordinate.
@@ -106,19 +106,20 @@ pub(super) fn fill(nodes: &[Node], triangles: &[Triangles], below: &mut [Below],
         }
         below[index] = all;
         let normal = normals(area.map(Vec4::from_array));
-        let (mut low, mut high) = (Vec4::ZERO, Vec4::ZERO);
+        let normals = normal.map(|axis| axis.to_array());
+        let (mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH]);
         for lane in node.lanes() {
             let child = (node.child[lane] & !LEAF) as usize;
             let from = nodes[child].triangles as usize;
             let corners = &triangles[from..below[child].end as usize];
-            let normal = normal.map(|axis| Vec4::splat(axis[lane]));
+            let normal = normals.map(|axis| Vec4::splat(axis[lane]));
             (low[lane], high[lane]) = if corners.len() <= LARGE {
                 heights(corners, normal)
             } else {
                 heights_around(&nodes[child], &slabs[child], normal)
             };
         }
-        slabs[index] = Slabs::between(normal, low, high);
+        slabs[index] = Slabs::between(normal, low.into(), high.into());
     }
 }
 

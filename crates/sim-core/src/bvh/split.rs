@@ -12,10 +12,10 @@ use super::{MAX_DEPTH, WIDTH};
 const BINS: usize = 16;
 /// The same for runs up to `FEW`.
 const FEW_BINS: usize = 8;
-const FEW: usize = 32;
+const FEW: usize = 64;
 /// Runs up to this are sorted and cut near the middle of their centres: of so few triangles the
 /// heuristic makes nothing better.
-const SHORT: usize = 16;
+pub(super) const SHORT: usize = 4 * WIDTH;
 /// From this level on, runs are halved by count. It leaves a quarter at most to each child, and a
 /// mesh has fewer than 4^16 triangles, so the tree stays within `MAX_DEPTH`.
 pub(super) const HALVE_FROM: usize = MAX_DEPTH - 16;
@@ -39,6 +39,11 @@ impl Bounds {
             min: self.min.min(other.min),
             max: self.max.max(other.max),
         }
+    }
+
+    #[inline]
+    pub(super) fn around(items: &[Bounds]) -> Bounds {
+        items.iter().fold(Bounds::EMPTY, |all, &item| all.union(item))
     }
 
     /// The number as the float of the same bits, past those that processors are slow with.
@@ -166,13 +171,7 @@ impl Items {
         let items = self.of(run);
         let Centres { axis, low, high } = Centres::of(items);
         if run.len() == run.count as usize && run.len() <= SHORT {
-            // An infinite middle does no harm.
-            let middle = if level < HALVE_FROM { Some(0.5 * low + 0.5 * high) } else { None };
-            return if run.len() <= SHORT / 2 {
-                self.sort::<{ SHORT / 2 }>(run, axis, middle)
-            } else {
-                self.sort::<SHORT>(run, axis, middle)
-            };
+            return self.split_short(run);
         }
         if level >= HALVE_FROM || !(high > low && high - low < f32::INFINITY) {
             return self.halve(run, count);
@@ -212,53 +211,36 @@ impl Items {
         (left, right)
     }
 
-    /// Sorts a run of five to `N` triangles along an axis and cuts it near a place, or in the
-    /// middle, so that the parts fill no more leaves than the whole.
-    #[inline]
-    fn sort<const N: usize>(&mut self, run: &Run, axis: usize, place: Option<f32>) -> (Run, Run) {
-        let [zero, one] = &mut self.bounds;
-        let [from, to] = if run.buffer == 0 { [zero, one] } else { [one, zero] };
-        let (from, to) = (&from[run.range()], &mut to[run.range()]);
-        let mut keys = [f32::INFINITY; N];
-        let mut before = 0;
-        for (i, (key, item)) in keys.iter_mut().zip(from).enumerate() {
-            let along = item.along(axis).clamp(f32::MIN, f32::MAX);
-            before += u32::from(place.is_some_and(|place| along <= place));
-            // No two are the same: the last bits are the item's number.
-            *key = f32::from_bits(along.to_bits() & !(N as u32 - 1) | i as u32);
-        }
-        let mut ranks = [0u32; N];
-        for &key in &keys[..from.len()] {
-            for (rank, &other) in ranks.iter_mut().zip(&keys) {
-                *rank += u32::from(key < other);
-            }
-        }
-        for (&rank, item) in ranks.iter().zip(from) {
-            to[rank as usize] = *item;
-        }
-        let (count, width) = (run.count, WIDTH as u32);
-        if place.is_none() {
-            before = count / 2;
-        }
-        let spare = count.div_ceil(width) * width - count;
-        let fits = |&n: &u32| n >= 1 && n < count && n.div_ceil(width) * width - n <= spare;
-        let mut cut = before.clamp(1, count - 1);
-        if !fits(&cut) {
-            let up = (cut + 1..count).find(fits).unwrap_or(count);
-            let down = (1..cut).rev().find(fits).unwrap_or(0);
-            cut = if up - cut < cut - down && up < count || down == 0 { up } else { down };
-        }
+    /// Cuts a run of five to sixteen triangles in two that fill no more leaves than it does.
+    fn split_short(&mut self, run: &Run) -> (Run, Run) {
+        let [from, to] = two(&mut self.bounds, run.buffer, run.range());
+        let cut = sort(from, to) as u32;
         let part = |start: u32, end: u32| Run {
             start: run.start + start,
             end: run.start + end,
             count: end - start,
-            bounds: to[start as usize..end as usize]
-                .iter()
-                .fold(Bounds::EMPTY, |all, &item| all.union(item)),
+            bounds: Bounds::around(&to[start as usize..end as usize]),
             buffer: 1 - run.buffer,
             ..*run
         };
-        (part(0, cut), part(cut, count))
+        (part(0, cut), part(cut, run.count))
+    }
+
+    /// Cuts a run of five to sixteen triangles into leaves, as few as hold them.
+    #[inline]
+    pub(super) fn leaves(&mut self, run: &Run, mut leaf: impl FnMut(&[Bounds])) {
+        let [from, to] = two(&mut self.bounds, run.buffer, run.range());
+        let cut = sort(from, to);
+        let (halves, rooms) = (to.split_at(cut), from.split_at_mut(cut));
+        for (half, room) in [(halves.0, rooms.0), (halves.1, rooms.1)] {
+            if half.len() <= WIDTH {
+                leaf(half);
+            } else {
+                let cut = sort(half, room);
+                leaf(&room[..cut]);
+                leaf(&room[cut..]);
+            }
+        }
     }
 
     /// Cuts a run where it is whose centres no plane separates.
@@ -270,7 +252,7 @@ impl Items {
             let items = self.of(&part).iter();
             Run {
                 count: items.clone().map(count).sum(),
-                bounds: items.fold(Bounds::EMPTY, |all, &item| all.union(item)),
+                bounds: Bounds::around(self.of(&part)),
                 ..part
             }
         };
@@ -281,13 +263,11 @@ impl Items {
     /// begin.
     #[inline]
     fn partition(&mut self, run: &Run, goes_left: impl Fn(&Bounds) -> bool) -> u32 {
-        let [zero, one] = &mut self.bounds;
-        let [from, to] = if run.buffer == 0 { [zero, one] } else { [one, zero] };
-        let (from, to) = (&from[run.range()], &mut to[run.range()]);
+        let [from, to] = two(&mut self.bounds, run.buffer, run.range());
         // Those on the left from the left end, the others from the right: which of the two is a
         // toss-up, so it is an index and not a branch.
         let (mut left, mut right) = (0, from.len());
-        for item in from {
+        for item in from.iter() {
             let goes_left = goes_left(item);
             let place = if goes_left { left } else { right - 1 };
             to[place] = *item;
@@ -296,6 +276,61 @@ impl Items {
         }
         run.start + left as u32
     }
+}
+
+/// A range of one of two buffers, and the same of the other.
+#[inline]
+fn two(buffers: &mut [Vec<Bounds>; 2], from: u8, range: Range<usize>) -> [&mut [Bounds]; 2] {
+    let [zero, one] = buffers;
+    let [from, to] = if from == 0 { [zero, one] } else { [one, zero] };
+    [&mut from[range.clone()], &mut to[range]]
+}
+
+/// Sorts five to sixteen triangles along the axis on which their centres lie farthest apart, and
+/// tells where to cut them: near the middle, so that the parts fill as few leaves as the whole.
+#[inline]
+fn sort(from: &[Bounds], to: &mut [Bounds]) -> usize {
+    let Centres { axis, low, high } = Centres::of(from);
+    // An infinite middle does no harm.
+    let middle = 0.5 * low + 0.5 * high;
+    let count = from.len();
+    if count <= SHORT / 2 {
+        let before = rank::<{ SHORT / 2 }>(from, to, axis, middle);
+        return before.clamp(count - WIDTH, WIDTH);
+    }
+    let before = rank::<SHORT>(from, to, axis, middle);
+    let cut = before.clamp(count - 2 * WIDTH, 2 * WIDTH);
+    if count > 3 * WIDTH || cut <= WIDTH || cut >= count - WIDTH {
+        cut
+    } else if cut - WIDTH < count - WIDTH - cut {
+        WIDTH
+    } else {
+        count - WIDTH
+    }
+}
+
+/// Sorts up to `N` items along an axis, by how many come before each, as that takes no branches.
+/// Returns how many are below some place.
+#[inline]
+fn rank<const N: usize>(from: &[Bounds], to: &mut [Bounds], axis: usize, place: f32) -> usize {
+    let mut keys = [f32::INFINITY; N];
+    let mut before = 0;
+    for (i, (key, item)) in keys.iter_mut().zip(from).enumerate() {
+        let along = item.along(axis).clamp(f32::MIN, f32::MAX);
+        before += usize::from(along <= place);
+        // No two are the same: the last bits are the item's number.
+        *key = f32::from_bits(along.to_bits() & !(N as u32 - 1) | i as u32);
+    }
+    let mut ranks = [0u32; N];
+    for &key in &keys[..from.len()] {
+        for (rank, &other) in ranks.iter_mut().zip(&keys) {
+            *rank += u32::from(key < other);
+        }
+    }
+    for (&rank, item) in ranks.iter().zip(from) {
+        to[rank as usize] = *item;
+    }
+    before
 }
 
 /// The axis along which the centres of some boxes lie farthest apart, and twice the outer ones.
