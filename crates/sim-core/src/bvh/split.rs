@@ -3,7 +3,7 @@
 //! (Wald, Benthin, Boulos 2008, "Getting rid of packets").
 
 use alloc::vec::Vec;
-use core::ops::Range;
+use core::{array, ops::Range};
 use glam::Vec4;
 
 use super::{MAX_DEPTH, WIDTH};
@@ -321,14 +321,20 @@ fn rank<const N: usize>(from: &[Bounds], to: &mut [Bounds], axis: usize, place: 
         // No two are the same: the last bits are the item's number.
         *key = f32::from_bits(along.to_bits() & !(N as u32 - 1) | i as u32);
     }
-    let mut ranks = [0u32; N];
+    // Counted in floats, as `WHOLE` plus the rank.
+    let mut ranks = [Vec4::splat(WHOLE); SHORT / WIDTH];
+    let ranks = &mut ranks[..N / WIDTH];
+    let others: [Vec4; SHORT / WIDTH] =
+        array::from_fn(|k| Vec4::from_slice(&keys[k * WIDTH % N..][..WIDTH]));
     for &key in &keys[..from.len()] {
-        for (rank, &other) in ranks.iter_mut().zip(&keys) {
-            *rank += u32::from(key < other);
+        for (rank, &others) in ranks.iter_mut().zip(&others) {
+            *rank += Vec4::select(others.cmpgt(Vec4::splat(key)), Vec4::ONE, Vec4::ZERO);
         }
     }
-    for (&rank, item) in ranks.iter().zip(from) {
-        to[rank as usize] = *item;
+    for (ranks, items) in ranks.iter().zip(from.chunks(WIDTH)) {
+        for (&rank, item) in ranks.to_array().iter().zip(items) {
+            to[whole(rank) as usize] = *item;
+        }
     }
     before
 }
