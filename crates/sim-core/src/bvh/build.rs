@@ -1,6 +1,7 @@
 //! Building a BVH top down: first over cells of triangles, and below over triangles.
 
 use alloc::{vec, vec::Vec};
+use core::array;
 use glam::{Mat4, Vec3A, Vec4};
 
 use super::grid::Grid;
@@ -61,8 +62,8 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
             let mut lane = 0;
             items.leaves(&run, |items| {
                 let code = tree.nodes.len() as u32 | LEAF;
-                tree.adopt(index, lane, code, &Bounds::around(items));
-                tree.push_leaf(mesh, &vertices, items);
+                let bounds = tree.push_leaf(mesh, &vertices, items);
+                tree.adopt(index, lane, code, &bounds);
                 lane += 1;
             });
             depth = depth.max(level + 2);
@@ -133,8 +134,10 @@ impl Tree {
     }
 
     #[inline]
-    fn push_leaf(&mut self, mesh: &Mesh, vertices: &[Vec4], items: &[Bounds]) {
-        let leaf = leaf(mesh, vertices, items);
+    fn push_leaf(&mut self, mesh: &Mesh, vertices: &[Vec4], items: &[Bounds]) -> Bounds {
+        // Lanes that hold nothing repeat the last one, so that they widen nothing.
+        let of_lane = array::from_fn(|lane| items[lane.min(items.len() - 1)]);
+        let leaf = leaf(mesh, vertices, &of_lane);
         let place = self.triangles.len() as u32;
         self.nodes.push(Node {
             boxes: leaf.boxes(items.len()),
@@ -146,14 +149,14 @@ impl Tree {
         self.slabs.push(slabs);
         self.below.push(below);
         self.triangles.push(leaf);
+        Bounds::around(&of_lane)
     }
 }
 
 /// The triangles of a leaf side by side.
 #[inline]
-fn leaf(mesh: &Mesh, vertices: &[Vec4], items: &[Bounds]) -> Triangles {
-    // Lanes that hold nothing repeat the last one, so that they widen nothing.
-    let face = core::array::from_fn(|lane| items[lane.min(items.len() - 1)].number());
+fn leaf(mesh: &Mesh, vertices: &[Vec4], items: &[Bounds; WIDTH]) -> Triangles {
+    let face = array::from_fn(|lane| items[lane].number());
     let of_lane = face.map(|face: u32| mesh.triangles()[face as usize]);
     let mut corners = [[0.0; WIDTH]; 9];
     for k in 0..3 {
@@ -171,16 +174,16 @@ impl Triangles {
     #[inline]
     fn boxes(&self, count: usize) -> Boxes {
         let mut boxes = Boxes::EMPTY;
+        // Infinite in lanes that hold nothing.
+        let beyond = array::from_fn(|lane| if lane < count { 0.0 } else { f32::INFINITY });
+        let beyond = Vec4::from_array(beyond);
         for axis in 0..3 {
             let [a, b, c] = [0, 3, 6].map(|k| Vec4::from_array(self.corners[k + axis]));
             let (min, max) = (a.min(b).min(c), a.max(b).max(c));
             let centre = 0.5 * min + 0.5 * max;
             let half = (max - centre).max(centre - min) * (1.0 + 2.0 * f32::EPSILON);
             boxes.centre[axis] = centre.to_array();
-            boxes.half[axis] = half.to_array();
-            for lane in count..WIDTH {
-                boxes.half[axis][lane] = f32::NEG_INFINITY;
-            }
+            boxes.half[axis] = (half - beyond).to_array();
         }
         boxes
     }

@@ -11,7 +11,7 @@ use crate::Mesh;
 
 /// Triangles in a cell that holds any, about: where they cover a surface of the size of the mesh's
 /// box. With 4 the cells cost as much as they save, with 32 their borders begin to show in queries.
-const PER_CELL: f64 = 8.0;
+const PER_CELL: f64 = 12.0;
 
 /// The cells that hold triangles, as items, and the triangles of each.
 pub(super) struct Grid {
