@@ -82,7 +82,12 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
             child.level = run.level + 1;
         }
     }
-    slabs::fill(&tree.nodes, &tree.triangles, &mut tree.below, &mut tree.slabs);
+    slabs::fill(
+        &tree.nodes,
+        &tree.triangles,
+        &mut tree.below,
+        &mut tree.slabs,
+    );
     debug_assert!(depth <= MAX_DEPTH);
     Bvh {
         bounds: mesh.bounds(),

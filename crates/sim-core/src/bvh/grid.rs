@@ -57,7 +57,9 @@ impl Grid {
             faces[*end as usize] = face as u32;
             *end += 1;
         }
-        let mut cells = Items { bounds: [cells, Vec::new()] };
+        let mut cells = Items {
+            bounds: [cells, Vec::new()],
+        };
         cells.mirror();
         Grid { cells, ends, faces }
     }
@@ -138,8 +140,16 @@ impl Frame {
             .max(libm::cbrt(volume / count))
             .max(extent.max_element() * PER_CELL / count);
         let scale = (0.5 / size) as f32;
-        let usable = scale > 0.0 && scale < f32::INFINITY && bounds.max.abs().max(bounds.min.abs()).max_element() < 1e37;
-        let counts = extent.to_array().map(|e| if usable { ((e / size) as u32).min(1 << 20) + 1 } else { 1 });
+        let usable = scale > 0.0
+            && scale < f32::INFINITY
+            && bounds.max.abs().max(bounds.min.abs()).max_element() < 1e37;
+        let counts = extent.to_array().map(|e| {
+            if usable {
+                ((e / size) as u32).min(1 << 20) + 1
+            } else {
+                1
+            }
+        });
         Frame {
             origin: (2.0 * bounds.min).extend(0.0),
             scale: if usable { scale } else { 0.0 },

@@ -65,9 +65,10 @@ impl Bvh {
         if root == 0.0 {
             return self.count as f64;
         }
-        let triangles = self.triangles.iter().flat_map(|leaf| {
-            (0..WIDTH).map(|lane| Aabb::around(leaf.corners(lane)).half_area())
-        });
+        let triangles = self
+            .triangles
+            .iter()
+            .flat_map(|leaf| (0..WIDTH).map(|lane| Aabb::around(leaf.corners(lane)).half_area()));
         let nodes = self.boxes().map(|(_, bounds)| bounds.half_area());
         nodes.chain(triangles).sum::<f64>() / root
     }
@@ -158,13 +159,22 @@ mod tests {
                     pending.push((node.child[lane], level + 1, inner));
                     continue;
                 }
-                let (face, corners) = (bvh.triangles(node).face[lane], bvh.triangles(node).corners(lane));
+                let (face, corners) = (
+                    bvh.triangles(node).face[lane],
+                    bvh.triangles(node).corners(lane),
+                );
                 seen[face as usize] += 1;
                 assert_eq!(corners, mesh.corners(face as usize));
-                assert!(holds(inner, Aabb::around(corners)) && holds(bounds, Aabb::around(corners)));
+                assert!(
+                    holds(inner, Aabb::around(corners)) && holds(bounds, Aabb::around(corners))
+                );
             }
             let unused = node.count as usize..WIDTH;
-            assert!(unused.into_iter().all(|lane| node.boxes.half[0][lane] == f32::NEG_INFINITY));
+            assert!(
+                unused
+                    .into_iter()
+                    .all(|lane| node.boxes.half[0][lane] == f32::NEG_INFINITY)
+            );
         }
         assert!(seen.iter().all(|&n| n == 1));
         assert_eq!(reached, bvh.node_count());
@@ -285,7 +295,10 @@ mod tests {
         }));
         for (mesh, factor) in [(sphere(60), 0.75), (needles, 0.75)] {
             let boxes = (0..mesh.triangles().len()).map(|i| Aabb::around(mesh.corners(i)));
-            let (ours, slow) = (Bvh::build(&mesh).surface_area_cost(), swept_cost(boxes.collect()));
+            let (ours, slow) = (
+                Bvh::build(&mesh).surface_area_cost(),
+                swept_cost(boxes.collect()),
+            );
             assert!(ours < factor * slow, "{ours} against {slow}");
         }
     }

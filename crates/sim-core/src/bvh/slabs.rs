@@ -87,7 +87,12 @@ fn dot(a: [Vec4; 3], b: [Vec4; 3]) -> Vec4 {
 
 /// Fills in the slabs of nodes where those of leaves are known. The triangles below a node lie side
 /// by side.
-pub(super) fn fill(nodes: &[Node], triangles: &[Triangles], below: &mut [Below], slabs: &mut [Slabs]) {
+pub(super) fn fill(
+    nodes: &[Node],
+    triangles: &[Triangles],
+    below: &mut [Below],
+    slabs: &mut [Slabs],
+) {
     // Children come after their parents.
     for index in (0..nodes.len()).rev() {
         let node = &nodes[index];
@@ -168,7 +173,10 @@ fn heights(triangles: &[Triangles], normal: [Vec4; 3]) -> (f32, f32) {
 /// `n·x = k m·x + (n - k m)·x` with a slab's normal `m` and `k = n·m`.
 fn heights_around(node: &Node, slabs: &Slabs, n: [Vec4; 3]) -> (f32, f32) {
     let m = slabs.normal.map(Vec4::from_array);
-    let (c, h) = (node.boxes.centre.map(Vec4::from_array), node.boxes.half.map(Vec4::from_array));
+    let (c, h) = (
+        node.boxes.centre.map(Vec4::from_array),
+        node.boxes.half.map(Vec4::from_array),
+    );
     let k = dot(n, m);
     let rest = [n[0] - k * m[0], n[1] - k * m[1], n[2] - k * m[2]];
     let middle = k * Vec4::from_array(slabs.middle) + dot(rest, c);

@@ -43,7 +43,9 @@ impl Bounds {
 
     #[inline]
     pub(super) fn around(items: &[Bounds]) -> Bounds {
-        items.iter().fold(Bounds::EMPTY, |all, &item| all.union(item))
+        items
+            .iter()
+            .fold(Bounds::EMPTY, |all, &item| all.union(item))
     }
 
     /// The number as the float of the same bits, past those that processors are slow with.
@@ -177,7 +179,8 @@ impl Items {
             return self.halve(run, count);
         }
         let (best, at) = if run.len() <= FEW {
-            let Some(best) = best_plane::<FEW_BINS>(items, run.count, axis, low, high, count) else {
+            let Some(best) = best_plane::<FEW_BINS>(items, run.count, axis, low, high, count)
+            else {
                 return self.halve(run, count);
             };
             let at = self.partition(run, |item| {
