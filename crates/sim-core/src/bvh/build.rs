@@ -5,13 +5,15 @@ use core::array;
 use glam::{Mat4, Vec3A, Vec4};
 
 use super::grid::Grid;
+use super::short::SHORT;
 use super::slabs::{self, Below, Slabs};
-use super::split::{Bounds, HALVE_FROM, Items, Run, SHORT};
+use super::split::{Bounds, HALVE_FROM, Items, Run};
 use super::{Boxes, Bvh, LEAF, MAX_DEPTH, Node, Origin, Triangles, WIDTH};
 use crate::Mesh;
 
-/// Runs of cells up to this are built over triangles, as are those with no more triangles than
-/// `FEW`: so near the leaves the borders of cells would show.
+/// Runs of so few cells, or of cells with so few triangles, are built over triangles: so near the
+/// leaves the borders of cells show. Twice as many make trees better by 1 % and the build dearer
+/// by 5 %.
 const FEW_CELLS: usize = 4;
 const FEW: u32 = 32;
 

@@ -4,6 +4,7 @@ mod build;
 mod grid;
 mod node;
 mod ray;
+mod short;
 mod slabs;
 mod split;
 
@@ -245,9 +246,9 @@ mod tests {
         let around = |boxes: &[Aabb]| boxes.iter().fold(boxes[0], |all, &b| all.union(b));
         let root = around(&boxes).half_area();
         let mut cost = 0.0;
-        let mut pending = vec![0..boxes.len()];
-        while let Some(range) = pending.pop() {
-            let run = &mut boxes[range.clone()];
+        let mut pending = vec![(0, boxes.len())];
+        while let Some((start, end)) = pending.pop() {
+            let run = &mut boxes[start..end];
             if run.len() <= WIDTH {
                 cost += run.iter().map(Aabb::half_area).sum::<f64>() / root;
             }
@@ -275,7 +276,7 @@ mod tests {
             }
             let (_, axis, at) = best;
             run.sort_by(|a, b| (a.min + a.max)[axis].total_cmp(&(b.min + b.max)[axis]));
-            pending.extend([range.start..range.start + at, range.start + at..range.end]);
+            pending.extend([(start, start + at), (start + at, end)]);
         }
         cost
     }

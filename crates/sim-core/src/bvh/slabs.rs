@@ -104,8 +104,8 @@ pub(super) fn fill(
         for lane in node.lanes() {
             let of_lane = &below[(node.child[lane] & !LEAF) as usize];
             all.end = all.end.max(of_lane.end);
-            for axis in 0..3 {
-                area[axis][lane] = of_lane.area[axis];
+            for (axis, area) in area.iter_mut().enumerate() {
+                area[lane] = of_lane.area[axis];
                 all.area[axis] += of_lane.area[axis];
             }
         }

@@ -3,9 +3,10 @@
 //! (Wald, Benthin, Boulos 2008, "Getting rid of packets").
 
 use alloc::vec::Vec;
-use core::{array, ops::Range};
+use core::ops::Range;
 use glam::Vec4;
 
+use super::short::{SHORT, sort};
 use super::{MAX_DEPTH, WIDTH};
 
 /// Candidate split planes, less one; a power of two.
@@ -13,9 +14,6 @@ const BINS: usize = 16;
 /// The same for runs up to `FEW`.
 const FEW_BINS: usize = 8;
 const FEW: usize = 64;
-/// Runs up to this are sorted and cut near the middle of their centres: of so few triangles the
-/// heuristic makes nothing better.
-pub(super) const SHORT: usize = 4 * WIDTH;
 /// From this level on, runs are halved by count. It leaves a quarter at most to each child, and a
 /// mesh has fewer than 4^16 triangles, so the tree stays within `MAX_DEPTH`.
 pub(super) const HALVE_FROM: usize = MAX_DEPTH - 16;
@@ -67,7 +65,7 @@ impl Bounds {
 
     /// Twice the centre along an axis, straight from memory rather than from a register.
     #[inline]
-    fn along(&self, axis: usize) -> f32 {
+    pub(super) fn along(&self, axis: usize) -> f32 {
         let (min, max): (&[f32; 4], &[f32; 4]) = (self.min.as_ref(), self.max.as_ref());
         min[axis & 3] + max[axis & 3]
     }
@@ -289,69 +287,16 @@ fn two(buffers: &mut [Vec<Bounds>; 2], from: u8, range: Range<usize>) -> [&mut [
     [&mut from[range.clone()], &mut to[range]]
 }
 
-/// Sorts five to sixteen triangles along the axis on which their centres lie farthest apart, and
-/// tells where to cut them: near the middle, so that the parts fill as few leaves as the whole.
-#[inline]
-fn sort(from: &[Bounds], to: &mut [Bounds]) -> usize {
-    let Centres { axis, low, high } = Centres::of(from);
-    // An infinite middle does no harm.
-    let middle = 0.5 * low + 0.5 * high;
-    let count = from.len();
-    if count <= SHORT / 2 {
-        let before = rank::<{ SHORT / 2 }>(from, to, axis, middle);
-        return before.clamp(count - WIDTH, WIDTH);
-    }
-    let before = rank::<SHORT>(from, to, axis, middle);
-    let cut = before.clamp(count - 2 * WIDTH, 2 * WIDTH);
-    if count > 3 * WIDTH || cut <= WIDTH || cut >= count - WIDTH {
-        cut
-    } else if cut - WIDTH < count - WIDTH - cut {
-        WIDTH
-    } else {
-        count - WIDTH
-    }
-}
-
-/// Sorts up to `N` items along an axis, by how many come before each, as that takes no branches.
-/// Returns how many are below some place.
-#[inline]
-fn rank<const N: usize>(from: &[Bounds], to: &mut [Bounds], axis: usize, place: f32) -> usize {
-    let mut keys = [f32::INFINITY; N];
-    let mut before = 0;
-    for (i, (key, item)) in keys.iter_mut().zip(from).enumerate() {
-        let along = item.along(axis).clamp(f32::MIN, f32::MAX);
-        before += usize::from(along <= place);
-        // No two are the same: the last bits are the item's number.
-        *key = f32::from_bits(along.to_bits() & !(N as u32 - 1) | i as u32);
-    }
-    // Counted in floats, as `WHOLE` plus the rank.
-    let mut ranks = [Vec4::splat(WHOLE); SHORT / WIDTH];
-    let ranks = &mut ranks[..N / WIDTH];
-    let others: [Vec4; SHORT / WIDTH] =
-        array::from_fn(|k| Vec4::from_slice(&keys[k * WIDTH % N..][..WIDTH]));
-    for &key in &keys[..from.len()] {
-        for (rank, &others) in ranks.iter_mut().zip(&others) {
-            *rank += Vec4::select(others.cmpgt(Vec4::splat(key)), Vec4::ONE, Vec4::ZERO);
-        }
-    }
-    for (ranks, items) in ranks.iter().zip(from.chunks(WIDTH)) {
-        for (&rank, item) in ranks.to_array().iter().zip(items) {
-            to[whole(rank) as usize] = *item;
-        }
-    }
-    before
-}
-
 /// The axis along which the centres of some boxes lie farthest apart, and twice the outer ones.
-struct Centres {
-    axis: usize,
-    low: f32,
-    high: f32,
+pub(super) struct Centres {
+    pub(super) axis: usize,
+    pub(super) low: f32,
+    pub(super) high: f32,
 }
 
 impl Centres {
     #[inline]
-    fn of(items: &[Bounds]) -> Centres {
+    pub(super) fn of(items: &[Bounds]) -> Centres {
         let (mut low, mut high) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
         for item in items {
             low = low.min(item.centre());
@@ -385,7 +330,7 @@ pub(super) const WHOLE: f32 = (3 << 22) as f32;
 
 #[inline]
 pub(super) fn whole(sum: f32) -> u32 {
-    sum.to_bits() & (1 << 22) - 1
+    sum.to_bits() & ((1 << 22) - 1)
 }
 
 /// The bin of an item, plus `WHOLE`.

@@ -45,14 +45,8 @@ impl Planes {
         for axis in 0..3 {
             let (y, z) = ((axis + 1) % 3, (axis + 2) % 3);
             for i in 0..WIDTH {
-                let (uy, uz) = (
-                    corners[3 + y][i] - corners[y][i],
-                    corners[3 + z][i] - corners[z][i],
-                );
-                let (vy, vz) = (
-                    corners[6 + y][i] - corners[y][i],
-                    corners[6 + z][i] - corners[z][i],
-                );
+                let (uy, uz) = (corners[3 + y][i] - corners[y][i], corners[3 + z][i] - corners[z][i]);
+                let (vy, vz) = (corners[6 + y][i] - corners[y][i], corners[6 + z][i] - corners[z][i]);
                 let (one, other) = (uy * vz, uz * vy);
                 let size = one.abs() + other.abs();
                 let moved = shift * ((uy.abs() + vy.abs()) + (uz.abs() + vz.abs()) + 2.0 * shift);
@@ -76,44 +70,20 @@ pub(super) fn maybe_meet<L: Lanes>(
     let offset = splat(reach.offset);
     let margin = L::splat(reach.margin);
     let (f, s) = (&first_boxes.boxes.half, &second_boxes.boxes.half);
-    let widest = [
-        wide(f, s, margin, 0),
-        wide(f, s, margin, 1),
-        wide(f, s, margin, 2),
-    ];
+    let widest = [wide(f, s, margin, 0), wide(f, s, margin, 1), wide(f, s, margin, 2)];
     let (u, v) = (&first.corners, &second.corners);
     let a = [rows(u, 0), rows(u, 3), rows(u, 6)];
-    let b = [
-        placed(v, 0, &offset),
-        placed(v, 3, &offset),
-        placed(v, 6, &offset),
-    ];
+    let b = [placed(v, 0, &offset), placed(v, 3, &offset), placed(v, 6, &offset)];
 
     let planes = Planes::of(first, 0.0, reach.miss());
-    let normal = [
-        L::rows(&planes.normal[0]),
-        L::rows(&planes.normal[1]),
-        L::rows(&planes.normal[2]),
-    ];
-    let slope = [
-        L::rows(&planes.slope[0]),
-        L::rows(&planes.slope[1]),
-        L::rows(&planes.slope[2]),
-    ];
+    let normal = [L::rows(&planes.normal[0]), L::rows(&planes.normal[1]), L::rows(&planes.normal[2])];
+    let slope = [L::rows(&planes.slope[0]), L::rows(&planes.slope[1]), L::rows(&planes.slope[2])];
     let error = dot(&slope, &widest, L::rows(&planes.rest));
     let one = one_side(&normal, error, &a[0], &b);
 
     let planes = Planes::of(second, reach.shift(), reach.miss());
-    let normal = [
-        L::columns(&planes.normal[0]),
-        L::columns(&planes.normal[1]),
-        L::columns(&planes.normal[2]),
-    ];
-    let slope = [
-        L::columns(&planes.slope[0]),
-        L::columns(&planes.slope[1]),
-        L::columns(&planes.slope[2]),
-    ];
+    let normal = [L::columns(&planes.normal[0]), L::columns(&planes.normal[1]), L::columns(&planes.normal[2])];
+    let slope = [L::columns(&planes.slope[0]), L::columns(&planes.slope[1]), L::columns(&planes.slope[2])];
     let error = dot(&slope, &widest, L::columns(&planes.rest));
     let other = one_side(&normal, error, &b[0], &a);
     pairs & !(one | other)
@@ -129,11 +99,7 @@ fn wide<L: Lanes>(first: &[Four; 3], second: &[Four; 3], margin: L, axis: usize)
 /// A corner of each of the first's triangles.
 #[inline(always)]
 fn rows<L: Lanes>(corners: &[Four; 9], k: usize) -> [L; 3] {
-    [
-        L::rows(&corners[k]),
-        L::rows(&corners[k + 1]),
-        L::rows(&corners[k + 2]),
-    ]
+    [L::rows(&corners[k]), L::rows(&corners[k + 1]), L::rows(&corners[k + 2])]
 }
 
 /// A corner of each of the second's triangles, placed but for rounding.
@@ -153,11 +119,7 @@ fn dot<L: Lanes>(x: &[L; 3], y: &[L; 3], rest: L) -> L {
 
 #[inline(always)]
 fn height<L: Lanes>(normal: &[L; 3], corner: &[L; 3], p: &[L; 3]) -> L {
-    let (x, y, z) = (
-        p[0].sub(corner[0]),
-        p[1].sub(corner[1]),
-        p[2].sub(corner[2]),
-    );
+    let (x, y, z) = (p[0].sub(corner[0]), p[1].sub(corner[1]), p[2].sub(corner[2]));
     normal[0].mul_add(x, normal[1].mul_add(y, normal[2].mul(z)))
 }
 

@@ -136,10 +136,7 @@ impl Tiles for Search<'_> {
             let pair = pairs.trailing_zeros() as usize;
             pairs &= pairs - 1;
             let (i, j) = (pair / WIDTH, pair % WIDTH);
-            self.try_triangles(
-                (first.face[i], first.corners(i)),
-                (second.face[j], second.corners(j)),
-            );
+            self.try_triangles((first.face[i], first.corners(i)), (second.face[j], second.corners(j)));
         }
         ControlFlow::Continue(())
     }

@@ -60,12 +60,7 @@ pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> Con
             let nearest = distance.least(bits);
             let (i, j) = (nearest as usize / WIDTH, nearest as usize % WIDTH);
             next = Some((node.child[i], other.child[j]));
-            T::Lanes::push(
-                &mut stack,
-                bits & !(1 << nearest),
-                &node.child,
-                &other.child,
-            );
+            T::Lanes::push(&mut stack, bits & !(1 << nearest), &node.child, &other.child);
         } else if pairs != 0 {
             tiles.triangles(a, b, pairs)?;
         }

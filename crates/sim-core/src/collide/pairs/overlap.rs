@@ -24,13 +24,7 @@ impl Reach {
     /// `c' + r`, the difference, the sum `h + h'` and the subtraction, together below `7 u S`, and
     /// of centres, half extents and placed vertices in f64, far below `u S`.
     pub(in crate::collide) fn new(first: &Bvh, second: &Bvh, offset: DVec3) -> Option<Reach> {
-        let size = |bvh: &Bvh| {
-            bvh.bounds()
-                .min
-                .abs()
-                .max(bvh.bounds().max.abs())
-                .as_dvec3()
-        };
+        let size = |bvh: &Bvh| bvh.bounds().min.abs().max(bvh.bounds().max.abs()).as_dvec3();
         let size = size(first) + size(second) + offset.abs();
         let largest = size.max_element();
         (largest < 1e37).then(|| Reach {
@@ -205,18 +199,11 @@ fn slabs_apart<L: Lanes>(
     (boxes, slabs): (&Boxes, &Slabs),
     (other_boxes, other_slabs): (&Boxes, &Slabs),
 ) -> u32 {
-    let n = [
-        L::rows(&slabs.normal[0]),
-        L::rows(&slabs.normal[1]),
-        L::rows(&slabs.normal[2]),
-    ];
+    let n = [L::rows(&slabs.normal[0]), L::rows(&slabs.normal[1]), L::rows(&slabs.normal[2])];
     let m = &other_slabs.normal;
     let m = [L::columns(&m[0]), L::columns(&m[1]), L::columns(&m[2])];
     let (s, w) = (L::rows(&slabs.middle), L::rows(&slabs.half));
-    let (t, v) = (
-        L::columns(&other_slabs.middle),
-        L::columns(&other_slabs.half),
-    );
+    let (t, v) = (L::columns(&other_slabs.middle), L::columns(&other_slabs.half));
     let offset = splat::<L>(reach.offset);
     let slack = L::splat(16.0 * reach.margin);
     let k = n[0].mul_add(m[0], n[1].mul_add(m[1], n[2].mul(m[2])));
@@ -228,16 +215,8 @@ fn slabs_apart<L: Lanes>(
     let far = n[0].mul_add(offset[0], n[1].mul_add(offset[1], n[2].mul(offset[2])));
     let one = slab_apart(&n, &m, k, (s, w.add(slack)), (t, v), far, &c, &h);
 
-    let c = [
-        L::rows(&boxes.centre[0]),
-        L::rows(&boxes.centre[1]),
-        L::rows(&boxes.centre[2]),
-    ];
-    let h = [
-        L::rows(&boxes.half[0]),
-        L::rows(&boxes.half[1]),
-        L::rows(&boxes.half[2]),
-    ];
+    let c = [L::rows(&boxes.centre[0]), L::rows(&boxes.centre[1]), L::rows(&boxes.centre[2])];
+    let h = [L::rows(&boxes.half[0]), L::rows(&boxes.half[1]), L::rows(&boxes.half[2])];
     let far = m[0].mul_add(offset[0], m[1].mul_add(offset[1], m[2].mul(offset[2])));
     let far = L::splat(0.0).sub(far);
     one | slab_apart(&m, &n, k, (t, v.add(slack)), (s, w), far, &c, &h)
@@ -245,10 +224,7 @@ fn slabs_apart<L: Lanes>(
 
 /// Lanes in which a slab of normal `n` holds nothing of another slab and box, `far` along `n`.
 #[inline(always)]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "all of them are lanes of one formula"
-)]
+#[expect(clippy::too_many_arguments, reason = "all of them are lanes of one formula")]
 fn slab_apart<L: Lanes>(
     n: &[L; 3],
     m: &[L; 3],
@@ -259,17 +235,10 @@ fn slab_apart<L: Lanes>(
     c: &[L; 3],
     h: &[L; 3],
 ) -> u32 {
-    let rest = [
-        n[0].sub(k.mul(m[0])),
-        n[1].sub(k.mul(m[1])),
-        n[2].sub(k.mul(m[2])),
-    ];
+    let rest = [n[0].sub(k.mul(m[0])), n[1].sub(k.mul(m[1])), n[2].sub(k.mul(m[2]))];
     let middle = rest[0].mul_add(c[0], rest[1].mul_add(c[1], rest[2].mul_add(c[2], far)));
     let middle = k.mul_add(t, middle);
-    let half = rest[0].abs().mul_add(
-        h[0],
-        rest[1].abs().mul_add(h[1], rest[2].abs().mul_add(h[2], w)),
-    );
+    let half = rest[0].abs().mul_add(h[0], rest[1].abs().mul_add(h[1], rest[2].abs().mul_add(h[2], w)));
     let half = k.abs().mul_add(v, half);
     middle.sub(s).abs().above(half)
 }

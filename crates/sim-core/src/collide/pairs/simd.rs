@@ -26,11 +26,7 @@ pub(super) fn has_avx512() -> bool {
     #[cfg(feature = "std")]
     return std::arch::is_x86_feature_detected!("avx512f") && has_avx2();
     #[cfg(not(feature = "std"))]
-    cfg!(all(
-        target_feature = "avx512f",
-        target_feature = "avx2",
-        target_feature = "fma"
-    ))
+    cfg!(all(target_feature = "avx512f", target_feature = "avx2", target_feature = "fma"))
 }
 
 /// [`super::each_pair`] in 256-bit vectors. The caller has asked [`has_avx2`].

@@ -50,12 +50,7 @@ impl Stack {
         for (i, pair) in pairs.iter_mut().enumerate().take(count) {
             let place = self.len + i;
             // SAFETY: it is below what `len` was, so by the invariant both have been written.
-            *pair = unsafe {
-                (
-                    self.first[place].assume_init(),
-                    self.second[place].assume_init(),
-                )
-            };
+            *pair = unsafe { (self.first[place].assume_init(), self.second[place].assume_init()) };
         }
         count
     }
