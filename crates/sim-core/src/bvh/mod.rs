@@ -1,9 +1,12 @@
 //! Bounding volume hierarchy over the triangles of a mesh.
 
 mod build;
+mod grid;
 mod node;
 mod ray;
+mod short;
 mod slabs;
+mod split;
 
 use alloc::vec::Vec;
 
@@ -250,6 +253,70 @@ mod tests {
         // Each twice as far as the last: area would split off one triangle at a time.
         let row = (0..120).map(|i| t.map(|v| (v + 1.0) * libm::exp2f(i as f32 - 60.0)));
         check(&soup(row));
+    }
+
+    /// Cost of a tree of two below each node whose planes are the best across any axis, without
+    /// bins, in boxes met (see `surface_area_cost`).
+    fn swept_cost(mut boxes: Vec<Aabb>) -> f64 {
+        let around = |boxes: &[Aabb]| boxes.iter().fold(boxes[0], |all, &b| all.union(b));
+        let root = around(&boxes).half_area();
+        let mut cost = 0.0;
+        let mut pending = vec![(0, boxes.len())];
+        while let Some((start, end)) = pending.pop() {
+            let run = &mut boxes[start..end];
+            if run.len() <= WIDTH {
+                cost += run.iter().map(Aabb::half_area).sum::<f64>() / root;
+            }
+            cost += around(run).half_area() / root;
+            if run.len() <= WIDTH {
+                continue;
+            }
+            let mut best = (f64::INFINITY, 0, 0);
+            for axis in 0..3 {
+                run.sort_by(|a, b| (a.min + a.max)[axis].total_cmp(&(b.min + b.max)[axis]));
+                let mut right = vec![0.0; run.len()];
+                let mut all = run[run.len() - 1];
+                for i in (1..run.len()).rev() {
+                    all = all.union(run[i]);
+                    right[i] = all.half_area() * (run.len() - i) as f64;
+                }
+                let mut all = run[0];
+                for i in 1..run.len() {
+                    all = all.union(run[i - 1]);
+                    let cost = all.half_area() * i as f64 + right[i];
+                    if cost < best.0 {
+                        best = (cost, axis, i);
+                    }
+                }
+            }
+            let (_, axis, at) = best;
+            run.sort_by(|a, b| (a.min + a.max)[axis].total_cmp(&(b.min + b.max)[axis]));
+            pending.extend([(start, start + at), (start + at, end)]);
+        }
+        cost
+    }
+
+    /// Of four below each node a tree has half of the levels, so it has fewer boxes to meet.
+    #[test]
+    fn trees_are_as_good_as_slowly_built_ones() {
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 24) as f32
+        };
+        // Long thin triangles in any direction.
+        let needles = soup((0..5000).map(|_| {
+            let [at, along, across] = [0; 3].map(|_| Vec3::new(random(), random(), random()));
+            [at, at + 0.3 * (along - 0.5), at + 0.01 * (across - 0.5)]
+        }));
+        for (mesh, factor) in [(sphere(60), 0.75), (needles, 0.75)] {
+            let boxes = (0..mesh.triangles().len()).map(|i| Aabb::around(mesh.corners(i)));
+            let (ours, slow) = (
+                Bvh::build(&mesh).surface_area_cost(),
+                swept_cost(boxes.collect()),
+            );
+            assert!(ours < factor * slow, "{ours} against {slow}");
+        }
     }
 
     #[test]

@@ -72,7 +72,7 @@ pub(crate) struct Node {
     pub(crate) child: [u32; WIDTH],
     /// Lanes in use.
     pub(crate) count: u32,
-    /// Of a leaf, the place of its triangles.
+    /// The place of its triangles; of a node that of the first leaf below it.
     pub(crate) triangles: u32,
 }
 
@@ -100,18 +100,6 @@ impl Node {
 }
 
 impl Triangles {
-    pub(crate) const NONE: Triangles = Triangles {
-        corners: [[0.0; WIDTH]; 9],
-        face: [0; WIDTH],
-    };
-
-    pub(crate) fn set(&mut self, lane: usize, face: u32, corners: [Vec3; 3]) {
-        for (k, column) in self.corners.iter_mut().enumerate() {
-            column[lane] = corners[k / 3][k % 3];
-        }
-        self.face[lane] = face;
-    }
-
     /// The corners of a lane's triangle.
     #[inline]
     pub(crate) fn corners(&self, lane: usize) -> [Vec3; 3] {

@@ -6,145 +6,188 @@
 //! root of it (Gottschalk, Lin, Manocha 1996, "OBBTree", sec. 5, on boxes of any orientation; here
 //! it is a box and one slab).
 
+use glam::{BVec4A, Vec4};
+
 use super::{LEAF, Node, Triangles, WIDTH};
+
+/// Of larger subtrees, in leaves, slabs are put around slabs below and not around each corner.
+/// They are wider for it, but so large a patch is curved or else its parts are all flat.
+const LARGE: usize = 16;
 
 /// A slab for each lane of a node, `|n·x - middle| <= half` but for rounding: heights are computed
 /// in f32 and err by less than `2^-20` of the largest coordinate.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 pub(crate) struct Slabs {
-    /// Unit normals by axis.
+    /// Unit normals by axis, or zero.
     pub(crate) normal: [[f32; WIDTH]; 3],
     pub(crate) middle: [f32; WIDTH],
     pub(crate) half: [f32; WIDTH],
 }
 
+/// What a node tells its parent: where its triangles end, and the sum of their area vectors.
+pub(super) struct Below {
+    end: u32,
+    area: [f32; 3],
+}
+
 impl Slabs {
-    const NONE: Slabs = Slabs {
+    /// For a node whose slabs are not known yet.
+    pub(super) const NONE: Slabs = Slabs {
         normal: [[0.0; WIDTH]; 3],
         middle: [0.0; WIDTH],
         half: [0.0; WIDTH],
     };
 
-    /// With normals along area vectors.
     #[inline]
-    fn along(mut area: [[f32; WIDTH]; 3]) -> Slabs {
-        for lane in 0..WIDTH {
-            let [x, y, z] = area.map(|axis| axis[lane].abs());
-            let scale = 1.0 / if x > y { x.max(z) } else { y.max(z) };
-            let [x, y, z] = area.map(|axis| axis[lane] * scale);
-            let length = libm::sqrtf(x * x + y * y + z * z);
-            // Any normal will do for a patch without one, or beyond the range of f32.
-            let usable = length >= 0.5 && length < 2.0;
-            let inverse = 1.0 / length;
-            area[0][lane] = if usable { x * inverse } else { 1.0 };
-            area[1][lane] = if usable { y * inverse } else { 0.0 };
-            area[2][lane] = if usable { z * inverse } else { 0.0 };
-        }
+    fn between(normal: [Vec4; 3], low: Vec4, high: Vec4) -> Slabs {
+        let middle = 0.5 * low + 0.5 * high;
         Slabs {
-            normal: area,
-            ..Slabs::NONE
+            normal: normal.map(|axis| axis.to_array()),
+            middle: middle.to_array(),
+            half: (middle - low).max(high - middle).to_array(),
         }
-    }
-
-    fn set(&mut self, lane: usize, low: f32, high: f32) {
-        self.middle[lane] = 0.5 * low + 0.5 * high;
-        self.half[lane] = (self.middle[lane] - low).max(high - self.middle[lane]);
     }
 }
 
-/// The slabs of a tree's nodes and leaves. The triangles below a node lie side by side, so each
-/// level looks at all of them once.
-pub(super) fn slabs(nodes: &[Node], triangles: &[Triangles]) -> alloc::vec::Vec<Slabs> {
-    // Of each node the first of its triangles, the one after the last, and the area vector. Children
-    // come after their parents.
-    let mut runs = alloc::vec![(u32::MAX, 0, [0.0f32; 3]); nodes.len()];
-    let mut slabs = alloc::vec![Slabs::NONE; nodes.len()];
+impl Below {
+    pub(super) const NONE: Below = Below {
+        end: 0,
+        area: [0.0; 3],
+    };
+}
+
+/// Unit vectors along area vectors. Any will do for a patch without one, or beyond the range of
+/// f32.
+#[inline]
+fn normals(area: [Vec4; 3]) -> [Vec4; 3] {
+    let largest = area[0].abs().max(area[1].abs()).max(area[2].abs());
+    let scale = largest.recip();
+    let [x, y, z] = area.map(|axis| axis * scale);
+    // The square of a length from 1 to sqrt 3: a parabola has its inverse root to 0.02, and each
+    // step of Newton's method squares that, times 3/2.
+    let square = x * x + y * y + z * z;
+    let usable = square.cmpge(Vec4::splat(0.9)) & square.cmple(Vec4::splat(3.1));
+    let mut inverse = (0.0771 * square - 0.5094) * square + 1.4177;
+    for _ in 0..2 {
+        inverse *= 1.5 - 0.5 * square * inverse * inverse;
+    }
+    let select = |mask: BVec4A, axis: Vec4, or: Vec4| Vec4::select(mask, axis * inverse, or);
+    [
+        select(usable, x, Vec4::ONE),
+        select(usable, y, Vec4::ZERO),
+        select(usable, z, Vec4::ZERO),
+    ]
+}
+
+#[inline]
+fn dot(a: [Vec4; 3], b: [Vec4; 3]) -> Vec4 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Fills in the slabs of nodes where those of leaves are known. The triangles below a node lie side
+/// by side.
+pub(super) fn fill(
+    nodes: &[Node],
+    triangles: &[Triangles],
+    below: &mut [Below],
+    slabs: &mut [Slabs],
+) {
+    // Children come after their parents.
     for index in (0..nodes.len()).rev() {
         let node = &nodes[index];
-        let is_leaf = node.child[0] == index as u32 | LEAF;
-        let (mut start, mut end, mut area) = (u32::MAX, 0, [[0.0; WIDTH]; 3]);
-        if is_leaf {
-            let leaf = &triangles[node.triangles as usize];
-            (start, end) = (node.triangles, node.triangles + 1);
-            area = leaf.areas();
-            slabs[index] = leaf.slabs(area);
-        } else {
-            for lane in node.lanes() {
-                let (from, to, of_lane) = runs[(node.child[lane] & !LEAF) as usize];
-                (start, end) = (start.min(from), end.max(to));
-                for axis in 0..3 {
-                    area[axis][lane] = of_lane[axis];
-                }
-            }
-            slabs[index] = Slabs::along(area);
-            for lane in node.lanes() {
-                let (from, to, _) = runs[(node.child[lane] & !LEAF) as usize];
-                let below = &triangles[from as usize..to as usize];
-                let (low, high) = heights(below, slabs[index].normal.map(|axis| axis[lane]));
-                slabs[index].set(lane, low, high);
+        if node.child[0] & !LEAF == index as u32 {
+            continue;
+        }
+        let mut area = [[0.0; WIDTH]; 3];
+        let mut all = Below::NONE;
+        for lane in node.lanes() {
+            let of_lane = &below[(node.child[lane] & !LEAF) as usize];
+            all.end = all.end.max(of_lane.end);
+            for (axis, area) in area.iter_mut().enumerate() {
+                area[lane] = of_lane.area[axis];
+                all.area[axis] += of_lane.area[axis];
             }
         }
-        let sum = |axis: [f32; WIDTH]| node.lanes().map(|lane| axis[lane]).sum();
-        runs[index] = (start, end, area.map(sum));
+        below[index] = all;
+        let normal = normals(area.map(Vec4::from_array));
+        let normals = normal.map(|axis| axis.to_array());
+        let (mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH]);
+        for lane in node.lanes() {
+            let child = (node.child[lane] & !LEAF) as usize;
+            let from = nodes[child].triangles as usize;
+            let corners = &triangles[from..below[child].end as usize];
+            let normal = normals.map(|axis| Vec4::splat(axis[lane]));
+            (low[lane], high[lane]) = if corners.len() <= LARGE {
+                heights(corners, normal)
+            } else {
+                heights_around(&nodes[child], &slabs[child], normal)
+            };
+        }
+        slabs[index] = Slabs::between(normal, low.into(), high.into());
     }
-    slabs
 }
 
 impl Triangles {
-    /// Normals of the triangles, twice as long as their areas.
+    /// The corners by axis.
     #[inline]
-    fn areas(&self) -> [[f32; WIDTH]; 3] {
+    fn rows(&self) -> [[Vec4; 3]; 3] {
         let c = &self.corners;
-        let mut areas = [[0.0; WIDTH]; 3];
-        for axis in 0..3 {
-            let (y, z) = ((axis + 1) % 3, (axis + 2) % 3);
-            for lane in 0..WIDTH {
-                let (uy, uz) = (c[3 + y][lane] - c[y][lane], c[3 + z][lane] - c[z][lane]);
-                let (vy, vz) = (c[6 + y][lane] - c[y][lane], c[6 + z][lane] - c[z][lane]);
-                areas[axis][lane] = uy * vz - uz * vy;
-            }
-        }
-        areas
+        [0, 3, 6].map(|k| [0, 1, 2].map(|axis| Vec4::from_array(c[k + axis])))
     }
 
-    /// A slab for each triangle.
+    /// A slab for each triangle of a leaf, `count` of them; and what the leaf, the last one so
+    /// far, tells its parent.
     #[inline]
-    fn slabs(&self, areas: [[f32; WIDTH]; 3]) -> Slabs {
-        let mut slabs = Slabs::along(areas);
-        let (c, n) = (&self.corners, slabs.normal);
-        for lane in 0..WIDTH {
-            let height = |k: usize| {
-                n[0][lane] * c[k][lane] + n[1][lane] * c[k + 1][lane] + n[2][lane] * c[k + 2][lane]
-            };
-            let (p, q, r) = (height(0), height(3), height(6));
-            slabs.set(lane, p.min(q).min(r), p.max(q).max(r));
-        }
-        slabs
+    pub(super) fn slabs(&self, count: usize, end: u32) -> (Slabs, Below) {
+        let [a, b, c] = self.rows();
+        let u = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+        let v = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
+        let area = [
+            u[1] * v[2] - u[2] * v[1],
+            u[2] * v[0] - u[0] * v[2],
+            u[0] * v[1] - u[1] * v[0],
+        ];
+        let normal = normals(area);
+        let (p, q, r) = (dot(normal, a), dot(normal, b), dot(normal, c));
+        let slabs = Slabs::between(normal, p.min(q).min(r), p.max(q).max(r));
+        let used = Vec4::from_array([0, 1, 2, 3].map(|lane| f32::from(u8::from(lane < count))));
+        let area = area.map(|axis| axis.dot(used));
+        (slabs, Below { end, area })
     }
 }
 
 /// The least and the greatest height of all corners along a normal.
-fn heights(triangles: &[Triangles], [x, y, z]: [f32; 3]) -> (f32, f32) {
-    let (mut low, mut high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
+#[inline]
+fn heights(triangles: &[Triangles], normal: [Vec4; 3]) -> (f32, f32) {
+    let (mut low, mut high) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
     for triangles in triangles {
-        let c = &triangles.corners;
-        for k in [0, 3, 6] {
-            for lane in 0..WIDTH {
-                let height = x * c[k][lane] + y * c[k + 1][lane] + z * c[k + 2][lane];
-                low[lane] = if height < low[lane] {
-                    height
-                } else {
-                    low[lane]
-                };
-                high[lane] = if height > high[lane] {
-                    height
-                } else {
-                    high[lane]
-                };
-            }
-        }
+        let [a, b, c] = triangles.rows().map(|corner| dot(normal, corner));
+        low = low.min(a.min(b).min(c));
+        high = high.max(a.max(b).max(c));
     }
-    let low = low.into_iter().fold(f32::INFINITY, f32::min);
-    (low, high.into_iter().fold(f32::NEG_INFINITY, f32::max))
+    (low.min_element(), high.max_element())
+}
+
+/// Bounds of the heights along a normal `n` of what is in a node, by its slabs and boxes:
+/// `n·x = k m·x + (n - k m)·x` with a slab's normal `m` and `k = n·m`.
+fn heights_around(node: &Node, slabs: &Slabs, n: [Vec4; 3]) -> (f32, f32) {
+    let m = slabs.normal.map(Vec4::from_array);
+    let (c, h) = (
+        node.boxes.centre.map(Vec4::from_array),
+        node.boxes.half.map(Vec4::from_array),
+    );
+    let k = dot(n, m);
+    let rest = [n[0] - k * m[0], n[1] - k * m[1], n[2] - k * m[2]];
+    let middle = k * Vec4::from_array(slabs.middle) + dot(rest, c);
+    let half = k.abs() * Vec4::from_array(slabs.half) + dot(rest.map(Vec4::abs), h);
+    // All roundings, fewer than 64 units of the last place of the largest coordinate.
+    let size = [0, 1, 2].map(|axis| c[axis].abs() + h[axis]);
+    let half = half + size[0].max(size[1]).max(size[2]) * (0.5 * 64.0 * f32::EPSILON);
+    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+    for lane in node.lanes() {
+        low = low.min(middle[lane] - half[lane]);
+        high = high.max(middle[lane] + half[lane]);
+    }
+    (low, high)
 }
