@@ -109,7 +109,7 @@ fn questions_about_meshes_do_not_allocate() {
                 });
             }
             answers += usize::from(cow.ray(offset, -offset).is_some());
-            answers += usize::from(collide::segment_meets(&cow, offset, -offset));
+            answers += usize::from(collide::segment_meets(&cow, offset, -offset) == Some(true));
             answers += usize::from(collide::locate(&cow, offset).is_some());
         }
         assert!(answers > 1000, "{answers}");

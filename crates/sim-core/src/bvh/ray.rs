@@ -17,7 +17,8 @@ impl Bvh {
     /// The nearest triangle on a ray, in the mesh's frame; either side of a face counts.
     ///
     /// Watertight: a ray through an edge or a corner meets a triangle there (Woop, Benthin, Wald
-    /// 2013, "Watertight ray/triangle intersection"). A direction of zero meets nothing.
+    /// 2013, "Watertight ray/triangle intersection"). A direction of zero, or below
+    /// the normal range of f64, meets nothing.
     pub fn ray(&self, origin: DVec3, direction: DVec3) -> Option<RayHit> {
         self.cast(origin, direction, false)
     }
@@ -100,7 +101,7 @@ impl Ray {
         let z = direction.abs().max_position();
         let axes = [(z + 1) % 3, (z + 2) % 3, z];
         let largest = direction[z].abs();
-        if largest == 0.0 || !direction.is_finite() || !origin.is_finite() {
+        if largest < f64::MIN_POSITIVE || !direction.is_finite() || !origin.is_finite() {
             return None;
         }
         let along = direction / largest;
@@ -160,6 +161,7 @@ impl Ray {
 
     /// Where the ray meets four triangles; infinity where it does not.
     #[inline]
+    #[expect(clippy::needless_range_loop, reason = "lanes of several columns")]
     fn meet(&self, triangles: &Triangles) -> [f64; WIDTH] {
         // The ray becomes the z axis: the largest component stays, the others are sheared off.
         let mut corners = [[0.0; WIDTH]; 9];

@@ -10,10 +10,6 @@ use glam::{BVec4A, Vec4};
 
 use super::{LEAF, Node, Triangles, WIDTH};
 
-/// Of larger subtrees, in leaves, slabs are put around slabs below and not around each corner.
-/// They are wider for it, but so large a patch is curved or else its parts are all flat.
-const LARGE: usize = 16;
-
 /// A slab for each lane of a node, `|n·x - middle| <= half` but for rounding: heights are computed
 /// in f32 and err by less than `2^-20` of the largest coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -118,11 +114,7 @@ pub(super) fn fill(
             let from = nodes[child].triangles as usize;
             let corners = &triangles[from..below[child].end as usize];
             let normal = normals.map(|axis| Vec4::splat(axis[lane]));
-            (low[lane], high[lane]) = if corners.len() <= LARGE {
-                heights(corners, normal)
-            } else {
-                heights_around(&nodes[child], &slabs[child], normal)
-            };
+            (low[lane], high[lane]) = heights(corners, normal);
         }
         slabs[index] = Slabs::between(normal, low.into(), high.into());
     }
@@ -167,27 +159,4 @@ fn heights(triangles: &[Triangles], normal: [Vec4; 3]) -> (f32, f32) {
         high = high.max(a.max(b).max(c));
     }
     (low.min_element(), high.max_element())
-}
-
-/// Bounds of the heights along a normal `n` of what is in a node, by its slabs and boxes:
-/// `n·x = k m·x + (n - k m)·x` with a slab's normal `m` and `k = n·m`.
-fn heights_around(node: &Node, slabs: &Slabs, n: [Vec4; 3]) -> (f32, f32) {
-    let m = slabs.normal.map(Vec4::from_array);
-    let (c, h) = (
-        node.boxes.centre.map(Vec4::from_array),
-        node.boxes.half.map(Vec4::from_array),
-    );
-    let k = dot(n, m);
-    let rest = [n[0] - k * m[0], n[1] - k * m[1], n[2] - k * m[2]];
-    let middle = k * Vec4::from_array(slabs.middle) + dot(rest, c);
-    let half = k.abs() * Vec4::from_array(slabs.half) + dot(rest.map(Vec4::abs), h);
-    // All roundings, fewer than 64 units of the last place of the largest coordinate.
-    let size = [0, 1, 2].map(|axis| c[axis].abs() + h[axis]);
-    let half = half + size[0].max(size[1]).max(size[2]) * (0.5 * 64.0 * f32::EPSILON);
-    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-    for lane in node.lanes() {
-        low = low.min(middle[lane] - half[lane]);
-        high = high.max(middle[lane] + half[lane]);
-    }
-    (low, high)
 }

@@ -12,6 +12,7 @@
 //! at most `q`, whence `dn·|w|` with `dn_x = q (|u_y| + |v_y| + |u_z| + |v_z| + 2 q)` and so on;
 //! and products below the range of f32 vanish, whence a small constant. As boxes meet, no
 //! component of `w` exceeds twice the sum of the half extents and the margin of their comparison.
+//! Sizes are such that no product overflows ([`Reach::has_planes`]).
 
 use super::pairs::{Lanes, Meshes, Reach, dot, dot0, splat};
 use crate::bvh::{Triangles, WIDTH};
@@ -35,6 +36,7 @@ const VANISHING: f32 = 16.0 * f32::MIN_POSITIVE;
 impl Planes {
     /// For sides moved by at most `shift`, and points that f32 misses by at most `miss`.
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "lanes of several columns")]
     fn of(triangles: &Triangles, shift: f32, miss: f32) -> Planes {
         let corners = &triangles.corners;
         let mut planes = Planes {
@@ -78,7 +80,7 @@ pub(super) fn maybe_meet<L: Lanes>(
     let (first, second) = (meshes.first.triangles(a), meshes.second.triangles(b));
     let (f, s) = (&a.boxes.half, &b.boxes.half);
     let offset = splat(reach.offset());
-    let margin = L::splat(reach.spread());
+    let margin = L::splat(reach.margin());
     let widest = [
         wide(f, s, margin, 0),
         wide(f, s, margin, 1),

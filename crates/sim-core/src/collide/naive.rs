@@ -69,6 +69,9 @@ fn each_hit(
     at: &Placement,
     mut found: impl FnMut(Pair) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
+    if !at.is_in_range() {
+        return ControlFlow::Continue(());
+    }
     let first_vertices: Vec<DVec3> = first.vertices().iter().map(|v| v.as_dvec3()).collect();
     let second_vertices: Vec<DVec3> = second.vertices().iter().map(|&v| at.place(v)).collect();
     let ways = [

@@ -18,7 +18,7 @@ pub struct Placement {
 }
 
 impl From<DVec3> for Placement {
-    /// Displaced by an offset, m, each component within ±1e100.
+    /// Displaced by an offset, m. One that is no number, or beyond 1e100 m, leaves meshes apart.
     fn from(offset: DVec3) -> Placement {
         Placement {
             offset: snap(offset),
@@ -30,10 +30,12 @@ impl From<DVec3> for Placement {
 impl Placement {
     /// Turned about its origin, then displaced, m; `None` unless `rotation` is of unit length.
     pub fn turned(rotation: DQuat, offset: DVec3) -> Option<Placement> {
-        let is_identity = rotation.xyz() == DVec3::ZERO;
-        rotation.is_normalized().then(|| Placement {
+        // To rounding: what passes as of unit length is not always a rotation to slabs.
+        let unit = rotation.is_normalized().then(|| rotation.normalize())?;
+        let is_identity = unit.xyz() == DVec3::ZERO;
+        Some(Placement {
             offset: snap(offset),
-            turn: (!is_identity).then(|| DMat3::from_quat(rotation)),
+            turn: (!is_identity).then(|| DMat3::from_quat(unit)),
         })
     }
 
@@ -85,9 +87,20 @@ impl Placement {
     /// Whether a box of the first mesh meets a box of the second; a "no" is a proof.
     pub(super) fn boxes_meet(&self, first: &Aabb, second: &Aabb) -> bool {
         let (min, max) = self.corners(second);
-        first.min.as_dvec3().cmple(max).all() && min.cmple(first.max.as_dvec3()).all()
+        // Corners beyond all numbers say nothing.
+        let apart = first.min.as_dvec3().cmpgt(max) | min.cmpgt(first.max.as_dvec3());
+        !apart.any()
+    }
+
+    /// Whether it is a place at all: offsets that are no numbers, or beyond 1e100 m, farther than
+    /// any mesh reaches, leave meshes apart.
+    pub(super) fn is_in_range(&self) -> bool {
+        self.offset.abs().cmple(DVec3::splat(FARTHEST)).all()
     }
 }
+
+/// Beyond this, m, exact decisions would overflow.
+pub(super) const FARTHEST: f64 = 1e100;
 
 /// 2^-250.
 const TINY: f64 = f64::from_bits((1023 - 250) << 52);

@@ -4,7 +4,7 @@ use core::ops::ControlFlow;
 use glam::{DVec3, Vec3};
 
 use super::{
-    placement::{Placement, snap},
+    placement::{FARTHEST, Placement, snap},
     predicates::{Axis, above, segment_meets_triangle},
     tree,
 };
@@ -21,17 +21,22 @@ pub enum Place {
     Outside,
 }
 
-/// Where a point is, in the mesh's frame, m, exactly; `None` if the mesh is open.
+/// Where a point is, in the mesh's frame, m, exactly; `None` if the mesh is open. What is no number
+/// is outside.
 ///
 /// The surface is crossed along the x axis. Where the way meets an edge or a corner, the point is
 /// taken as moved by an infinitesimal step along y and a yet smaller one along z, so that it
 /// crosses each edge on one side (Edelsbrunner, Mücke 1990, "Simulation of simplicity").
 pub fn locate(mesh: &Bvh, point: DVec3) -> Option<Place> {
-    let point = snap(point);
     if !mesh.is_closed() {
         return None;
     }
-    if segment_meets(mesh, point, point) {
+    let (point, bounds) = (snap(point), mesh.bounds());
+    let within = bounds.min.as_dvec3().cmple(point) & point.cmple(bounds.max.as_dvec3());
+    if !within.all() {
+        return Some(Place::Outside);
+    }
+    if meets(mesh, point, point) {
         return Some(Place::On);
     }
     let far = DVec3::new(f64::INFINITY, point.y, point.z);
@@ -48,9 +53,14 @@ pub fn locate(mesh: &Bvh, point: DVec3) -> Option<Place> {
 }
 
 /// Whether a closed segment, in the mesh's frame, m, and the surface of a mesh share a point,
-/// exactly. Components below 2^-250 m count as zero.
-pub fn segment_meets(mesh: &Bvh, p: DVec3, q: DVec3) -> bool {
-    let (p, q) = (snap(p), snap(q));
+/// exactly; `None` if an end is no number or beyond ±1e100 m. Components below 2^-250 m count as
+/// zero.
+pub fn segment_meets(mesh: &Bvh, p: DVec3, q: DVec3) -> Option<bool> {
+    let in_range = |p: DVec3| p.abs().cmple(DVec3::splat(FARTHEST)).all();
+    (in_range(p) && in_range(q)).then(|| meets(mesh, snap(p), snap(q)))
+}
+
+fn meets(mesh: &Bvh, p: DVec3, q: DVec3) -> bool {
     let meets = |_, corners: [Vec3; 3]| {
         if segment_meets_triangle(p, q, corners.map(|v| v.as_dvec3())) {
             return ControlFlow::Break(());
@@ -156,6 +166,13 @@ mod tests {
             Some(Place::On)
         );
         assert_eq!(locate(&cube, v(0.0, 0.0, 1e-300)), Some(Place::Inside));
+        for far in [1e200, f64::INFINITY, f64::NAN] {
+            assert_eq!(locate(&cube, v(-far, 0.1, 0.2)), Some(Place::Outside));
+            assert_eq!(
+                segment_meets(&cube, v(-far, 0.1, 0.2), v(1.0, 0.1, 0.2)),
+                None
+            );
+        }
         assert_eq!(locate(&cube, DVec3::splat(f64::NAN)), Some(Place::Outside));
     }
 
@@ -199,8 +216,8 @@ mod tests {
             (v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0), true),
             (v(1.0, 0.0, 0.0), v(0.0, 1.0_f64.next_up(), 0.0), false),
         ] {
-            assert_eq!(segment_meets(&cube, p, q), meets, "{p} {q}");
-            assert_eq!(segment_meets(&cube, q, p), meets, "{q} {p}");
+            assert_eq!(segment_meets(&cube, p, q), Some(meets), "{p} {q}");
+            assert_eq!(segment_meets(&cube, q, p), Some(meets), "{q} {p}");
         }
     }
 

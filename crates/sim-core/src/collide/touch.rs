@@ -105,7 +105,9 @@ struct Search<'a> {
 /// differences, two multiplications, and the sums, doubled for the rounding of the bound itself.
 const TRIPLE_ERROR: f64 = 16.0 * f64::EPSILON;
 
-/// Times that differ by more are no tie, whatever the error of either.
+/// Times that differ by more are no tie, whatever the error of either. A contact whose time is known
+/// worse than this, as its motion runs almost along the feature, loses to one that is known well,
+/// though it may have been first by less than its error.
 const LONGEST_TIE: f64 = 1e-9;
 
 impl Tiles for Search<'_> {

@@ -36,7 +36,7 @@ impl Question for AnyHit {
         pairs: u32,
         reach: Option<&Reach>,
     ) -> ControlFlow<()> {
-        let maybe = match reach.filter(|_| meshes.at.turn().is_none()) {
+        let maybe = match reach.filter(|reach| reach.has_planes()) {
             Some(reach) => maybe_meet::<L>(meshes, (a, b), pairs, reach),
             None => pairs,
         };

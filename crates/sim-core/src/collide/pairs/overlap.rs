@@ -40,7 +40,7 @@ pub(in crate::collide) fn each_pair<Q: Question>(
     question: &mut Q,
 ) -> ControlFlow<()> {
     let Meshes { first, second, at } = meshes;
-    if !at.boxes_meet(&first.bounds(), &second.bounds()) {
+    if !at.is_in_range() || !at.boxes_meet(&first.bounds(), &second.bounds()) {
         return ControlFlow::Continue(());
     }
     if at.turn().is_some() {

@@ -12,10 +12,15 @@ pub(in crate::collide) struct Reach {
     turn: [[f32; 3]; 3],
     /// More than all roundings in a comparison of boxes, m.
     margin: f32,
+    /// Whether heights above planes are within f32, and of meshes that are not turned.
+    planes: bool,
 }
 
-/// Beyond this, m, sums of products of coordinates leave f32.
+/// Beyond this, m, sums of products of coordinates with unit vectors leave f32.
 const LARGEST: f64 = 1e37;
+/// Beyond this, m, products of three coordinates do: with sides and distances up to twice the sizes
+/// a height above a plane stays below `3 · 8 S² · 2 S`.
+const LARGEST_FOR_PLANES: f64 = 1e12;
 
 impl Reach {
     /// `None` if f32 does not reach so far.
@@ -47,12 +52,13 @@ impl Reach {
         (largest < LARGEST).then(|| Reach {
             offset: at.offset().as_vec3().to_array(),
             turn,
+            planes: at.turn().is_none() && largest < LARGEST_FOR_PLANES,
             margin: (units * unit * largest) as f32 + 16.0 * f32::MIN_POSITIVE,
         })
     }
 
     #[inline(always)]
-    pub(super) fn margin(&self) -> f32 {
+    pub(in crate::collide) fn margin(&self) -> f32 {
         self.margin
     }
 
@@ -61,11 +67,10 @@ impl Reach {
         self.offset
     }
 
-    /// Bounds what lies between two points of two boxes that meet, along an axis, beyond twice the
-    /// sum of their half extents, m.
+    /// Whether planes may be compared in f32 (`apart`).
     #[inline(always)]
-    pub(in crate::collide) fn spread(&self) -> f32 {
-        self.margin
+    pub(in crate::collide) fn has_planes(&self) -> bool {
+        self.planes
     }
 
     /// What f32 misses placed vertices by at most, m: `2 u S`, without rotation.

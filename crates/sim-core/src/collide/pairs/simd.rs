@@ -89,7 +89,8 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn rows(x: &[f32; WIDTH]) -> Avx2 {
         call! {
-            let x = _mm256_broadcast_ps(&*x.as_ptr().cast());
+            let x = _mm_loadu_ps(x.as_ptr());
+            let x = _mm256_set_m128(x, x);
             Avx2(
                 _mm256_permutevar_ps(x, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)),
                 _mm256_permutevar_ps(x, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3)),
@@ -99,7 +100,8 @@ impl Lanes for Avx2 {
 
     #[inline(always)]
     fn columns(x: &[f32; WIDTH]) -> Avx2 {
-        call! { let x = _mm256_broadcast_ps(&*x.as_ptr().cast()); Avx2(x, x) }
+        call! { let x = _mm_loadu_ps(x.as_ptr());
+        let x = _mm256_set_m128(x, x); Avx2(x, x) }
     }
 
     #[inline(always)]

@@ -10,9 +10,11 @@ use core::mem::MaybeUninit;
 use super::{ABREAST, TILE};
 use crate::bvh::MAX_DEPTH;
 
-/// Each pair lies lower in one tree or both than the pair that it comes from, and pairs lie in the
-/// order of their levels: those of one level all come from one round, sixteen from each pair of
-/// it. A tile's sixteen are written in one piece, however few count.
+/// The pairs pushed in one round, sixteen at most from each that it takes, form a group. A round
+/// takes pairs from the top, and what it pushes comes from them, so of two groups on the stack the
+/// upper one comes from pairs that lay above, or in, the lower one: the sum of both depths grows by
+/// at least one from group to group, and there are no more groups than that sum can have values. A
+/// tile's sixteen are written in one piece, however few count.
 const CAPACITY: usize = TILE * ABREAST * 2 * MAX_DEPTH + TILE;
 
 /// A stack of pairs, in two columns.
