@@ -92,7 +92,8 @@ impl Equation<'_> {
             let correction = solve3(self.matrix(&jacobians[i]), residual[i]);
             w[i] -= correction;
             let size = largest(correction) / self.scale(i, w[i]);
-            if !(size <= worst.1) {
+            // A NaN is the worst of all.
+            if size > worst.1 || size.is_nan() {
                 worst = (i, size);
             }
         }
@@ -132,7 +133,8 @@ impl Equation<'_> {
             w[i] -= correction[i];
             scale = scale.max(self.scale(i, w[i]));
             let size = largest(correction[i]);
-            if !(size <= worst.1) {
+            // A NaN is the worst of all.
+            if size > worst.1 || size.is_nan() {
                 worst = (i, size);
             }
         }

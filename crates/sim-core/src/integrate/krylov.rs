@@ -48,7 +48,8 @@ pub(super) fn solve(
     let goal = TOLERANCE * TOLERANCE * dot(right, right);
     let mut rho = dot(shadow, residual);
     for _ in 0..50 + 3 * right.len() {
-        if !(rho != 0.0) || !(dot(residual, residual) > goal) {
+        let squared = dot(residual, residual);
+        if rho == 0.0 || squared <= goal || squared.is_nan() {
             return;
         }
         condition(direction, ready);

@@ -369,7 +369,7 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
         let steps = self.steps + self.rejected;
         let failure = if steps >= self.most_steps {
             SolveError::TooManySteps { time, steps }
-        } else if !(0.1 * h.abs() > f64::EPSILON * time.abs()) {
+        } else if h == 0.0 || h.is_nan() || 0.1 * h.abs() <= f64::EPSILON * time.abs() {
             SolveError::StepTooSmall { time, step: h }
         } else {
             return Ok(());
@@ -384,29 +384,28 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
     fn first_step(&mut self, rest: f64) -> f64 {
         let (n, y) = (self.start.as_ref().len(), self.start.as_ref());
         let weight = |i: usize| self.tolerance.absolute + self.tolerance.relative * y[i].abs();
-        let square = |x: f64| x * x;
         let (slope, moved) = self.pair.slope();
         let slope = slope.as_ref();
-        let (mut size, mut speed) = (0.0, 0.0);
-        for i in 0..n {
-            size += square(y[i] / weight(i));
-            speed += square(slope[i] / weight(i));
-        }
+        let total = |of: &dyn Fn(usize) -> f64| -> f64 {
+            (0..n)
+                .map(|i| (of(i) / weight(i)) * (of(i) / weight(i)))
+                .sum()
+        };
+        let (size, speed) = (total(&|i| y[i]), total(&|i| slope[i]));
         let guess = if size < 1e-10 || speed < 1e-10 {
             1e-6
         } else {
             0.01 * libm::sqrt(size / speed)
         };
         let h = libm::copysign(guess.min(rest.abs()), rest);
-        for i in 0..n {
-            self.room.as_mut()[i] = y[i] + h * slope[i];
+        let trial = self.room.as_mut().iter_mut();
+        for (trial, (y, slope)) in trial.zip(y.iter().zip(slope)) {
+            *trial = y + h * slope;
         }
         (self.f)(self.time + h, &self.room, moved);
         self.evaluations += 1;
-        let mut change = 0.0;
-        for i in 0..n {
-            change += square((moved.as_ref()[i] - slope[i]) / weight(i));
-        }
+        let moved = moved.as_ref();
+        let change = total(&|i| moved[i] - slope[i]);
         let rate = libm::sqrt(speed).max(libm::sqrt(change) / h.abs());
         let step = if rate <= 1e-15 {
             (1e-3 * h.abs()).max(1e-6)
@@ -438,7 +437,7 @@ fn rough_log2(x: f64) -> f64 {
 
 /// `2^x` to about seven digits, for `x` within ±1000 or beyond them by clamping.
 fn power_of_2(x: f64) -> f64 {
-    let x = x.max(-1000.0).min(1000.0);
+    let x = x.clamp(-1000.0, 1000.0);
     let whole = libm::rint(x);
     let t = (x - whole) * core::f64::consts::LN_2;
     let series = 1.0
