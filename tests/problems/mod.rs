@@ -1,5 +1,8 @@
 //! Problems with known solutions, as first-order systems.
 
+// Each test takes some of them.
+#![allow(dead_code)]
+
 /// Pleiades: seven bodies of mass 1 to 7 in a plane under their own gravitation with `G = 1`
 /// (Hairer, Nørsett, Wanner 1993, Solving Ordinary Differential Equations I, sec. II.10, p. 245).
 pub(crate) mod pleiades {
