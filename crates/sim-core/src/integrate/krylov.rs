@@ -1,13 +1,11 @@
 //! Linear systems of coupled bodies by products with their matrix alone.
 //!
 //! BiCGSTAB (van der Vorst 1992, "Bi-CGSTAB: a fast and smoothly converging variant of Bi-CG",
-//! SIAM J. Sci. Stat. Comput. 13(2), p. 635), preconditioned from the right by the inverted 3×3
-//! blocks on the diagonal. Dampers make the matrices unsymmetric, which conjugate gradients do not
+//! SIAM J. Sci. Stat. Comput. 13(2), p. 635), preconditioned from the right by the inverted
+//! blocks of single bodies on the diagonal. Dampers make the matrices unsymmetric, which conjugate gradients do not
 //! allow, and its memory is a few columns, unlike that of GMRES.
 
 use glam::DVec3;
-
-use super::Jacobians;
 
 /// Columns of room that [`solve`] needs.
 pub(super) const COLUMNS: usize = 7;
@@ -15,14 +13,14 @@ pub(super) const COLUMNS: usize = 7;
 /// The residual to reach, relative to the right-hand side. Newton's method goes on from there.
 const TOLERANCE: f64 = 1e-8;
 
-/// Writes into `solution` an approximation of the solution of `apply(solution) = right`. The
-/// preconditioner is the `position` of each of `blocks`.
+/// Writes into `solution` an approximation of the solution of `apply(solution) = right`, where
+/// `condition` applies the preconditioner.
 ///
 /// It stops at [`TOLERANCE`], after as many products as the matrix has rows and some, or when the
 /// recurrence breaks down; the caller looks at what came out.
 pub(super) fn solve(
-    apply: &mut impl FnMut(&[DVec3], &mut [DVec3]),
-    blocks: &[Jacobians],
+    mut apply: impl FnMut(&[DVec3], &mut [DVec3]),
+    condition: impl Fn(&[DVec3], &mut [DVec3]),
     right: &[DVec3],
     solution: &mut [DVec3],
     room: [&mut [DVec3]; COLUMNS],
@@ -36,11 +34,6 @@ pub(super) fn solve(
         second,
         ready_second,
     ] = room;
-    let condition = |from: &[DVec3], to: &mut [DVec3]| {
-        for ((to, from), block) in to.iter_mut().zip(from).zip(blocks) {
-            *to = block.position * *from;
-        }
-    };
     solution.fill(DVec3::ZERO);
     residual.copy_from_slice(right);
     shadow.copy_from_slice(right);

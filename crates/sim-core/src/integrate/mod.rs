@@ -13,9 +13,9 @@ mod forward_euler;
 mod implicit;
 mod implicit_midpoint;
 mod krylov;
+mod radau5;
 mod rk4;
 mod scratch;
-mod sdirk4;
 mod splitting;
 pub(crate) mod stability;
 mod stepper;
@@ -70,7 +70,7 @@ pub static METHODS: [&Method; 11] = [
     &implicit_midpoint::METHOD,
     &symplectic4::METHOD,
     &symplectic8::METHOD,
-    &sdirk4::METHOD,
+    &radau5::METHOD,
     &dopri5::METHOD,
     &dop853::METHOD,
 ];
