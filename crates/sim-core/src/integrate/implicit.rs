@@ -40,6 +40,14 @@ pub(super) struct Equation<'a> {
     pub(super) drift: f64,
 }
 
+/// How often a correction that makes matters worse is halved.
+const HALVINGS: u32 = 10;
+
+/// The size of a correction, which says nothing if its own equations were not solved.
+pub(super) fn trusted(size: f64, solved: bool) -> f64 {
+    if solved { size } else { size.max(1.0) }
+}
+
 /// Corrects until a solution is reached. `correct` returns the body with the largest correction and
 /// its relative size.
 pub(super) fn iterate(mut correct: impl FnMut() -> (usize, f64)) -> Result<(), Failure> {
@@ -73,9 +81,10 @@ impl Equation<'_> {
         w: &mut [DVec3],
         room: &mut Newton,
     ) -> Result<(), Failure> {
+        let mut last_residual = f64::INFINITY;
         iterate(|| {
             if system.is_coupled() {
-                self.correct_together(system, w, room)
+                self.correct_together(system, w, room, &mut last_residual)
             } else {
                 self.correct_each(system, w, room)
             }
@@ -110,18 +119,33 @@ impl Equation<'_> {
         worst
     }
 
-    /// One correction of bodies that do, relative to the greatest speed among them.
+    /// One correction of bodies that do, relative to the greatest speed among them. First, half of
+    /// the last correction is taken back as long as it has made the residual larger.
     fn correct_together(
         &self,
         system: &dyn System,
         w: &mut [DVec3],
         room: &mut Newton,
+        last_residual: &mut f64,
     ) -> (usize, f64) {
         let n = w.len();
         let ([x, residual, correction, moved, krylov @ ..], jacobians) =
             room.columns::<{ 4 + krylov::COLUMNS }>(n);
         jacobians.resize(n, Jacobians::ZERO);
         self.residual(system, w, x, residual);
+        let mut size = krylov::dot(residual, residual);
+        for _ in 0..HALVINGS {
+            if size <= *last_residual {
+                break;
+            }
+            for (w, correction) in w.iter_mut().zip(correction.iter_mut()) {
+                *correction *= 0.5;
+                *w += *correction;
+            }
+            self.residual(system, w, x, residual);
+            size = krylov::dot(residual, residual);
+        }
+        *last_residual = size;
         system.jacobians(self.time, x, w, jacobians);
         for jacobians in jacobians.iter_mut() {
             // The block on the diagonal, inverted, is what makes the Krylov method quick.
@@ -141,7 +165,7 @@ impl Equation<'_> {
                 *out = *u - self.h * *out;
             }
         };
-        krylov::solve(apply, condition, residual, correction, krylov);
+        let solved = krylov::solve(apply, condition, residual, correction, krylov);
         let mut scale: f64 = f64::MIN_POSITIVE;
         let mut worst = (0, 0.0);
         for i in 0..n {
@@ -153,7 +177,7 @@ impl Equation<'_> {
                 worst = (i, size);
             }
         }
-        (worst.0, worst.1 / scale)
+        (worst.0, trusted(worst.1 / scale, solved))
     }
 
     /// `w - v - h a(x + d w, w)`, and the positions at which it is.

@@ -16,15 +16,15 @@ const TOLERANCE: f64 = 1e-8;
 /// Writes into `solution` an approximation of the solution of `apply(solution) = right`, where
 /// `condition` applies the preconditioner.
 ///
-/// It stops at [`TOLERANCE`], after as many products as the matrix has rows and some, or when the
-/// recurrence breaks down; the caller looks at what came out.
+/// It stops at [`TOLERANCE`] and tells `true`; or after as many products as the matrix has rows and
+/// some, or when the recurrence breaks down, with the best that it has.
 pub(super) fn solve(
     mut apply: impl FnMut(&[DVec3], &mut [DVec3]),
     condition: impl Fn(&[DVec3], &mut [DVec3]),
     right: &[DVec3],
     solution: &mut [DVec3],
     room: [&mut [DVec3]; COLUMNS],
-) {
+) -> bool {
     let [
         residual,
         shadow,
@@ -42,8 +42,11 @@ pub(super) fn solve(
     let mut rho = dot(shadow, residual);
     for _ in 0..50 + 3 * right.len() {
         let squared = dot(residual, residual);
-        if rho == 0.0 || squared <= goal || squared.is_nan() {
-            return;
+        if squared <= goal {
+            return true;
+        }
+        if rho == 0.0 || squared.is_nan() {
+            return false;
         }
         condition(direction, ready);
         apply(ready, image);
@@ -64,12 +67,13 @@ pub(super) fn solve(
         let beta = next / rho * (alpha / omega);
         rho = next;
         if !beta.is_finite() {
-            return;
+            return dot(residual, residual) <= goal;
         }
         for ((d, r), i) in direction.iter_mut().zip(&*residual).zip(&*image) {
             *d = *r + beta * (*d - omega * *i);
         }
     }
+    false
 }
 
 fn add(to: &mut [DVec3], factor: f64, what: &[DVec3]) {
@@ -78,7 +82,7 @@ fn add(to: &mut [DVec3], factor: f64, what: &[DVec3]) {
     }
 }
 
-fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
+pub(super) fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
     a.iter()
         .zip(b)
         .map(|(a, b)| a.x * b.x + a.y * b.y + a.z * b.z)

@@ -18,7 +18,7 @@ use glam::{DMat3, DVec3};
 
 use super::{
     Jacobians, Method, System,
-    implicit::{iterate, largest, scale, solve},
+    implicit::{iterate, largest, scale, solve, trusted},
     krylov,
     scratch::Newton,
 };
@@ -109,6 +109,7 @@ impl Stages<'_> {
                 residual[stage * n + i] = w[stage * n + i] - self.velocity[i] - pull;
             }
         }
+        let mut solved = true;
         if system.is_coupled() {
             inverses.resize(n, [[0.0; 9]; 9]);
             for (i, inverse) in inverses.iter_mut().enumerate() {
@@ -137,7 +138,7 @@ impl Stages<'_> {
                     }
                 }
             };
-            krylov::solve(apply, condition, residual, correction, krylov);
+            solved = krylov::solve(apply, condition, residual, correction, krylov);
         } else {
             for i in 0..n {
                 scatter(
@@ -147,7 +148,8 @@ impl Stages<'_> {
                 );
             }
         }
-        self.subtract(system.is_coupled(), w, correction)
+        let (worst, size) = self.subtract(system.is_coupled(), w, correction);
+        (worst, trusted(size, solved))
     }
 
     fn subtract(&self, is_coupled: bool, w: &mut [DVec3], correction: &[DVec3]) -> (usize, f64) {
