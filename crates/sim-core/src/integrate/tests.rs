@@ -1,6 +1,6 @@
 //! What the methods of the table claim, measured.
 
-use alloc::vec;
+use alloc::{vec, vec::Vec};
 use core::f64::consts::PI;
 use glam::{DMat2, DVec2, DVec3};
 
@@ -406,4 +406,77 @@ fn stability_limits_hold_from_both_sides() {
 fn forward_euler_has_no_stable_step_without_damping() {
     assert_eq!(forward_euler::METHOD.stable_dt(4.0, 0.0), 0.0);
     assert!((velocity_verlet::METHOD.stable_dt(4.0, 0.0) - 1.0).abs() < 1e-6);
+}
+
+/// Bodies on a line between two walls, springs of 10 kN/m between neighbours; counts what it is
+/// asked for.
+struct Line {
+    len: usize,
+    products: core::cell::Cell<u32>,
+}
+
+impl Line {
+    fn pull(&self, x: &[DVec3], a: &mut [DVec3]) {
+        let at = |i: usize| x.get(i).copied().unwrap_or(DVec3::ZERO);
+        for (i, a) in a.iter_mut().enumerate() {
+            let left = if i > 0 { at(i - 1) } else { DVec3::ZERO };
+            *a = 1e4 * (left - 2.0 * x[i] + at(i + 1));
+        }
+    }
+}
+
+impl System for Line {
+    fn len(&self) -> usize {
+        self.len
+    }
+
+    fn depends_on_velocity(&self) -> bool {
+        false
+    }
+
+    fn accelerations(&self, _: f64, x: &[DVec3], _: &[DVec3], a: &mut [DVec3]) {
+        self.pull(x, a);
+    }
+
+    fn apply_jacobian(
+        &self,
+        _: f64,
+        _: (&[DVec3], &[DVec3]),
+        (dx, _): (&[DVec3], &[DVec3]),
+        da: &mut [DVec3],
+    ) {
+        self.products.set(self.products.get() + 1);
+        self.pull(dx, da);
+    }
+
+    fn jacobians(&self, _: f64, _: &[DVec3], _: &[DVec3], out: &mut [Jacobians]) {
+        out.fill(Jacobians {
+            position: glam::DMat3::from_diagonal(DVec3::splat(-2e4)),
+            ..Jacobians::ZERO
+        });
+    }
+}
+
+#[test]
+fn the_cost_of_a_chain_grows_as_its_length() {
+    for name in ["backward-euler", "implicit-midpoint", "radau5"] {
+        let products = |len: usize| {
+            let line = Line {
+                len,
+                products: 0.into(),
+            };
+            let shape = |i: usize| libm::sin(i as f64 * 0.7) * DVec3::X;
+            let start: Vec<DVec3> = (0..len).map(shape).collect();
+            let rest = vec![DVec3::ZERO; len];
+            let mut stepper = Stepper::new(Method::named(name).unwrap(), &start, &rest);
+            for _ in 0..10 {
+                stepper.step(&line, 1.0 / 60.0).unwrap();
+            }
+            line.products.get()
+        };
+        // Each product costs as much as there are bodies; as many do for any number of them.
+        let (short, long) = (products(100), products(1000));
+        std::println!("{name}: {short} and {long} products in ten steps");
+        assert!(4 * long < 5 * short, "{name}: {short} {long}");
+    }
 }
