@@ -422,7 +422,7 @@ const SAFETY: f64 = 0.9;
 /// Of 1e-4: errors below it are remembered as that.
 const LOG2_LEAST_ERROR: f64 = -13.287712379549449;
 
-/// The logarithm to about seven digits, which are plenty for the length of a step, at a quarter of
+/// The logarithm to about six digits, which are plenty for the length of a step, at a quarter of
 /// the cost of an exact one: that of the mantissa in `[√½, √2)` by `2 artanh((m - 1)/(m + 1))`.
 /// Very low for 0.
 fn rough_log2(x: f64) -> f64 {
@@ -431,18 +431,18 @@ fn rough_log2(x: f64) -> f64 {
     let m = f64::from_bits(x.to_bits().wrapping_sub((shifted as u64) << 52));
     let s = (m - 1.0) / (m + 1.0);
     let square = s * s;
-    let series = 1.0 + square * (1.0 / 3.0 + square * (1.0 / 5.0 + square / 7.0));
+    let series = 1.0 + square * (1.0 / 3.0 + square * (1.0 / 5.0));
     shifted as f64 + 2.0 * core::f64::consts::LOG2_E * s * series
 }
 
-/// `2^x` to about seven digits, for `x` within ±1000 or beyond them by clamping.
+/// `2^x` to about five digits, for `x` within ±1000 or beyond them by clamping.
 fn power_of_2(x: f64) -> f64 {
     let x = x.clamp(-1000.0, 1000.0);
     let whole = libm::rint(x);
     let t = (x - whole) * core::f64::consts::LN_2;
-    let series = 1.0
-        + t * (1.0
-            + t / 2.0 * (1.0 + t / 3.0 * (1.0 + t / 4.0 * (1.0 + t / 5.0 * (1.0 + t / 6.0)))));
+    let square = t * t;
+    let rest = (1.0 / 24.0 + t * (1.0 / 120.0)) * square;
+    let series = (1.0 + t) + square * ((0.5 + t * (1.0 / 6.0)) + rest);
     series * f64::from_bits(((whole as i64 + 1023) as u64) << 52)
 }
 
