@@ -61,6 +61,11 @@ pub struct Method {
 }
 
 /// Every method, the course's four first.
+///
+/// All keep their order for forces that depend on velocities. Symplectic Euler takes such a force
+/// at the old velocity; the other splitting methods partly at the new one, for which they solve an
+/// equation. None is symplectic then, since nothing is; the implicit midpoint rule and those made
+/// of drifts and kicks, symplectic Euler aside, stay reversible.
 pub static METHODS: [&Method; 11] = [
     &forward_euler::METHOD,
     &backward_euler::METHOD,
