@@ -1,9 +1,12 @@
-//! No step but the first allocates.
+//! No step but the first allocates, and no question about meshes.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use sim_core::{Body, DVec3, Force, METHODS, Settings, World};
+use std::ops::ControlFlow;
+
+use sim_core::collide::{self, Placement, tree};
+use sim_core::{Body, Bvh, DQuat, DVec3, Force, METHODS, Settings, World};
 
 thread_local! {
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
@@ -84,4 +87,31 @@ fn steps_after_the_first_do_not_allocate() {
             assert_eq!(later, 0, "{} {forces:?}", method.name);
         }
     }
+}
+
+#[test]
+fn questions_about_meshes_do_not_allocate() {
+    let cow = scene::mesh_file::builtin("cow.obj").expect("built in");
+    let cow = Bvh::build(&cow);
+    let turn = DQuat::from_rotation_y(0.7);
+    let questions = || {
+        let mut answers = 0;
+        for i in 0..40 {
+            let offset = DVec3::new(0.03 * f64::from(i), 0.5, 0.2);
+            let turned = Placement::turned(turn, offset).expect("a rotation");
+            for at in [Placement::from(offset), turned] {
+                answers += usize::from(tree::intersect(&cow, &cow, at));
+                answers += usize::from(collide::contains(&cow, &cow, at));
+                let _ = tree::each_hit(&cow, &cow, at, |_| {
+                    answers += 1;
+                    ControlFlow::Continue(())
+                });
+            }
+            answers += usize::from(cow.ray(offset, -offset).is_some());
+            answers += usize::from(collide::segment_meets(&cow, offset, -offset));
+            answers += usize::from(collide::locate(&cow, offset).is_some());
+        }
+        assert!(answers > 1000, "{answers}");
+    };
+    assert_eq!(allocations(questions), 0);
 }

@@ -1,7 +1,8 @@
 //! Rigid triangle meshes that move and collide.
 //!
-//! `no_std` with `alloc`, no I/O, no clock, no threads; `unsafe` only around vector instructions. Quantities are in SI units.
-//! State is `f64`, geometry `f32`; decisions about geometry are exact.
+//! `no_std` with `alloc`, no I/O, no clock, no threads; `unsafe` only around vector instructions
+//! and a stack that is not zeroed. Quantities are in SI units. State is `f64`, geometry `f32`;
+//! decisions about geometry are exact.
 //!
 //! # A step, in the order in which it happens
 //!
