@@ -50,6 +50,10 @@ fn steps_after_the_first_do_not_allocate() {
         body: None,
         coefficient: 0.1,
     };
+    let weak = Force::LinearDrag {
+        body: Some(4),
+        coefficient: 0.2,
+    };
     let spring = Force::Spring {
         bodies: [3, 9],
         rest_length: 1.0,
@@ -57,12 +61,7 @@ fn steps_after_the_first_do_not_allocate() {
         damping: 0.5,
     };
     let gravitation = Force::Gravitation { constant: 1e-3 };
-    let forces: [&[Force]; 4] = [
-        &[],
-        &[drag.clone()],
-        &[drag.clone(), spring],
-        &[drag, gravitation],
-    ];
+    let forces: [&[Force]; 4] = [&[], &[weak], &[drag.clone(), spring], &[drag, gravitation]];
     for forces in forces {
         for method in METHODS {
             let settings = Settings {

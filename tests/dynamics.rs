@@ -3,6 +3,7 @@
 mod problems;
 
 use std::f64::consts::PI;
+use std::slice;
 
 use problems::pleiades;
 use sim_core::{
@@ -71,7 +72,7 @@ fn a_throw_lands_where_each_method_says() {
                 force: -DVec3::Y,
                 ..point(DVec3::new(-4.0, 0.0, 0.0), DVec3::new(2.0, 2.0, 0.0))
             };
-            let by_constant = world(method, dt, &[stone.clone()], &[]);
+            let by_constant = world(method, dt, slice::from_ref(&stone), &[]);
             let weightless = Body {
                 force: DVec3::ZERO,
                 ..stone.clone()
@@ -118,6 +119,7 @@ fn worlds_converge_with_the_order_of_their_method() {
         };
         let steps = match method.order {
             8 => 12,
+            5 => 64,
             4 => 256,
             _ => 1024,
         };
@@ -214,7 +216,7 @@ fn stiff(method: &'static Method, dt: f64) -> World {
 
 #[test]
 fn implicit_methods_find_the_rest_of_a_stiff_spring_at_sixty_hertz() {
-    for name in ["backward-euler", "sdirk4"] {
+    for name in ["backward-euler", "radau5"] {
         let mut world = stiff(method(name), 1.0 / 60.0);
         run(&mut world, 600);
         let x = world.position(0).x;
@@ -333,7 +335,7 @@ fn backward_euler_is_exact_for_its_own_solution_of_a_stiff_linear_system() {
         law: Law::new(MatrixDrag(matrix)),
     };
     let mut world = world(
-        method("sdirk4"),
+        method("radau5"),
         0.01,
         &[point(DVec3::ZERO, 2.0 * DVec3::X)],
         &[force],
@@ -649,7 +651,12 @@ fn pair() -> [Body; 2] {
 fn every_method_solves_every_force() {
     for (name, force) in every_force() {
         let end = |method: &'static Method, steps: u32| {
-            let mut world = world(method, 0.5 / f64::from(steps), &pair(), &[force.clone()]);
+            let mut world = world(
+                method,
+                0.5 / f64::from(steps),
+                &pair(),
+                slice::from_ref(&force),
+            );
             run(&mut world, u64::from(steps));
             (0..2)
                 .flat_map(|i| [world.position(i), world.velocity(i)])
@@ -676,7 +683,7 @@ fn every_method_solves_every_force() {
 #[test]
 fn forces_between_bodies_keep_momentum_and_forces_with_a_potential_energy() {
     for (name, force) in every_force() {
-        let mut world = world(method("dop853"), 0.02, &pair(), &[force.clone()]);
+        let mut world = world(method("dop853"), 0.02, &pair(), slice::from_ref(&force));
         let energy = |world: &World| world.kinetic_energy() + world.potential_energy();
         let (start, momentum) = (energy(&world), world.momentum());
         run(&mut world, 50);

@@ -21,17 +21,17 @@ static HEUN: Method = Method {
 };
 
 fn heun(system: &dyn System, s: Step<'_>) -> Result<(), Failure> {
-    let [a0, a1] = s.scratch.columns(s.position.len());
-    system.accelerations(s.time, s.position, s.velocity, a0);
-    for i in 0..a0.len() {
+    let [start, end] = s.scratch.columns(s.position.len());
+    system.accelerations(s.time, s.position, s.velocity, start);
+    for (i, a) in start.iter().enumerate() {
         s.new_position[i] = s.position[i] + s.dt * s.velocity[i];
-        s.new_velocity[i] = s.velocity[i] + s.dt * a0[i];
+        s.new_velocity[i] = s.velocity[i] + s.dt * *a;
     }
-    system.accelerations(s.time + s.dt, s.new_position, s.new_velocity, a1);
-    for i in 0..a0.len() {
+    system.accelerations(s.time + s.dt, s.new_position, s.new_velocity, end);
+    for (i, (a, b)) in start.iter().zip(end.iter()).enumerate() {
         let mean = 0.5 * (s.velocity[i] + s.new_velocity[i]);
         s.new_position[i] = s.position[i] + s.dt * mean;
-        s.new_velocity[i] = s.velocity[i] + 0.5 * s.dt * (a0[i] + a1[i]);
+        s.new_velocity[i] = s.velocity[i] + 0.5 * s.dt * (*a + *b);
     }
     Ok(())
 }
