@@ -186,7 +186,7 @@ mod tests {
             for x in [-2.0, -0.01, 0.0, 0.01, 2.0] {
                 let p = v(corner.x * 0.5 + x, corner.y, corner.z);
                 let radius = p.length();
-                if radius < 0.97 || radius > 1.0 {
+                if !(0.97..=1.0).contains(&radius) {
                     let exact = if radius < 1.0 {
                         Place::Inside
                     } else {
