@@ -66,11 +66,6 @@ impl Series {
     pub(crate) fn points(&self) -> impl Iterator<Item = Point> {
         self.runs.iter().filter_map(|run| run.outcome.clone().ok())
     }
-
-    /// The least error of all runs.
-    pub(crate) fn best(&self) -> Option<f64> {
-        self.points().map(|p| p.error).reduce(f64::min)
-    }
 }
 
 impl Diagram {
@@ -79,8 +74,8 @@ impl Diagram {
     }
 }
 
-/// An error, in units of the answer's own size, from which on nothing of the answer is left.
-const LARGEST_ERROR: f64 = 10.0;
+/// An error from which on nothing of the answer, of size 1, is left.
+const LARGEST_ERROR: f64 = 1.0;
 
 /// An error below which more steps may not help any more.
 const ROUNDING: f64 = 1e-9;

@@ -30,7 +30,7 @@ impl Scope {
 
     /// A run that takes longer is the last one of its sweep, s.
     pub(crate) fn dearest_run(self) -> f64 {
-        self.either(0.05, 0.003)
+        self.either(0.1, 0.003)
     }
 
     /// Fewest and most timed repeats.

@@ -17,7 +17,7 @@ pub(super) fn problem() -> Problem<Ballistic, 4> {
                     Every method is exact here or off by a multiple of dt.",
             error: "position, m",
             time: 4.0,
-            steps: [4, 1 << 22],
+            steps: [16, 1 << 22],
             frames: 1,
             is_stiff: false,
         },

@@ -8,7 +8,7 @@ mod counted;
 mod drag;
 mod kepler;
 mod oscillator;
-mod pleiades;
+pub(crate) mod pleiades;
 mod stiff_linear;
 mod stiff_spring;
 

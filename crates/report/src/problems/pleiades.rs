@@ -1,6 +1,6 @@
 //! Seven stars in a plane.
 
-use sim_core::{DMat3, DVec3, Jacobians, System};
+use sim_core::{Body, DMat3, DVec3, Jacobians, System};
 
 use super::{Card, FirstOrder, Problem};
 
@@ -60,6 +60,16 @@ pub(super) fn problem() -> Problem<Pleiades, N> {
         exact: END.to_vec(),
         scale: 1.0,
     }
+}
+
+/// The stars at the start, as bodies of a world.
+pub(crate) fn stars() -> impl Iterator<Item = Body> {
+    START.into_iter().enumerate().map(|(i, [x, y, u, v])| Body {
+        position: DVec3::new(x, y, 0.0),
+        velocity: DVec3::new(u, v, 0.0),
+        mass: mass(i),
+        ..Body::default()
+    })
 }
 
 fn mass(star: usize) -> f64 {
