@@ -42,8 +42,8 @@ pub(crate) fn measure(scope: Scope) -> Vec<Row> {
                 pair: format!("{name}, cow of {triangles} triangles"),
                 meet,
                 right: naive() == meet && bvh() == meet,
-                naive: stopwatch::median(scope, naive),
-                bvh: stopwatch::median(scope, bvh),
+                naive: stopwatch::median(scope.repeats(), naive),
+                bvh: stopwatch::median(scope.repeats(), bvh),
             }
         });
         rows.collect::<Vec<_>>()

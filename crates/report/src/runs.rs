@@ -80,26 +80,44 @@ const LARGEST_ERROR: f64 = 1.0;
 /// An error below which more steps may not help any more.
 const ROUNDING: f64 = 1e-9;
 
-/// Sweeps everybody over a problem.
+/// Sweeps everybody over a problem, then times all that has succeeded.
 pub(crate) fn diagram(problem: &dyn Solve, scope: Scope) -> Diagram {
-    let series = Who::all().map(|who| match who {
-        Who::Method(method) => {
-            let efforts = match method.adaptive {
-                true => tolerances(scope),
-                false => step_counts(problem.card(), scope),
-            };
-            sweep(who, efforts, scope, |effort, count| {
-                problem.by_method(method, effort, count)
-            })
-        }
-        Who::Solver(solver) => sweep(who, tolerances(scope), scope, |effort, _| match effort {
-            Effort::Tolerance(tolerance) => problem.by_solver(solver, tolerance),
-            Effort::Steps(_) => Err("it chooses its steps".into()),
-        }),
-    });
+    let mut series: Vec<Series> = Who::all().map(|who| sweep(problem, who, scope)).collect();
+    time(problem, &mut series, scope);
     Diagram {
         card: problem.card().clone(),
-        series: series.collect(),
+        series,
+    }
+}
+
+fn solve(problem: &dyn Solve, who: Who, effort: Effort, count: bool) -> Result<End, String> {
+    match (who, effort) {
+        (Who::Method(method), _) => problem.by_method(method, effort, count),
+        (Who::Solver(solver), Effort::Tolerance(tolerance)) => problem.by_solver(solver, tolerance),
+        (Who::Solver(_), Effort::Steps(_)) => Err("it chooses its steps".into()),
+    }
+}
+
+/// Repeats all runs in turn, and again: what else the machine does for a while then slows one
+/// sample of many runs, not all samples of one.
+fn time(problem: &dyn Solve, series: &mut [Series], scope: Scope) {
+    let mut timed: Vec<(Who, &mut Run, Vec<f64>)> = Vec::new();
+    for series in series {
+        let who = series.who;
+        let succeeded = series.runs.iter_mut().filter(|run| run.outcome.is_ok());
+        timed.extend(succeeded.map(|run| (who, run, Vec::new())));
+    }
+    for _ in 0..scope.repeats() {
+        for (who, run, samples) in &mut timed {
+            let rough = run.outcome.as_ref().map_or(0.0, |point| point.seconds);
+            let solve = || solve(problem, *who, run.effort, false);
+            samples.push(stopwatch::sample(rough, solve));
+        }
+    }
+    for (_, run, mut samples) in timed {
+        if let Ok(point) = &mut run.outcome {
+            point.seconds = stopwatch::middle(&mut samples);
+        }
     }
 }
 
@@ -119,22 +137,21 @@ fn step_counts(card: &Card, scope: Scope) -> Vec<Effort> {
         .collect()
 }
 
-fn sweep(
-    who: Who,
-    efforts: Vec<Effort>,
-    scope: Scope,
-    solve: impl Fn(Effort, bool) -> Result<End, String>,
-) -> Series {
+fn sweep(problem: &dyn Solve, who: Who, scope: Scope) -> Series {
+    let efforts = match who {
+        Who::Method(method) if !method.adaptive => step_counts(problem.card(), scope),
+        _ => tolerances(scope),
+    };
     let mut runs: Vec<Run> = Vec::new();
     let mut ended = "the sweep is complete";
     let mut last_error = f64::INFINITY;
     for effort in efforts {
         let clock = stopwatch::start();
-        let counted = solve(effort, true).and_then(refuse_nonsense);
+        let end = solve(problem, who, effort, true).and_then(refuse_nonsense);
         let cost = clock.seconds();
-        let outcome = counted.map(|end| Point {
+        let outcome = end.map(|end| Point {
             error: end.error,
-            seconds: stopwatch::median(scope, || solve(effort, false)),
+            seconds: cost,
             evaluations: end.evaluations,
             jacobians: end.jacobians,
         });

@@ -1,7 +1,6 @@
 //! How much is measured.
 
 use std::ops::Range;
-use std::time::Duration;
 
 /// The whole report, or one in seconds that shows its form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,14 +32,9 @@ impl Scope {
         self.either(0.1, 0.003)
     }
 
-    /// Fewest and most timed repeats.
-    pub(crate) fn repeats(self) -> [usize; 2] {
-        self.either([3, 15], [1, 3])
-    }
-
-    /// Time after which only the fewest repeats are made.
-    pub(crate) fn patience(self) -> Duration {
-        self.either(Duration::from_millis(30), Duration::from_millis(1))
+    /// Timed repeats of each run, an odd number so that there is one in the middle.
+    pub(crate) fn repeats(self) -> usize {
+        self.either(5, 1)
     }
 
     /// Orbits over which drift is watched.
@@ -56,5 +50,10 @@ impl Scope {
     /// Columns of the stability map for each factor of ten.
     pub(crate) fn columns_per_decade(self) -> i32 {
         self.either(12, 4)
+    }
+
+    /// From one step to the next where a limit of stability is looked for.
+    pub(crate) fn search_factor(self) -> f64 {
+        self.either(1.004, 1.05)
     }
 }

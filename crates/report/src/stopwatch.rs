@@ -3,8 +3,6 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use crate::scope::Scope;
-
 pub(crate) struct Stopwatch(Instant);
 
 pub(crate) fn start() -> Stopwatch {
@@ -18,29 +16,34 @@ impl Stopwatch {
 }
 
 /// A sample shorter than this is one of several runs, s: the clock itself takes some 25 ns.
-const LEAST_SAMPLE: f64 = 20e-6;
+const LEAST_SAMPLE: f64 = 100e-6;
 
-/// Median time of a run, s, after one to warm up.
-pub(crate) fn median<T>(scope: Scope, mut run: impl FnMut() -> T) -> f64 {
+/// Time of a run, s, that is known to take about `rough`: once, or over so many that the clock
+/// does not matter, after one to warm up.
+pub(crate) fn sample<T>(rough: f64, mut run: impl FnMut() -> T) -> f64 {
+    let batch = (LEAST_SAMPLE / rough.max(1e-9)).ceil() as usize;
+    // A long run warms itself up.
+    if batch > 1 {
+        black_box(run());
+    }
+    let clock = start();
+    for _ in 0..batch {
+        black_box(run());
+    }
+    clock.seconds() / batch as f64
+}
+
+/// Median time of a run, s.
+pub(crate) fn median<T>(repeats: usize, mut run: impl FnMut() -> T) -> f64 {
     let clock = start();
     black_box(run());
-    let rough = clock.seconds().max(1e-9);
-    let batch = (LEAST_SAMPLE / rough).ceil().max(1.0) as usize;
-    let [fewest, most] = scope.repeats();
-    let patience = scope.patience().as_secs_f64();
-    let whole = start();
-    let mut samples = Vec::new();
-    while samples.len() < most && (samples.len() < fewest || whole.seconds() < patience) {
-        let clock = start();
-        for _ in 0..batch {
-            black_box(run());
-        }
-        samples.push(clock.seconds() / batch as f64);
-    }
+    let rough = clock.seconds();
+    let mut samples: Vec<f64> = (0..repeats).map(|_| sample(rough, &mut run)).collect();
     middle(&mut samples)
 }
 
-fn middle(samples: &mut [f64]) -> f64 {
+/// The median.
+pub(crate) fn middle(samples: &mut [f64]) -> f64 {
     samples.sort_by(f64::total_cmp);
     let half = samples.len() / 2;
     match samples.len() % 2 {

@@ -14,6 +14,7 @@ pub(crate) fn all(results: &Results) -> Vec<Table> {
         methods(),
         least_errors(results),
         runs(results),
+        sweeps(results),
         failed_runs(results),
         beside_peers(results),
         drift(results),
@@ -85,6 +86,24 @@ pub(crate) fn runs(results: &Results) -> Table {
                     point.jacobians.to_string(),
                 ]);
             }
+        }
+    }
+    table
+}
+
+/// How many runs each sweep has, and why not more.
+pub(crate) fn sweeps(results: &Results) -> Table {
+    let head = ["problem", "who", "runs", "of these failed", "ended because"];
+    let mut table = Table::new("sweeps", "Every sweep", &head);
+    for diagram in &results.diagrams {
+        for series in &diagram.series {
+            table.rows.push(vec![
+                diagram.card.name.into(),
+                series.who.name().into(),
+                series.runs.len().to_string(),
+                (series.runs.len() - series.points().count()).to_string(),
+                series.ended.into(),
+            ]);
         }
     }
     table
@@ -220,25 +239,24 @@ pub(crate) fn stability(results: &Results) -> Table {
 fn cell(outcome: &Outcome) -> String {
     let finding = &outcome.finding;
     match (finding.verdict, finding.figure) {
-        (Verdict::Pass, Some(figure)) => format!("pass {}", short(figure)),
-        (Verdict::Fail, Some(figure)) => format!("FAIL {}", short(figure)),
+        (Verdict::Pass | Verdict::Fail, Some(figure)) => {
+            format!("{} {}", finding.verdict.name(), short(figure))
+        }
         (verdict, _) => verdict.name().into(),
     }
 }
 
-/// Case by method.
+/// Case by method. What does not depend on the method is said once, beside the case.
 pub(crate) fn matrix(results: &Results) -> Table {
-    let mut head = vec!["case", "what"];
+    let mut head = vec!["case", "what", "any method"];
     head.extend(METHODS.iter().map(|method| method.title));
     let mut table = Table::new("hard-case-matrix", "Hard cases by method", &head);
     for case in &CASES {
+        let of_case = || results.cases.iter().filter(|o| o.case.number == case.number);
+        let of = |method| of_case().find(|o| o.method == method).map(cell);
         let mut row = vec![case.number.to_string(), case.title.to_owned()];
-        for method in METHODS {
-            let outcome = results.cases.iter().find(|outcome| {
-                outcome.case.number == case.number && outcome.method.is_none_or(|m| m == method)
-            });
-            row.push(outcome.map(cell).unwrap_or_default());
-        }
+        row.push(of(None).unwrap_or_default());
+        row.extend(METHODS.map(|method| of(Some(method)).unwrap_or_default()));
         table.rows.push(row);
     }
     table

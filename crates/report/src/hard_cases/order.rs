@@ -101,8 +101,11 @@ fn error(method: &'static Method, motion: &Motion, steps: u32) -> Option<f64> {
     off.is_finite().then_some(off)
 }
 
-/// Errors below this are made of rounding too.
-const ROUNDING: f64 = 2e-12;
+/// An error is free of rounding from this on: a hundred times what that makes of this many steps if
+/// they add up at random.
+fn rounding(steps: u32) -> f64 {
+    100.0 * f64::EPSILON * f64::from(steps).sqrt()
+}
 
 /// Most steps in which rounding does not add up.
 const MOST_STEPS: u32 = 1 << 15;
@@ -114,7 +117,7 @@ fn slope(method: &'static Method, motion: &Motion) -> Option<f64> {
     let mut steps = 4;
     while steps <= MOST_STEPS {
         let now = error(method, motion, steps);
-        if now.is_some_and(|now| now < ROUNDING) {
+        if now.is_some_and(|now| now < rounding(steps)) {
             break;
         }
         if let (Some(last), Some(now)) = (last, now) {

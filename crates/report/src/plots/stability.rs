@@ -103,9 +103,11 @@ fn draw(results: &Results) -> Vec<Figure> {
     let picture = Picture::new(1, 2)
         .with_plots(plots)
         .with_layouts(layouts)
-        .with_shared_legend_right_top()
+        .with_shared_legend_right_middle()
         .with_shared_legend_entries(legend)
-        .with_figure_size(1080.0, 420.0);
+        // The left one has the names of the methods beside it.
+        .with_cell_size(405.0, 400.0)
+        .with_col_width(0, 530.0);
     vec![Figure {
         name: "stability".into(),
         heading: None,
