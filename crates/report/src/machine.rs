@@ -12,8 +12,17 @@ pub(crate) fn facts() -> Vec<(&'static str, String)> {
         flags => format!("RUSTFLAGS {flags}"),
     };
     vec![
-        ("Processor", format!("{}, {threads} threads for this program; the report uses one", cpu())),
-        ("System", format!("{} on {}", std::env::consts::OS, std::env::consts::ARCH)),
+        (
+            "Processor",
+            format!(
+                "{}, {threads} threads for this program; the report uses one",
+                cpu()
+            ),
+        ),
+        (
+            "System",
+            format!("{} on {}", std::env::consts::OS, std::env::consts::ARCH),
+        ),
         (
             "Compiled by",
             format!("{} for {}", env!("REPORT_RUSTC"), env!("REPORT_TARGET")),
@@ -45,22 +54,34 @@ fn cpu() -> String {
 const CRATES: [&str; 4] = ["ode_solvers", "differential-equations", "nalgebra", "kuva"];
 
 fn versions() -> String {
-    let own = format!("sim-core and report {}{}", env!("CARGO_PKG_VERSION"), commit());
+    let own = format!(
+        "sim-core and report {}{}",
+        env!("CARGO_PKG_VERSION"),
+        commit()
+    );
     let lock = include_str!("../../../Cargo.lock");
-    let found = CRATES.iter().flat_map(|name| {
-        locked(lock, name).map(move |version| format!("{name} {version}"))
-    });
-    [own].into_iter().chain(found).collect::<Vec<_>>().join(", ")
+    let found = CRATES
+        .iter()
+        .flat_map(|name| locked(lock, name).map(move |version| format!("{name} {version}")));
+    [own]
+        .into_iter()
+        .chain(found)
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Versions of a crate in a lock file.
 fn locked<'a>(lock: &'a str, name: &'a str) -> impl Iterator<Item = &'a str> {
     let packages = lock.split("[[package]]").filter(move |package| {
-        let line = package.lines().find_map(|line| line.strip_prefix("name = "));
+        let line = package
+            .lines()
+            .find_map(|line| line.strip_prefix("name = "));
         line.is_some_and(|quoted| quoted.trim_matches('"') == name)
     });
     packages.filter_map(|package| {
-        let version = package.lines().find_map(|line| line.strip_prefix("version = "));
+        let version = package
+            .lines()
+            .find_map(|line| line.strip_prefix("version = "));
         version.map(|quoted| quoted.trim_matches('"'))
     })
 }
@@ -69,18 +90,29 @@ fn locked<'a>(lock: &'a str, name: &'a str) -> impl Iterator<Item = &'a str> {
 fn commit() -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut git = Command::new("git");
-    let git = git.current_dir(folder).args(["describe", "--always", "--dirty"]);
+    let git = git
+        .current_dir(folder)
+        .args(["describe", "--always", "--dirty"]);
     let output = git.output().ok().filter(|output| output.status.success());
     output.map_or(String::new(), |output| {
-        format!(" (commit {})", String::from_utf8_lossy(&output.stdout).trim())
+        format!(
+            " (commit {})",
+            String::from_utf8_lossy(&output.stdout).trim()
+        )
     })
 }
 
 fn date() -> String {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let since = SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .unwrap_or_default();
     let [year, month, day] = civil(since.as_secs() / 86_400);
     let minutes = since.as_secs() / 60 % 1440;
-    format!("{year}-{month:02}-{day:02} {:02}:{:02} UTC", minutes / 60, minutes % 60)
+    format!(
+        "{year}-{month:02}-{day:02} {:02}:{:02} UTC",
+        minutes / 60,
+        minutes % 60
+    )
 }
 
 /// Year, month and day of a day since 1970-01-01 (Hinnant, "chrono-compatible low-level date

@@ -47,7 +47,11 @@ struct Args {
 
 fn main() -> anyhow::Result<()> {
     let args = Args::parse();
-    let scope = if args.quick { Scope::Quick } else { Scope::Full };
+    let scope = if args.quick {
+        Scope::Quick
+    } else {
+        Scope::Full
+    };
     // Found out before minutes are spent.
     fs::create_dir_all(&args.output)
         .with_context(|| format!("cannot make the folder {}", args.output.display()))?;
@@ -67,7 +71,10 @@ fn write(folder: &Path, results: &Results, scope: Scope) -> anyhow::Result<()> {
         let path = folder.join(name);
         fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
     };
-    let plots: Vec<Drawn> = PLOTS.iter().map(|&plot| (plot, (plot.draw)(results))).collect();
+    let plots: Vec<Drawn> = PLOTS
+        .iter()
+        .map(|&plot| (plot, (plot.draw)(results)))
+        .collect();
     let facts = machine::facts();
     save("index.html", &page::render(results, &plots, &facts, scope))?;
     for figure in plots.iter().flat_map(|(_, figures)| figures) {
@@ -77,10 +84,15 @@ fn write(folder: &Path, results: &Results, scope: Scope) -> anyhow::Result<()> {
     for table in &tables {
         save(&format!("{}.csv", table.name), &table.csv())?;
     }
-    let facts = facts.iter().map(|(name, value)| format!("- {name}: {value}\n"));
+    let facts = facts
+        .iter()
+        .map(|(name, value)| format!("- {name}: {value}\n"));
     let facts: String = facts.collect();
     let tables: String = tables.iter().map(|table| table.markdown()).collect();
-    save("report.md", &format!("# Cowbell: speed against error\n\n{facts}\n{tables}"))
+    save(
+        "report.md",
+        &format!("# Cowbell: speed against error\n\n{facts}\n{tables}"),
+    )
 }
 
 #[cfg(test)]

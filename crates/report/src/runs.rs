@@ -173,7 +173,9 @@ fn sweep(problem: &dyn Solve, who: Who, scope: Scope) -> Series {
 fn refuse_nonsense(end: End) -> Result<End, String> {
     match end.error {
         error if error <= LARGEST_ERROR => Ok(end),
-        error if error.is_finite() => Err(format!("nothing of the answer is left: error {error:.1e}")),
+        error if error.is_finite() => {
+            Err(format!("nothing of the answer is left: error {error:.1e}"))
+        }
         _ => Err("beyond all numbers".into()),
     }
 }

@@ -111,7 +111,10 @@ mod tests {
     fn what_has_a_meaning_in_a_format_is_escaped_there() {
         assert_eq!(table().csv(), "a,b\n\"x, \"\"y\"\"\",<p|q>\n");
         let html = table().html().into_string();
-        assert!(html.contains("A &amp; B") && html.contains("&lt;p|q&gt;"), "{html}");
+        assert!(
+            html.contains("A &amp; B") && html.contains("&lt;p|q&gt;"),
+            "{html}"
+        );
         assert!(table().markdown().ends_with("| x, \"y\" | <p\\|q> |\n\n"));
     }
 

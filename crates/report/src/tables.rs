@@ -57,7 +57,10 @@ pub(crate) fn least_errors(results: &Results) -> Table {
     for who in Who::all() {
         let mut row = vec![who.name().to_owned()];
         for diagram in &results.diagrams {
-            let points = diagram.by_name(who.name()).into_iter().flat_map(Series::points);
+            let points = diagram
+                .by_name(who.name())
+                .into_iter()
+                .flat_map(Series::points);
             let best = points.min_by(|a, b| a.error.total_cmp(&b.error));
             row.push(best.map_or("none".into(), |best| {
                 format!("{} in {}", short(best.error), seconds(best.seconds))
@@ -70,7 +73,15 @@ pub(crate) fn least_errors(results: &Results) -> Table {
 
 /// Every run that succeeded.
 pub(crate) fn runs(results: &Results) -> Table {
-    let head = ["problem", "who", "effort", "error", "time, s", "evaluations", "Jacobians"];
+    let head = [
+        "problem",
+        "who",
+        "effort",
+        "error",
+        "time, s",
+        "evaluations",
+        "Jacobians",
+    ];
     let mut table = Table::new("work-precision", "Every run", &head);
     for diagram in &results.diagrams {
         for series in &diagram.series {
@@ -111,12 +122,22 @@ pub(crate) fn sweeps(results: &Results) -> Table {
 
 /// Every run that did not: those that follow each other in a sweep as one row.
 pub(crate) fn failed_runs(results: &Results) -> Table {
-    let head = ["problem", "who", "runs", "from", "to", "why, the last of them"];
+    let head = [
+        "problem",
+        "who",
+        "runs",
+        "from",
+        "to",
+        "why, the last of them",
+    ];
     let title = "Runs that failed, or whose error is 1 or more";
     let mut table = Table::new("failed-runs", title, &head);
     for diagram in &results.diagrams {
         for series in &diagram.series {
-            for group in series.runs.chunk_by(|a, b| a.outcome.is_err() && b.outcome.is_err()) {
+            for group in series
+                .runs
+                .chunk_by(|a, b| a.outcome.is_err() && b.outcome.is_err())
+            {
                 let (first, last) = (&group[0], &group[group.len() - 1]);
                 let Err(why) = &last.outcome else { continue };
                 table.rows.push(vec![
@@ -138,7 +159,14 @@ const GOALS: [f64; 2] = [1e-4, 1e-6];
 
 /// Our solvers and their peers at equal error.
 pub(crate) fn beside_peers(results: &Results) -> Table {
-    let head = ["problem", "error", "who", "time", "evaluations", "time, sim-core = 1"];
+    let head = [
+        "problem",
+        "error",
+        "who",
+        "time",
+        "evaluations",
+        "time, sim-core = 1",
+    ];
     let title = "Time and evaluations at equal error, between the runs on both sides of it";
     let mut table = Table::new("beside-peers", title, &head);
     for diagram in &results.diagrams {
@@ -173,7 +201,9 @@ pub(crate) fn beside_peers(results: &Results) -> Table {
 /// neighbours that have it between them.
 fn at_error(diagram: &Diagram, who: &str, goal: f64) -> Option<(f64, f64)> {
     let points: Vec<Point> = diagram.by_name(who)?.points().collect();
-    let pair = points.windows(2).rfind(|p| p[0].error > goal && p[1].error <= goal)?;
+    let pair = points
+        .windows(2)
+        .rfind(|p| p[0].error > goal && p[1].error <= goal)?;
     let (above, below) = (pair[0], pair[1]);
     let along = (above.error / goal).ln() / (above.error / below.error.max(1e-300)).ln();
     let between = |a: f64, b: f64| a * (b / a).powf(along);
@@ -213,7 +243,12 @@ pub(crate) fn drift(results: &Results) -> Table {
 }
 
 pub(crate) fn stability(results: &Results) -> Table {
-    let head = ["method", "damping ratio", "largest stable ω dt, measured", "by theory"];
+    let head = [
+        "method",
+        "damping ratio",
+        "largest stable ω dt, measured",
+        "by theory",
+    ];
     let title = "Largest stable step, and what Method::stable_dt says";
     let mut table = Table::new("stability", title, &head);
     let limit = |z: f64| match z {
@@ -252,7 +287,12 @@ pub(crate) fn matrix(results: &Results) -> Table {
     head.extend(METHODS.iter().map(|method| method.title));
     let mut table = Table::new("hard-case-matrix", "Hard cases by method", &head);
     for case in &CASES {
-        let of_case = || results.cases.iter().filter(|o| o.case.number == case.number);
+        let of_case = || {
+            results
+                .cases
+                .iter()
+                .filter(|o| o.case.number == case.number)
+        };
         let of = |method| of_case().find(|o| o.method == method).map(cell);
         let mut row = vec![case.number.to_string(), case.title.to_owned()];
         row.push(of(None).unwrap_or_default());
@@ -264,7 +304,15 @@ pub(crate) fn matrix(results: &Results) -> Table {
 
 /// The same with tolerance and reason.
 pub(crate) fn hard_cases(results: &Results) -> Table {
-    let head = ["case", "what", "method", "figure", "tolerance", "verdict", "why"];
+    let head = [
+        "case",
+        "what",
+        "method",
+        "figure",
+        "tolerance",
+        "verdict",
+        "why",
+    ];
     let mut table = Table::new("hard-cases", "Hard cases, one by one", &head);
     for outcome in &results.cases {
         let finding = &outcome.finding;

@@ -32,7 +32,10 @@ pub(super) fn test() -> Finding {
     ));
     let refused = [0.0, -1.0, f64::NAN, f64::INFINITY];
     let refused = refused.map(|dt| FixedStep::new(dt, Duration::from_secs(1)).is_err());
-    wrong += refused.iter().map(|&is_refused| u32::from(!is_refused)).sum::<u32>();
+    wrong += refused
+        .iter()
+        .map(|&is_refused| u32::from(!is_refused))
+        .sum::<u32>();
     words.push("dt of 0, -1, NaN and ∞ refused".into());
     Finding::within(f64::from(wrong), 0.0, words.join("; "))
 }

@@ -11,32 +11,66 @@ pub(super) fn test() -> Finding {
     for bad in BAD {
         let vector = DVec3::new(0.0, bad, 0.0);
         for (field, body) in [
-            ("position", Body { position: vector, ..Body::default() }),
-            ("velocity", Body { velocity: vector, ..Body::default() }),
-            ("force", Body { force: vector, ..Body::default() }),
+            (
+                "position",
+                Body {
+                    position: vector,
+                    ..Body::default()
+                },
+            ),
+            (
+                "velocity",
+                Body {
+                    velocity: vector,
+                    ..Body::default()
+                },
+            ),
+            (
+                "force",
+                Body {
+                    force: vector,
+                    ..Body::default()
+                },
+            ),
         ] {
             tally.refused(field, |world| world.add(body).map(drop));
         }
         tally.refused("position", |world| world.set_position(0, vector));
         tally.refused("velocity", |world| world.set_velocity(0, vector));
         tally.refused("force", |world| world.set_force(0, vector));
-        let acceleration = Force::Gravity { acceleration: vector };
-        tally.refused("acceleration", |world| world.add_force(acceleration).map(drop));
+        let acceleration = Force::Gravity {
+            acceleration: vector,
+        };
+        tally.refused("acceleration", |world| {
+            world.add_force(acceleration).map(drop)
+        });
     }
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let body = Body { mass: bad, ..Body::default() };
+        let body = Body {
+            mass: bad,
+            ..Body::default()
+        };
         tally.refused("mass", |world| world.add(body).map(drop));
         tally.refused("mass", |world| world.set_mass(0, bad));
         tally.refused("dt", |world| {
-            world.set_settings(Settings { dt: bad, ..Settings::default() })
+            world.set_settings(Settings {
+                dt: bad,
+                ..Settings::default()
+            })
         });
         let coefficient = if bad == 0.0 { -0.5 } else { bad };
-        let drag = Force::LinearDrag { body: None, coefficient };
+        let drag = Force::LinearDrag {
+            body: None,
+            coefficient,
+        };
         tally.refused("coefficient", |world| world.add_force(drag).map(drop));
     }
     for bad in [0.0, -1.0, f64::NAN, 2.0] {
         tally.refused("tolerance", |world| {
-            world.set_settings(Settings { tolerance: bad, ..Settings::default() })
+            world.set_settings(Settings {
+                tolerance: bad,
+                ..Settings::default()
+            })
         });
     }
     meshes(&mut tally);
@@ -58,7 +92,9 @@ impl Tally {
     fn refused<E: ToString>(&mut self, field: &str, bad: impl FnOnce(&mut World) -> Result<(), E>) {
         self.tried += 1;
         let [mut world, mut unharmed] = [(); 2].map(|()| stone());
-        let named = bad(&mut world).err().is_some_and(|error| error.to_string().contains(field));
+        let named = bad(&mut world)
+            .err()
+            .is_some_and(|error| error.to_string().contains(field));
         let _ = (world.step(), unharmed.step());
         let same = world.position(0) == unharmed.position(0) && world.len() == unharmed.len();
         if !(named && same) {

@@ -30,7 +30,10 @@ pub(super) fn test(method: &'static Method, measured: &Measured<'_>) -> Finding 
     let largest = |orbits: &[crate::drift::Orbit]| {
         orbits.iter().map(|orbit| orbit.energy).fold(0.0, f64::max)
     };
-    let (first, second) = (largest(&drift.orbits[..half]), largest(&drift.orbits[half..]));
+    let (first, second) = (
+        largest(&drift.orbits[..half]),
+        largest(&drift.orbits[half..]),
+    );
     let why = format!(
         "energy error {energy:.1e}, in the second half of the orbits {:.3} times that in the first",
         second / first

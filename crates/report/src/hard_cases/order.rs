@@ -22,7 +22,12 @@ pub(super) fn test(method: &'static Method, _: &Measured<'_>) -> Finding {
         worst = worst.max((slope - claimed).abs());
         words.push(format!("{name} {slope:.3}"));
     }
-    Finding::within(worst, 0.05, words.join(", "))
+    let tolerance = match method.order {
+        0..=4 => 0.05,
+        // Rounding hides the steps so short that the leading term of the error is alone.
+        _ => 0.5,
+    };
+    Finding::within(worst, tolerance, words.join(", "))
 }
 
 /// Accelerations with the motion at the start and at the end.
@@ -73,17 +78,34 @@ fn drag() -> Motion {
     }
 }
 
-/// Half an orbit, from the perihelion to the aphelion.
+/// Part of an orbit from the aphelion, where it is smooth enough for high orders to show before
+/// rounding hides them.
 fn kepler() -> Motion {
-    let e = 0.6f64;
-    let speed = ((1.0 + e) / (1.0 - e)).sqrt();
+    let (e, time) = (0.6f64, 2.0);
     Motion {
         acceleration: |x, _| -x / (x.length_squared() * x.length()),
         by_velocity: false,
-        start: [(1.0 - e) * DVec3::X, speed * DVec3::Y],
-        end: [-(1.0 + e) * DVec3::X, -DVec3::Y / speed],
-        time: PI,
+        start: on_ellipse(e, PI),
+        end: on_ellipse(e, eccentric_anomaly(e, PI + time)),
+        time,
     }
+}
+
+/// Position and velocity at an eccentric anomaly, with half axis 1 and `G M = 1`.
+fn on_ellipse(e: f64, anomaly: f64) -> [DVec3; 2] {
+    let ((sin, cos), width) = (anomaly.sin_cos(), (1.0 - e * e).sqrt());
+    let rate = 1.0 / (1.0 - e * cos);
+    [
+        DVec3::new(cos - e, width * sin, 0.0),
+        DVec3::new(-rate * sin, rate * width * cos, 0.0),
+    ]
+}
+
+/// Solves Kepler's equation `E - e sin E = M` by Newton's method.
+fn eccentric_anomaly(e: f64, mean: f64) -> f64 {
+    (0..20).fold(mean, |anomaly, _| {
+        anomaly - (anomaly - e * anomaly.sin() - mean) / (1.0 - e * anomaly.cos())
+    })
 }
 
 /// The error after so many steps.
@@ -101,10 +123,10 @@ fn error(method: &'static Method, motion: &Motion, steps: u32) -> Option<f64> {
     off.is_finite().then_some(off)
 }
 
-/// An error is free of rounding from this on: a hundred times what that makes of this many steps if
-/// they add up at random.
+/// An error is free of rounding from this on: two hundred times what that comes to in so many steps
+/// if it adds up at random.
 fn rounding(steps: u32) -> f64 {
-    100.0 * f64::EPSILON * f64::from(steps).sqrt()
+    200.0 * f64::EPSILON * f64::from(steps).sqrt()
 }
 
 /// Most steps in which rounding does not add up.
@@ -127,4 +149,24 @@ fn slope(method: &'static Method, motion: &Motion) -> Option<f64> {
         steps *= 2;
     }
     slope
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The planet's end by Kepler's equation and by a much tighter solve are the same.
+    #[test]
+    fn keplers_equation_agrees_with_stepping() {
+        let dop853 = Method::named("dop853").expect("it is in the table");
+        let end = error(dop853, &kepler(), 64).expect("an error");
+        assert!(end < 1e-13, "{end}");
+    }
+
+    #[test]
+    fn a_wrong_claim_is_found_out() {
+        let rk4 = Method::named("rk4").expect("it is in the table");
+        let found = slope(rk4, &oscillator()).expect("a slope");
+        assert!((found - 4.0).abs() < 0.05 && (found - 3.0).abs() > 0.5);
+    }
 }

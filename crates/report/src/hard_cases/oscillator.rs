@@ -59,7 +59,11 @@ fn oscillate(method: &'static Method, dt: f64) -> Result<Finding, String> {
         false => 1e-10,
     };
     let why = format!("amplitude {amplitude:.5e} at dt = {dt:.4}: {formula}");
-    Ok(Finding::within((amplitude / exact - 1.0).abs(), tolerance, why))
+    Ok(Finding::within(
+        (amplitude / exact - 1.0).abs(),
+        tolerance,
+        why,
+    ))
 }
 
 fn started(method: &'static Method, dt: f64, x: DVec3, v: DVec3) -> Result<World, String> {

@@ -71,7 +71,9 @@ fn limited(method: &'static Method, limit: f64) -> Result<Finding, String> {
         return Err(format!("grows at 0.99 of its limit {limit:.4e} s"));
     }
     let Some((factor, step, error)) = reported(method, limit)? else {
-        return Err(format!("beyond its limit {limit:.4e} s nothing is reported in {MOST_STEPS} steps"));
+        return Err(format!(
+            "beyond its limit {limit:.4e} s nothing is reported in {MOST_STEPS} steps"
+        ));
     };
     match worlds::named_limit(&error) {
         Some(named) => Ok(Finding::within(

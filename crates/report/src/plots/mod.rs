@@ -18,11 +18,7 @@ pub(crate) struct Plot {
     pub(crate) draw: fn(&Results) -> Vec<Figure>,
 }
 
-pub(crate) static PLOTS: [&Plot; 3] = [
-    &work_precision::PLOT,
-    &drift::PLOT,
-    &stability::PLOT,
-];
+pub(crate) static PLOTS: [&Plot; 3] = [&work_precision::PLOT, &drift::PLOT, &stability::PLOT];
 
 /// A picture with what is said of it.
 #[derive(Clone, Debug)]

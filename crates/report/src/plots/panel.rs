@@ -134,7 +134,9 @@ fn drawn((style, points): &Line, panel: &Panel, y: &Axis) -> [Plot; 2] {
 }
 
 fn powers_of_ten() -> TickFormat {
-    TickFormat::Custom(Arc::new(|exponent: f64| power_of_ten(exponent.round() as i32)))
+    TickFormat::Custom(Arc::new(|exponent: f64| {
+        power_of_ten(exponent.round() as i32)
+    }))
 }
 
 /// `10⁻⁸`
@@ -147,7 +149,10 @@ pub(super) fn power_of_ten(exponent: i32) -> String {
         '3' => '³',
         digit => char::from_u32('⁴' as u32 + digit as u32 - '4' as u32).unwrap_or(digit),
     };
-    format!("10{}", exponent.to_string().chars().map(digit).collect::<String>())
+    format!(
+        "10{}",
+        exponent.to_string().chars().map(digit).collect::<String>()
+    )
 }
 
 #[cfg(test)]

@@ -36,7 +36,10 @@ const MARKERS: [MarkerShape; 10] = [
 impl Style {
     /// By the place in the table of methods, so that a new one has a style of its own.
     pub(super) fn of_method(method: &'static Method) -> Style {
-        let place = METHODS.iter().position(|m| *m == method).unwrap_or(METHODS.len());
+        let place = METHODS
+            .iter()
+            .position(|m| *m == method)
+            .unwrap_or(METHODS.len());
         let lines = [
             LineStyle::Solid,
             LineStyle::Dashed,
