@@ -60,7 +60,7 @@ impl Table {
 fn class_of(cell: &str) -> Option<&'static str> {
     match cell.split(' ').next() {
         Some("pass") => Some("pass"),
-        Some("FAIL") => Some("fail"),
+        Some("FAIL" | "NO") => Some("fail"),
         _ => None,
     }
 }

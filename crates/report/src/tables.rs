@@ -248,6 +248,7 @@ pub(crate) fn stability(results: &Results) -> Table {
         "damping ratio",
         "largest stable ω dt, measured",
         "by theory",
+        "they agree",
     ];
     let title = "Largest stable step, and what Method::stable_dt says";
     let mut table = Table::new("stability", title, &head);
@@ -261,11 +262,16 @@ pub(crate) fn stability(results: &Results) -> Table {
             z if z.is_infinite() => "all up to 100".into(),
             z => limit(z),
         };
+        let agree = row.measured == row.theory || (row.measured / row.theory - 1.0).abs() < 2e-3;
         table.rows.push(vec![
             row.method.title.into(),
-            format!("{}", row.damping.ratio),
+            row.damping.ratio.to_string(),
             measured,
             limit(row.theory),
+            match agree {
+                true => "yes, to 0.2 %".into(),
+                false => "NO".into(),
+            },
         ]);
     }
     table

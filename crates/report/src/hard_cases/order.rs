@@ -123,10 +123,17 @@ fn error(method: &'static Method, motion: &Motion, steps: u32) -> Option<f64> {
     off.is_finite().then_some(off)
 }
 
-/// An error is free of rounding from this on: two hundred times what that comes to in so many steps
-/// if it adds up at random.
+/// What rounding comes to in so many steps if it adds up at random.
 fn rounding(steps: u32) -> f64 {
-    200.0 * f64::EPSILON * f64::from(steps).sqrt()
+    f64::EPSILON * f64::from(steps).sqrt()
+}
+
+/// How many times that an error must be to be judged: the rougher the tolerance, the fewer.
+fn margin(method: &Method) -> f64 {
+    match method.order {
+        0..=4 => 200.0,
+        _ => 30.0,
+    }
 }
 
 /// Most steps in which rounding does not add up.
@@ -139,7 +146,7 @@ fn slope(method: &'static Method, motion: &Motion) -> Option<f64> {
     let mut steps = 4;
     while steps <= MOST_STEPS {
         let now = error(method, motion, steps);
-        if now.is_some_and(|now| now < rounding(steps)) {
+        if now.is_some_and(|now| now < margin(method) * rounding(steps)) {
             break;
         }
         if let (Some(last), Some(now)) = (last, now) {

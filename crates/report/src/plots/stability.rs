@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use kuva::backend::svg::SvgBackend;
 use kuva::plot::scatter::MarkerShape;
-use kuva::plot::{LegendEntry, LegendShape, ScatterPlot};
+use kuva::plot::{LegendEntry, LegendShape, LinePlot, ScatterPlot};
 use kuva::render::figure::Figure as Picture;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot as Drawn;
@@ -19,9 +19,11 @@ pub(super) static PLOT: Plot = Plot {
     title: "Stability map",
     about: "An oscillator of rate ω is stepped thousands of times by each dt. Stable: it dies \
             out; marginal: its amplitude stays within 1 % over half of the steps; unstable: it \
-            grows. The bar is the limit that theory gives, from the eigenvalues of a step \
-            (Hairer, Wanner 1996, Solving Ordinary Differential Equations II, sec. IV.2); a method \
-            without a bar is stable at every step, or, undamped forward Euler, at none.",
+            grows. The wide bar is the limit that theory gives, from the eigenvalues of a step \
+            (Hairer, Wanner 1996, Solving Ordinary Differential Equations II, sec. IV.2), the narrow \
+            one that found by stepping at steps a few thousandths apart; windows of instability \
+            that are narrower than a column lie between the marks. A method without bars is stable \
+            at every step, or, undamped forward Euler, at none.",
     draw,
 };
 
@@ -51,7 +53,8 @@ fn look(class: Class) -> Look {
     }
 }
 
-const LIMIT_COLOR: &str = "#d55e00";
+const THEORY_COLOR: &str = "#d55e00";
+const MEASURED_COLOR: &str = "#005a32";
 
 fn draw(results: &Results) -> Vec<Figure> {
     let mut plots = Vec::new();
@@ -94,12 +97,16 @@ fn draw(results: &Results) -> Vec<Figure> {
         .into_iter()
         .map(|class| entry(class.name(), look(class).color, look(class).marker))
         .collect();
-    legend.push(LegendEntry {
-        label: "limit by theory".into(),
-        color: LIMIT_COLOR.into(),
+    let limits = [
+        ("limit by theory (wide)", THEORY_COLOR),
+        ("limit found (narrow)", MEASURED_COLOR),
+    ];
+    legend.extend(limits.map(|(label, color)| LegendEntry {
+        label: label.into(),
+        color: color.into(),
         shape: LegendShape::Rect,
         dasharray: None,
-    });
+    }));
     let picture = Picture::new(1, 2)
         .with_plots(plots)
         .with_layouts(layouts)
@@ -138,13 +145,17 @@ fn panel(results: &Results, damping: &Damping) -> (Vec<Drawn>, Vec<&'static str>
         drawn.push(Drawn::Scatter(scatter));
     }
     for (y, row) in rows.iter().enumerate() {
-        if (0.01..100.0).contains(&row.theory) {
-            let bar = [(row.theory, y as f64 - 0.42), (row.theory, y as f64 + 0.42)];
-            let bar = kuva::plot::LinePlot::new()
-                .with_data(bar)
-                .with_color(LIMIT_COLOR)
-                .with_stroke_width(3.0);
-            drawn.push(Drawn::Line(bar));
+        for (limit, color, width) in [
+            (row.theory, THEORY_COLOR, 4.5),
+            (row.measured, MEASURED_COLOR, 1.8),
+        ] {
+            if (0.01..100.0).contains(&limit) {
+                let bar = LinePlot::new()
+                    .with_data([(limit, y as f64 - 0.42), (limit, y as f64 + 0.42)])
+                    .with_color(color)
+                    .with_stroke_width(width);
+                drawn.push(Drawn::Line(bar));
+            }
         }
     }
     (drawn, rows.iter().map(|row| row.method.title).collect())

@@ -192,10 +192,9 @@ impl<E: FirstOrder<N>, const N: usize> Problem<E, N> {
     fn error(&self, state: &[f64; N]) -> f64 {
         let pairs = self.exact.iter().zip(state);
         // `max` would drop a NaN.
-        let worst =
-            pairs
-                .map(|(exact, y)| (exact - y).abs())
-                .fold(0.0, |m, e| if e <= m { m } else { e });
+        let worst = pairs
+            .map(|(exact, y)| (exact - y).abs())
+            .fold(0.0, |m, e| if e <= m { m } else { e });
         worst / self.scale
     }
 }
