@@ -20,7 +20,7 @@ pub(crate) struct Results {
 pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
     let problems = problems::all();
     let count = problems.len();
-    let diagrams: Vec<Diagram> = problems
+    let mut diagrams: Vec<Diagram> = problems
         .iter()
         .enumerate()
         .map(|(i, problem)| {
@@ -29,6 +29,10 @@ pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
             runs::diagram(problem.as_ref(), scope)
         })
         .collect();
+    let passes = scope.repeats();
+    runs::time(&problems, &mut diagrams, scope, |pass| {
+        progress(&format!("timing, pass {pass} of {passes}"));
+    });
     progress("naive against BVH");
     let contact = contact::measure(scope);
     progress("drift");

@@ -80,13 +80,11 @@ const LARGEST_ERROR: f64 = 1.0;
 /// An error below which more steps may not help any more.
 const ROUNDING: f64 = 1e-9;
 
-/// Sweeps everybody over a problem, then times all that has succeeded.
+/// Sweeps everybody over a problem, without times that mean anything yet.
 pub(crate) fn diagram(problem: &dyn Solve, scope: Scope) -> Diagram {
-    let mut series: Vec<Series> = Who::all().map(|who| sweep(problem, who, scope)).collect();
-    time(problem, &mut series, scope);
     Diagram {
         card: problem.card().clone(),
-        series,
+        series: Who::all().map(|who| sweep(problem, who, scope)).collect(),
     }
 }
 
@@ -98,23 +96,31 @@ fn solve(problem: &dyn Solve, who: Who, effort: Effort, count: bool) -> Result<E
     }
 }
 
-/// Repeats all runs in turn, and again: what else the machine does for a while then slows one
-/// sample of many runs, not all samples of one.
-fn time(problem: &dyn Solve, series: &mut [Series], scope: Scope) {
-    let mut timed: Vec<(Who, &mut Run, Vec<f64>)> = Vec::new();
-    for series in series {
-        let who = series.who;
-        let succeeded = series.runs.iter_mut().filter(|run| run.outcome.is_ok());
-        timed.extend(succeeded.map(|run| (who, run, Vec::new())));
+/// Times all runs that have succeeded: repeats all of them in turn, and again. What else the
+/// machine does for a while then slows one sample of many runs, not all samples of one.
+pub(crate) fn time(
+    problems: &[Box<dyn Solve>],
+    diagrams: &mut [Diagram],
+    scope: Scope,
+    mut progress: impl FnMut(usize),
+) {
+    let mut timed: Vec<(&dyn Solve, Who, &mut Run, Vec<f64>)> = Vec::new();
+    for (problem, diagram) in problems.iter().zip(diagrams) {
+        for series in &mut diagram.series {
+            let who = series.who;
+            let succeeded = series.runs.iter_mut().filter(|run| run.outcome.is_ok());
+            timed.extend(succeeded.map(|run| (problem.as_ref(), who, run, Vec::new())));
+        }
     }
-    for _ in 0..scope.repeats() {
-        for (who, run, samples) in &mut timed {
+    for pass in 0..scope.repeats() {
+        progress(pass + 1);
+        for (problem, who, run, samples) in &mut timed {
             let rough = run.outcome.as_ref().map_or(0.0, |point| point.seconds);
-            let solve = || solve(problem, *who, run.effort, false);
+            let solve = || solve(*problem, *who, run.effort, false);
             samples.push(stopwatch::sample(rough, solve));
         }
     }
-    for (_, run, mut samples) in timed {
+    for (.., run, mut samples) in timed {
         if let Ok(point) = &mut run.outcome {
             point.seconds = stopwatch::middle(&mut samples);
         }
@@ -172,7 +178,7 @@ fn sweep(problem: &dyn Solve, who: Who, scope: Scope) -> Series {
 
 fn refuse_nonsense(end: End) -> Result<End, String> {
     match end.error {
-        error if error <= LARGEST_ERROR => Ok(end),
+        error if error < LARGEST_ERROR => Ok(end),
         error if error.is_finite() => {
             Err(format!("nothing of the answer is left: error {error:.1e}"))
         }

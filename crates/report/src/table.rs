@@ -92,6 +92,7 @@ pub(crate) fn seconds(s: f64) -> String {
 pub(crate) fn short(x: f64) -> String {
     match x {
         0.0 => "0".into(),
+        x if x.is_nan() => "–".into(),
         x if x.is_infinite() => "∞".into(),
         x => format!("{x:.1e}"),
     }
