@@ -24,12 +24,14 @@ caption { text-align: left; font-weight: 600; padding: 0.3rem 0 }
 th, td { text-align: left; vertical-align: top; padding: 0.15rem 0.5rem; border-bottom: 1px solid #ddd }
 th { border-bottom: 2px solid #888 } tr { break-inside: avoid }
 .wide { overflow-x: auto } .wide table { font-size: 0.75rem }
+.pass, .fail, .figure { white-space: nowrap }
 .pass { color: #005a32 } .fail { color: #a40000; font-weight: 600 }
 .quick { border: 2px solid #a40000; padding: 0.5rem 1rem }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0.2rem 1rem } dt { font-weight: 600 }
 dd { margin: 0 } nav a { margin-right: 1rem }
+@page { size: A4 landscape; margin: 12mm }
 @media print { body { font-size: 10pt; margin: 0; max-width: none } h2 { break-before: page }
-  .wide { overflow: visible } details > * { display: block } }
+  .wide { overflow: visible } .wide table { font-size: 7pt } }
 ";
 
 pub(crate) fn render(

@@ -28,7 +28,7 @@ impl Table {
                 thead { tr { @for cell in &self.head { th { (cell) } } } }
                 tbody {
                     @for row in &self.rows {
-                        tr { @for cell in row { td class=[class_of(cell)] { (cell) } } }
+                        tr { @for cell in row { td class=(class_of(cell)) { (cell) } } }
                     }
                 }
             }
@@ -56,14 +56,18 @@ impl Table {
     }
 }
 
-/// Verdicts are coloured, and written out for whoever sees no colours.
-fn class_of(cell: &str) -> Option<&'static str> {
+/// Verdicts are coloured, and written out for whoever sees no colours; figures stay on their line.
+fn class_of(cell: &str) -> &'static str {
     match cell.split(' ').next() {
-        Some("pass") => Some("pass"),
-        Some("FAIL" | "NO") => Some("fail"),
-        _ => None,
+        Some("pass") => "pass",
+        Some("FAIL" | "NO") => "fail",
+        _ if cell.len() <= LONGEST_FIGURE => "figure",
+        _ => "",
     }
 }
+
+/// Bytes of a figure with its unit, at most.
+const LONGEST_FIGURE: usize = 12;
 
 fn quoted(cell: &str) -> String {
     match cell.contains([',', '"', '\n']) {

@@ -68,7 +68,7 @@ impl Verdict {
             Verdict::Pass => "pass",
             Verdict::Fail => "FAIL",
             Verdict::DoesNotApply => "does not apply",
-            Verdict::NotMeasured => "not yet measured here",
+            Verdict::NotMeasured => "not yet measured",
         }
     }
 }
