@@ -1,12 +1,15 @@
 //! Problems with known solutions, as first-order systems.
 
+// Each test takes some of them.
+#![allow(dead_code)]
+
 /// Pleiades: seven bodies of mass 1 to 7 in a plane under their own gravitation with `G = 1`
 /// (Hairer, Nørsett, Wanner 1993, Solving Ordinary Differential Equations I, sec. II.10, p. 245).
-pub mod pleiades {
+pub(crate) mod pleiades {
     /// Numbers of a state: x, y, x', y' of seven bodies each.
-    pub const N: usize = 28;
+    pub(crate) const N: usize = 28;
 
-    pub const START: [f64; N] = [
+    pub(crate) const START: [f64; N] = [
         3.0, 3.0, -1.0, -3.0, 2.0, -2.0, 2.0, //
         3.0, -3.0, 2.0, 0.0, 0.0, -4.0, 4.0, //
         0.0, 0.0, 0.0, 0.0, 0.0, 1.75, -1.5, //
@@ -14,24 +17,24 @@ pub mod pleiades {
     ];
 
     /// Positions at t = 3 to the digits printed in the book's test set.
-    pub const END: [f64; 14] = [
+    pub(crate) const END: [f64; 14] = [
         0.3706139143970502,
         3.237284092057233,
         -3.222559032418324,
-        0.6597091455775310,
+        0.659709145577531,
         0.3425581707156584,
         1.562172101400631,
         -0.7003092922212495,
         -3.943437585517392,
-        -3.271380973972550,
+        -3.27138097397255,
         5.225081843456543,
-        -2.590612434977470,
+        -2.59061243497747,
         1.198213693392275,
         -0.2429682344935824,
-        1.091449240428980,
+        1.09144924042898,
     ];
 
-    pub fn slope(y: &[f64; N], dy: &mut [f64; N]) {
+    pub(crate) fn slope(y: &[f64; N], dy: &mut [f64; N]) {
         let (position, velocity) = y.split_at(14);
         let (x, z) = position.split_at(7);
         let (motion, pull) = dy.split_at_mut(14);
@@ -53,13 +56,13 @@ pub mod pleiades {
 }
 
 /// A planet around a sun with `G M = 1` and half axis 1, from its perihelion: one orbit takes 2π.
-pub mod kepler {
-    pub fn start(eccentricity: f64) -> [f64; 4] {
+pub(crate) mod kepler {
+    pub(crate) fn start(eccentricity: f64) -> [f64; 4] {
         let e = eccentricity;
         [1.0 - e, 0.0, 0.0, ((1.0 + e) / (1.0 - e)).sqrt()]
     }
 
-    pub fn slope(y: &[f64; 4], dy: &mut [f64; 4]) {
+    pub(crate) fn slope(y: &[f64; 4], dy: &mut [f64; 4]) {
         let squared = y[0] * y[0] + y[1] * y[1];
         let inverse = 1.0 / (squared * squared.sqrt());
         *dy = [y[2], y[3], -y[0] * inverse, -y[1] * inverse];

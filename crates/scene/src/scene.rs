@@ -1,5 +1,6 @@
 //! A scene in memory.
 
+use std::cmp::Ordering;
 use std::fs;
 use std::path::{self, Path};
 
@@ -92,6 +93,22 @@ impl Scene {
     /// ([`Force::Body`], [`Force::Pair`]) have no text and are left out.
     pub fn to_toml(&self) -> String {
         scene_file::write(self)
+    }
+
+    /// Removes a body and the forces that name it; the others follow their bodies to their new
+    /// places. Panics if there is no such body, as vectors do.
+    pub fn remove_body(&mut self, body: usize) -> SceneBody {
+        let removed = self.bodies.remove(body);
+        let renumber = |i: usize| match i.cmp(&body) {
+            Ordering::Less => Some(i),
+            Ordering::Equal => None,
+            Ordering::Greater => Some(i - 1),
+        };
+        let forces = self.forces.drain(..);
+        self.forces = forces
+            .filter_map(|force| force.renumbered(renumber))
+            .collect();
+        removed
     }
 
     pub(crate) fn body_name(&self, body: usize) -> String {

@@ -182,6 +182,25 @@ damping = 1
 }
 
 #[test]
+fn forces_follow_their_bodies_when_one_is_removed() {
+    let mut scene = Scene::load("drag").expect("a gallery scene");
+    let [gravity, linear, quadratic] = &scene.forces.clone()[..] else {
+        panic!("three forces");
+    };
+    assert_eq!(
+        (linear.bodies().next(), quadratic.bodies().next()),
+        (Some(1), Some(2))
+    );
+    assert_eq!(scene.remove_body(1).name, "linear");
+    let moved = Force::QuadraticDrag {
+        body: Some(1),
+        coefficient: 0.1,
+    };
+    assert_eq!(scene.forces, [gravity.clone(), moved]);
+    scene.world().expect("a world");
+}
+
+#[test]
 fn the_world_refuses_a_force_changed_for_the_worse() {
     let mut scene = Scene::load("spring").expect("a gallery scene");
     scene.forces[0] = Force::Spring {

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use sim_core::{Body, Bvh, DVec3, Mesh, Settings, Vec3, World, collide};
+use sim_core::collide::{self, Placement};
+use sim_core::{Body, Bvh, DQuat, DVec3, Mesh, Settings, Vec3, World};
 
 /// A tetrahedron with its corner at the origin.
 fn tetrahedron() -> Result<Mesh, sim_core::MeshError> {
@@ -30,6 +31,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             hit.edge, hit.edge_of, hit.face, hit.point
         );
     }
+
+    // The second one turned as well; and a point in the first one.
+    let turned = Placement::turned(DQuat::from_rotation_y(0.5), offset).ok_or("no rotation")?;
+    println!(
+        "meet, turned: {}, at the price of {:?}",
+        collide::tree::intersect(&tree, &tree, turned),
+        collide::tree::work(&tree, &tree, turned)
+    );
+    println!("{offset} is {:?}", collide::locate(&tree, offset));
 
     // The same meshes as bodies: one flies at the other, and they exchange an impulse.
     let mut world = World::new(Settings::default())?;

@@ -6,6 +6,8 @@
 //! where they have a potential. A law from outside is a type that implements one of the traits.
 
 mod laws;
+#[cfg(test)]
+mod tests;
 
 use alloc::sync::Arc;
 use core::fmt::Debug;
@@ -250,6 +252,34 @@ impl Force {
             Reach::Weight | Reach::EachBody | Reach::EachPair => [None, None],
         };
         first.into_iter().chain(second)
+    }
+
+    /// The same on other bodies: `renumber` gives the new index of each that it names. `None` if
+    /// that gives none.
+    pub fn renumbered(mut self, renumber: impl Fn(usize) -> Option<usize>) -> Option<Force> {
+        match &mut self {
+            Force::Gravity { .. } | Force::Gravitation { .. } => {}
+            Force::Anchor { body, .. } => *body = renumber(*body)?,
+            Force::LinearDrag { body, .. }
+            | Force::QuadraticDrag { body, .. }
+            | Force::Attraction { body, .. }
+            | Force::Body { body, .. } => {
+                if let Some(body) = body {
+                    *body = renumber(*body)?;
+                }
+            }
+            Force::Spring { bodies, .. } => {
+                for body in bodies {
+                    *body = renumber(*body)?;
+                }
+            }
+            Force::Pair { bodies, .. } => {
+                for body in bodies.iter_mut().flatten() {
+                    *body = renumber(*body)?;
+                }
+            }
+        }
+        Some(self)
     }
 
     pub(crate) fn reach(&self) -> Reach {

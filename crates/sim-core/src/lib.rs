@@ -1,13 +1,14 @@
 //! Rigid triangle meshes that move and collide.
 //!
-//! `no_std` with `alloc`, no I/O, no clock, no threads; `unsafe` only around vector instructions. Quantities are in SI units.
-//! State is `f64`, geometry `f32`; decisions about geometry are exact.
+//! `no_std` with `alloc`, no I/O, no clock, no threads; `unsafe` only around vector instructions
+//! and a stack that is not zeroed. Quantities are in SI units. State is `f64`, geometry `f32`;
+//! decisions about geometry are exact.
 //!
 //! # A step, in the order in which it happens
 //!
 //! 1. [`FixedStep`] turns the time since the last frame into whole steps of `dt`.
-//! 2. [`World::step`] keeps the state as the previous one and moves every [`Body`] by a
-//!    [`Method`] of the table [`METHODS`].
+//! 2. [`World::step`] keeps the state as the previous one and moves every [`Body`] under its
+//!    [`Force`]s by a [`Method`] of the table [`METHODS`], or by one of your own.
 //! 3. Each pair of bodies is asked whether their [`Mesh`]es meet: [`collide::naive`] tries every
 //!    edge against every triangle, [`collide::tree`] goes through a [`Bvh`] of each. Both
 //!    rest on the exact [`collide::predicates`] and always agree.
@@ -41,6 +42,9 @@
 //! assert!((world.kinetic_energy() - 4.5).abs() < 1e-14);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Without bodies: a [`Stepper`] lets any method step any [`System`] `x'' = a(t, x, v)`, and
+//! [`Dopri5`] and [`Dop853`] solve `y' = f(t, y)` to a tolerance.
 //!
 //! # Limits
 //!

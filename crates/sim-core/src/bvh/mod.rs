@@ -3,38 +3,42 @@
 mod build;
 mod node;
 mod ray;
+mod slabs;
 
 use alloc::vec::Vec;
-use glam::Vec3;
 
-use crate::{Aabb, Mesh};
-pub(crate) use node::{Child, MAX_DEPTH, Node, TRIANGLE, WIDTH};
+use crate::{Aabb, Mesh, mesh::Owned};
+pub(crate) use node::{Boxes, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
 pub use ray::RayHit;
+pub(crate) use slabs::Slabs;
 
-/// A tree of boxes, four below each, flat in memory, with the triangles beside it in leaf order.
+/// A tree of boxes, four below each, flat in memory; each leaf has up to four triangles.
 ///
 /// It holds all that a query needs, so that a query reads nothing else.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     bounds: Aabb,
-    /// The root first, children after their parents.
+    /// Code of the root, the first node.
+    root: u32,
+    count: usize,
+    /// Nodes and leaves, parents before their children.
     nodes: Vec<Node>,
-    /// Corners in leaf order: all that an answer of yes or no looks at.
-    corners: Vec<[Vec3; 3]>,
-    /// Beside each its place in the mesh.
+    /// Beside each node.
+    slabs: Vec<Slabs>,
+    /// Of each leaf.
+    triangles: Vec<Triangles>,
+    /// By triangle of the mesh.
     origin: Vec<Origin>,
     depth: usize,
+    closed: bool,
 }
 
-/// Where a triangle is in the mesh, and what it owns: of the edges and corners that it shares
-/// with others, those for which it is the first. By owners, each edge and vertex comes up once.
+/// The corners and edges of a triangle in its mesh, and which of them it owns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Origin {
-    pub(crate) face: u32,
     pub(crate) vertices: [u32; 3],
     pub(crate) edges: [u32; 3],
-    pub(crate) owns_vertex: [bool; 3],
-    pub(crate) owns_edge: [bool; 3],
+    pub(crate) owned: Owned,
 }
 
 impl Bvh {
@@ -43,35 +47,38 @@ impl Bvh {
         build::build(mesh)
     }
 
-    /// How many nodes there are; triangles are not counted.
+    /// How many nodes there are, leaves among them.
     pub fn node_count(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Levels of nodes above the triangles.
+    /// Levels of nodes and leaves.
     pub fn depth(&self) -> usize {
         self.depth
     }
 
-    /// Expected number of boxes and triangles that a random ray through the root's box has to
-    /// look at: the surface area of each relative to the root's (MacDonald, Booth 1990).
+    /// Expected number of boxes, of nodes, leaves and triangles, that a random ray through the
+    /// root's box meets: the surface area of each relative to the root's (MacDonald, Booth 1990).
     pub fn surface_area_cost(&self) -> f64 {
         let root = self.bounds.half_area();
         if root == 0.0 {
-            return self.corners.len() as f64;
+            return self.count as f64;
         }
-        self.boxes()
-            .map(|(_, bounds)| bounds.half_area())
-            .sum::<f64>()
-            / root
+        let triangles = self
+            .triangles
+            .iter()
+            .flat_map(|leaf| (0..WIDTH).map(|lane| Aabb::around(leaf.corners(lane)).half_area()));
+        let nodes = self.boxes().map(|(_, bounds)| bounds.half_area());
+        nodes.chain(triangles).sum::<f64>() / root
     }
 
     /// Memory per triangle, bytes.
     pub fn bytes_per_triangle(&self) -> f64 {
         let bytes = size_of_val(&self.nodes[..])
-            + size_of_val(&self.corners[..])
+            + size_of_val(&self.slabs[..])
+            + size_of_val(&self.triangles[..])
             + size_of_val(&self.origin[..]);
-        bytes as f64 / self.corners.len() as f64
+        bytes as f64 / self.count as f64
     }
 
     /// The least box around the mesh.
@@ -81,14 +88,14 @@ impl Bvh {
 
     /// All boxes with their level: the root's is 0, those of single triangles are not listed.
     pub fn boxes(&self) -> impl Iterator<Item = (usize, Aabb)> {
-        let mut pending = alloc::vec![(0, 0, self.bounds)];
+        let mut pending = alloc::vec![(0, self.root, self.bounds)];
         core::iter::from_fn(move || {
-            let (level, node, bounds) = pending.pop()?;
-            let node = self.node(node);
-            pending.extend((0..WIDTH).rev().filter_map(|lane| match node.child(lane)? {
-                Child::Node(child) => Some((level + 1, child, node.bounds(lane))),
-                Child::Triangle(_) => None,
-            }));
+            let (level, code, bounds) = pending.pop()?;
+            if code & LEAF == 0 {
+                let node = self.node(code);
+                let child = |lane| (level + 1, node.child[lane], node.boxes.bounds(lane));
+                pending.extend(node.lanes().map(child));
+            }
             Some((level, bounds))
         })
     }
@@ -99,17 +106,45 @@ impl Bvh {
             .filter_map(move |(level, bounds)| (level == depth).then_some(bounds))
     }
 
-    pub(crate) fn node(&self, index: u32) -> &Node {
-        &self.nodes[index as usize]
+    /// Whether the mesh is closed ([`Mesh::is_closed`]).
+    pub fn is_closed(&self) -> bool {
+        self.closed
     }
 
-    /// Corners of a triangle, by its place in leaf order.
-    pub(crate) fn corners(&self, triangle: u32) -> [Vec3; 3] {
-        self.corners[triangle as usize]
+    pub(crate) fn root(&self) -> u32 {
+        self.root
     }
 
-    pub(crate) fn origin(&self, triangle: u32) -> &Origin {
-        &self.origin[triangle as usize]
+    /// Any leaf.
+    pub(crate) fn first_leaf(&self) -> &Node {
+        let mut code = self.root;
+        while code & LEAF == 0 {
+            code = self.node(code).child[0];
+        }
+        self.node(code)
+    }
+
+    /// The node or leaf of a code.
+    #[inline(always)]
+    pub(crate) fn node(&self, code: u32) -> &Node {
+        &self.nodes[(code & !LEAF) as usize]
+    }
+
+    /// The slabs beside the boxes of a node or leaf.
+    #[inline(always)]
+    pub(crate) fn slabs(&self, code: u32) -> &Slabs {
+        &self.slabs[(code & !LEAF) as usize]
+    }
+
+    /// The triangles of a leaf.
+    #[inline(always)]
+    pub(crate) fn triangles(&self, leaf: &Node) -> &Triangles {
+        &self.triangles[leaf.triangles as usize]
+    }
+
+    /// Where a triangle is in its mesh.
+    pub(crate) fn origin(&self, face: u32) -> &Origin {
+        &self.origin[face as usize]
     }
 }
 
@@ -118,33 +153,41 @@ mod tests {
     use super::*;
     use crate::test_meshes::{cube, sphere};
     use alloc::vec;
+    use glam::Vec3;
 
     /// Every triangle in one leaf, every box around what is below it, no level too deep.
     fn check(mesh: &Mesh) -> Bvh {
         let bvh = Bvh::build(mesh);
         let mut seen = vec![0; mesh.triangles().len()];
-        let mut pending = vec![(0, 1, bvh.bounds())];
+        let mut pending = vec![(bvh.root(), 1, bvh.bounds())];
         let mut reached = 0;
-        while let Some((index, level, bounds)) = pending.pop() {
+        while let Some((code, level, bounds)) = pending.pop() {
             reached += 1;
             assert!(level <= bvh.depth() && bvh.depth() <= MAX_DEPTH);
-            let node = bvh.node(index);
-            let mut tight = Aabb::EMPTY;
-            for lane in 0..WIDTH {
-                let box_of_lane = node.bounds(lane);
-                match node.child(lane) {
-                    Some(Child::Node(child)) => pending.push((child, level + 1, box_of_lane)),
-                    Some(Child::Triangle(t)) => {
-                        let face = bvh.origin(t).face as usize;
-                        seen[face] += 1;
-                        assert_eq!(bvh.corners(t), mesh.corners(face));
-                        assert_eq!(Aabb::around(bvh.corners(t)), box_of_lane);
-                    }
-                    None => assert_eq!(box_of_lane, Aabb::EMPTY),
+            let node = bvh.node(code);
+            for lane in node.lanes() {
+                let inner = node.boxes.bounds(lane);
+                if code & LEAF == 0 {
+                    assert!(node.count >= 2);
+                    pending.push((node.child[lane], level + 1, inner));
+                    continue;
                 }
-                tight = tight.union(box_of_lane);
+                let (face, corners) = (
+                    bvh.triangles(node).face[lane],
+                    bvh.triangles(node).corners(lane),
+                );
+                seen[face as usize] += 1;
+                assert_eq!(corners, mesh.corners(face as usize));
+                assert!(
+                    holds(inner, Aabb::around(corners)) && holds(bounds, Aabb::around(corners))
+                );
             }
-            assert_eq!(tight, bounds);
+            let unused = node.count as usize..WIDTH;
+            assert!(
+                unused
+                    .into_iter()
+                    .all(|lane| node.boxes.half[0][lane] == f32::NEG_INFINITY)
+            );
         }
         assert!(seen.iter().all(|&n| n == 1));
         assert_eq!(reached, bvh.node_count());
@@ -160,9 +203,13 @@ mod tests {
             let all = bvh.origin.iter().flat_map(owns);
             all.filter(|&o| o).count()
         };
-        assert_eq!(owned(|t| t.owns_edge), mesh.edges().len());
-        assert_eq!(owned(|t| t.owns_vertex), mesh.vertices().len());
+        assert_eq!(owned(|t| t.owned.edge), mesh.edges().len());
+        assert_eq!(owned(|t| t.owned.vertex), mesh.vertices().len());
         bvh
+    }
+
+    fn holds(outer: Aabb, inner: Aabb) -> bool {
+        outer.union(inner) == outer
     }
 
     fn soup(corners: impl Iterator<Item = [Vec3; 3]>) -> Mesh {

@@ -1,84 +1,120 @@
-//! A node: four boxes side by side, and what is in them.
+//! Nodes and leaves: four boxes side by side, and what is in them.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use crate::Aabb;
 
-/// Children of a node.
+/// Children of a node, and triangles of a leaf, at most.
 pub(crate) const WIDTH: usize = 4;
 
-/// No path from the root has more nodes, whatever the input (see `build`).
+/// No path from the root has more nodes and leaves, whatever the input (see `build`).
 pub(crate) const MAX_DEPTH: usize = 32;
 
-/// Four children's boxes by axis, so that one instruction compares all four, in two cache lines.
+/// Set in a code for a leaf. Meshes have fewer than 2^31 triangles.
+pub(crate) const LEAF: u32 = 1 << 31;
+
+/// Four boxes by axis, so that one instruction takes all four, as centres and half extents
+/// rounded outward: boxes moved and turned stay sums of these, and overlap is one comparison an
+/// axis, `|c - c'| <= h + h'`.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(crate) struct Boxes {
+    pub(crate) centre: [[f32; WIDTH]; 3],
+    /// Minus infinity in a lane that holds nothing: it meets no box.
+    pub(crate) half: [[f32; WIDTH]; 3],
+}
+
+impl Boxes {
+    pub(crate) const EMPTY: Boxes = Boxes {
+        centre: [[0.0; WIDTH]; 3],
+        half: [[f32::NEG_INFINITY; WIDTH]; 3],
+    };
+
+    pub(crate) fn set(&mut self, lane: usize, min: Vec3A, max: Vec3A) {
+        let centre = 0.5 * min + 0.5 * max;
+        // Either difference is rounded once, the factor makes up for it.
+        let half = (max - centre).max(centre - min) * (1.0 + 2.0 * f32::EPSILON);
+        let (centre, half) = (centre.to_array(), half.to_array());
+        for axis in 0..3 {
+            self.centre[axis][lane] = centre[axis];
+            self.half[axis][lane] = half[axis];
+        }
+    }
+
+    /// The box of a lane that is not empty, rounded outward once more.
+    pub(crate) fn bounds(&self, lane: usize) -> Aabb {
+        let centre = Vec3::from_array(self.centre.map(|axis| axis[lane]));
+        let half = Vec3::from_array(self.half.map(|axis| axis[lane]));
+        let (min, max) = (centre - half, centre + half);
+        let exact = |i: usize| half[i] == 0.0;
+        let outward = |i: usize| {
+            if exact(i) {
+                (min[i], max[i])
+            } else {
+                (min[i].next_down(), max[i].next_up())
+            }
+        };
+        let [x, y, z] = [0, 1, 2].map(outward);
+        Aabb {
+            min: Vec3::new(x.0, y.0, z.0),
+            max: Vec3::new(x.1, y.1, z.1),
+        }
+    }
+}
+
+/// Four boxes and what is in them: of a node its children, of a leaf its triangles.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
-    pub(crate) min: [[f32; WIDTH]; 3],
-    pub(crate) max: [[f32; WIDTH]; 3],
-    /// What is in each box, for [`Child::of`].
+    pub(crate) boxes: Boxes,
+    /// Of a node the codes of its children: indices of nodes, with [`LEAF`] for a leaf. A leaf has
+    /// its own code in every lane, as it stays itself where only the other tree goes down.
     pub(crate) child: [u32; WIDTH],
+    /// Lanes in use.
+    pub(crate) count: u32,
+    /// Of a leaf, the place of its triangles.
+    pub(crate) triangles: u32,
 }
 
-/// What is in a box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Child {
-    Node(u32),
-    /// A triangle, by its place in leaf order.
-    Triangle(u32),
+/// Up to four triangles, side by side.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(crate) struct Triangles {
+    /// Corners by coordinate: x, y, z of the first, of the second, of the third.
+    pub(crate) corners: [[f32; WIDTH]; 9],
+    /// Indices of the mesh's triangles.
+    pub(crate) face: [u32; WIDTH],
 }
-
-impl Child {
-    /// Reads a lane of [`Node::child`] that is not empty.
-    #[inline(always)]
-    pub(crate) fn of(code: u32) -> Child {
-        if code & TRIANGLE == 0 {
-            Child::Node(code)
-        } else {
-            Child::Triangle(code & !TRIANGLE)
-        }
-    }
-}
-
-/// Set in `Node::child` for a triangle. Meshes have fewer than 2^31 triangles.
-pub(crate) const TRIANGLE: u32 = 1 << 31;
-/// In `Node::child` for a lane that holds nothing; its box holds no point and meets no box.
-const NOTHING: u32 = u32::MAX;
 
 impl Node {
     pub(crate) const EMPTY: Node = Node {
-        min: [[f32::INFINITY; WIDTH]; 3],
-        max: [[f32::NEG_INFINITY; WIDTH]; 3],
-        child: [NOTHING; WIDTH],
+        boxes: Boxes::EMPTY,
+        child: [0; WIDTH],
+        count: 0,
+        triangles: 0,
     };
 
-    /// A node with one triangle, for a descent that has come to a triangle on one side only.
-    pub(crate) fn of_triangle(triangle: u32, corners: [Vec3; 3]) -> Node {
-        let mut node = Node::EMPTY;
-        node.set(0, Child::Triangle(triangle), Aabb::around(corners));
-        node
+    pub(crate) fn lanes(&self) -> core::ops::Range<usize> {
+        0..self.count as usize
     }
+}
 
-    pub(crate) fn set(&mut self, lane: usize, child: Child, bounds: Aabb) {
-        for axis in 0..3 {
-            self.min[axis][lane] = bounds.min[axis];
-            self.max[axis][lane] = bounds.max[axis];
+impl Triangles {
+    pub(crate) const NONE: Triangles = Triangles {
+        corners: [[0.0; WIDTH]; 9],
+        face: [0; WIDTH],
+    };
+
+    pub(crate) fn set(&mut self, lane: usize, face: u32, corners: [Vec3; 3]) {
+        for (k, column) in self.corners.iter_mut().enumerate() {
+            column[lane] = corners[k / 3][k % 3];
         }
-        self.child[lane] = match child {
-            Child::Node(index) => index,
-            Child::Triangle(index) => index | TRIANGLE,
-        };
+        self.face[lane] = face;
     }
 
+    /// The corners of a lane's triangle.
     #[inline]
-    pub(crate) fn child(&self, lane: usize) -> Option<Child> {
-        (self.child[lane] != NOTHING).then(|| Child::of(self.child[lane]))
-    }
-
-    pub(crate) fn bounds(&self, lane: usize) -> Aabb {
-        Aabb {
-            min: Vec3::from_array(self.min.map(|axis| axis[lane])),
-            max: Vec3::from_array(self.max.map(|axis| axis[lane])),
-        }
+    pub(crate) fn corners(&self, lane: usize) -> [Vec3; 3] {
+        [0, 3, 6].map(|k| Vec3::from_array([0, 1, 2].map(|axis| self.corners[k + axis][lane])))
     }
 }

@@ -1,9 +1,8 @@
-//! Rays against a BVH: picking and line of sight.
+//! Rays and points against a BVH: picking, line of sight, inside and outside.
 
 use glam::DVec3;
 
-use super::{Bvh, Child, MAX_DEPTH, WIDTH};
-use crate::Aabb;
+use super::{Bvh, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
 
 /// Where a ray meets a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,101 +19,176 @@ impl Bvh {
     /// Watertight: a ray through an edge or a corner meets a triangle there (Woop, Benthin, Wald
     /// 2013, "Watertight ray/triangle intersection"). A direction of zero meets nothing.
     pub fn ray(&self, origin: DVec3, direction: DVec3) -> Option<RayHit> {
-        let shear = Shear::along(direction)?;
+        self.cast(origin, direction, false)
+    }
+
+    /// Whether a ray meets any triangle: [`Bvh::ray`] without the search for the nearest.
+    pub fn ray_meets(&self, origin: DVec3, direction: DVec3) -> bool {
+        self.cast(origin, direction, true).is_some()
+    }
+
+    fn cast(&self, origin: DVec3, direction: DVec3, any: bool) -> Option<RayHit> {
+        let ray = Ray::new(origin, direction)?;
         let mut best: Option<RayHit> = None;
-        // Each level leaves at most three siblings behind.
-        let mut stack = [0; 3 * MAX_DEPTH + 1];
-        let mut top = 1;
-        while top > 0 {
-            top -= 1;
-            let node = self.node(stack[top]);
-            for lane in 0..WIDTH {
-                let nearest = best.map_or(f64::INFINITY, |b| b.t);
-                let Some(child) = node.child(lane) else {
-                    break;
-                };
-                if !slab(&node.bounds(lane), origin, direction, nearest) {
-                    continue;
-                }
-                match child {
-                    Child::Node(index) => {
-                        stack[top] = index;
-                        top += 1;
+        let mut nearest = f64::INFINITY;
+        // Codes and where the ray enters their boxes. Each level leaves at most three siblings.
+        let mut stack = [(0, 0.0f32); 3 * MAX_DEPTH + 1];
+        let (mut top, mut code) = (0, self.root());
+        loop {
+            let node = self.node(code);
+            if code & LEAF == 0 {
+                let enter = ray.enter(node, nearest);
+                let first = top;
+                for lane in node.lanes().filter(|&lane| enter[lane] < f32::INFINITY) {
+                    // Farthest first, as the last one is looked at next.
+                    let mut place = top;
+                    while place > first && stack[place - 1].1 < enter[lane] {
+                        stack[place] = stack[place - 1];
+                        place -= 1;
                     }
-                    Child::Triangle(triangle) => {
-                        let corners = self.corners(triangle);
-                        let corners = corners.map(|v| shear.apply(v.as_dvec3() - origin));
-                        let hit = meet(corners).map(|z| z * shear.per_t);
-                        if let Some(t) = hit.filter(|&t| t >= 0.0 && t < nearest) {
-                            let face = self.origin(triangle).face;
-                            best = Some(RayHit { t, face });
-                        }
+                    stack[place] = (node.child[lane], enter[lane]);
+                    top += 1;
+                }
+            } else {
+                let triangles = self.triangles(node);
+                let hits = ray.meet(triangles);
+                for lane in node.lanes() {
+                    if hits[lane] >= nearest {
+                        continue;
+                    }
+                    nearest = hits[lane];
+                    let face = triangles.face[lane];
+                    best = Some(RayHit {
+                        t: nearest * ray.scale,
+                        face,
+                    });
+                    if any {
+                        return best;
                     }
                 }
             }
+            loop {
+                if top == 0 {
+                    return best;
+                }
+                top -= 1;
+                if f64::from(stack[top].1) <= nearest {
+                    code = stack[top].0;
+                    break;
+                }
+            }
         }
-        best
     }
 }
 
-/// Turns the ray into the z axis: the largest component becomes z, the others are sheared off.
-struct Shear {
+/// A ray whose direction has a largest component of one; `scale` leads back from its times.
+struct Ray {
+    origin: DVec3,
+    inverse: DVec3,
+    scale: f64,
+    /// The largest component is the last axis; the shear that takes the ray to it.
     axes: [usize; 3],
-    x: f64,
-    y: f64,
-    per_t: f64,
+    shear: [f64; 2],
+    forward: f64,
 }
 
-impl Shear {
-    fn along(direction: DVec3) -> Option<Shear> {
+/// Stands for the inverse of nothing: far beyond all boxes, but no product with it overflows.
+const BEYOND: f64 = 1e200;
+
+impl Ray {
+    fn new(origin: DVec3, direction: DVec3) -> Option<Ray> {
         let z = direction.abs().max_position();
         let axes = [(z + 1) % 3, (z + 2) % 3, z];
-        let largest = direction[z];
-        (largest != 0.0 && direction.is_finite()).then(|| Shear {
+        let largest = direction[z].abs();
+        if largest == 0.0 || !direction.is_finite() || !origin.is_finite() {
+            return None;
+        }
+        let along = direction / largest;
+        let inverse = |d: f64| {
+            if d.abs() > 1.0 / BEYOND {
+                1.0 / d
+            } else {
+                BEYOND
+            }
+        };
+        let forward = along[z];
+        Some(Ray {
+            origin,
+            inverse: DVec3::new(inverse(along.x), inverse(along.y), inverse(along.z)),
+            scale: 1.0 / largest,
             axes,
-            x: direction[axes[0]] / largest,
-            y: direction[axes[1]] / largest,
-            per_t: 1.0 / largest,
+            shear: [along[axes[0]] / forward, along[axes[1]] / forward],
+            forward,
         })
     }
 
-    fn apply(&self, p: DVec3) -> DVec3 {
-        let [x, y, z] = self.axes.map(|axis| p[axis]);
-        DVec3::new(x - self.x * z, y - self.y * z, z)
-    }
-}
-
-/// Where the z axis passes through the triangle.
-fn meet([a, b, c]: [DVec3; 3]) -> Option<f64> {
-    // The same products for both triangles at an edge, so that they agree about it.
-    let u = c.x * b.y - c.y * b.x;
-    let v = a.x * c.y - a.y * c.x;
-    let w = b.x * a.y - b.y * a.x;
-    let mixed = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
-    let area = u + v + w;
-    (!mixed && area != 0.0).then(|| (u * a.z + v * b.z + w * c.z) / area)
-}
-
-/// Whether the ray meets the box before `nearest`; generous by a few ulps.
-fn slab(bounds: &Aabb, origin: DVec3, direction: DVec3, nearest: f64) -> bool {
-    let (mut enter, mut leave) = (0.0_f64, nearest);
-    for axis in 0..3 {
-        let (min, max) = (f64::from(bounds.min[axis]), f64::from(bounds.max[axis]));
-        let inverse = 1.0 / direction[axis];
-        if inverse.is_infinite() {
-            if origin[axis] < min || origin[axis] > max {
-                return false;
+    /// Where the ray enters the boxes of a node, rounded down; infinity where it does not before
+    /// `nearest`.
+    #[inline]
+    fn enter(&self, node: &Node, nearest: f64) -> [f32; WIDTH] {
+        let (mut enter, mut leave) = ([0.0_f64; WIDTH], [nearest; WIDTH]);
+        for axis in 0..3 {
+            let (origin, inverse) = (self.origin[axis], self.inverse[axis]);
+            for lane in 0..WIDTH {
+                let centre = f64::from(node.boxes.centre[axis][lane]);
+                let half = f64::from(node.boxes.half[axis][lane]);
+                let middle = (centre - origin) * inverse;
+                // More than the roundings of both, and of the half extent.
+                let slack = 8.0 * f64::EPSILON * (centre.abs() + origin.abs() + half.abs());
+                let reach = (half + slack) * inverse.abs();
+                let (near, far) = (middle - reach, middle + reach);
+                enter[lane] = if near > enter[lane] {
+                    near
+                } else {
+                    enter[lane]
+                };
+                leave[lane] = if far < leave[lane] { far } else { leave[lane] };
             }
-            continue;
         }
-        let (near, far) = (
-            (min - origin[axis]) * inverse,
-            (max - origin[axis]) * inverse,
-        );
-        enter = enter.max(near.min(far));
-        leave = leave.min(near.max(far) * (1.0 + 8.0 * f64::EPSILON));
+        let mut down = [f32::INFINITY; WIDTH];
+        for lane in 0..WIDTH {
+            let meets = enter[lane] <= leave[lane];
+            let rounded = (enter[lane] * (1.0 - 1e-7)) as f32;
+            down[lane] = if meets {
+                rounded.min(f32::MAX)
+            } else {
+                f32::INFINITY
+            };
+        }
+        down
     }
-    enter <= leave
+
+    /// Where the ray meets four triangles; infinity where it does not.
+    #[inline]
+    fn meet(&self, triangles: &Triangles) -> [f64; WIDTH] {
+        // The ray becomes the z axis: the largest component stays, the others are sheared off.
+        let mut corners = [[0.0; WIDTH]; 9];
+        let [x, y, z] = self.axes;
+        for k in [0, 3, 6] {
+            for lane in 0..WIDTH {
+                let at =
+                    |axis: usize| f64::from(triangles.corners[k + axis][lane]) - self.origin[axis];
+                let height = at(z);
+                corners[k][lane] = at(x) - self.shear[0] * height;
+                corners[k + 1][lane] = at(y) - self.shear[1] * height;
+                corners[k + 2][lane] = height;
+            }
+        }
+        let mut times = [f64::INFINITY; WIDTH];
+        for lane in 0..WIDTH {
+            let [ax, ay, az, bx, by, bz, cx, cy, cz] = corners.map(|column| column[lane]);
+            // The same products for both triangles at an edge, so that they agree about it.
+            let u = cx * by - cy * bx;
+            let v = ax * cy - ay * cx;
+            let w = bx * ay - by * ax;
+            let mixed = ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0));
+            let area = u + v + w;
+            let time = (u * az + v * bz + w * cz) / area * self.forward;
+            let hit = !mixed & (area != 0.0) & (time >= 0.0);
+            times[lane] = if hit { time } else { f64::INFINITY };
+        }
+        times
+    }
 }
 
 #[cfg(test)]

@@ -4,23 +4,46 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 use glam::DVec3;
 
-use super::{Hit, Side, place, plane::Plane, predicates::segment_meets_triangle, snap};
+use super::{Hit, Placement, Side, Work, plane::Plane, predicates::segment_meets_triangle};
 use crate::Mesh;
 
-/// Whether the surfaces of two meshes meet, the second displaced by `offset` (m). Stops at the
-/// first hit.
+/// Whether the surfaces of two meshes meet, the second one placed: displaced by a `DVec3` (m), or
+/// turned too ([`Placement::turned`]). Stops at the first hit.
 ///
 /// One direction would miss a spike: a corner of the second that pierces a face of the first
 /// between its edges.
-pub fn intersect(first: &Mesh, second: &Mesh, offset: DVec3) -> bool {
-    each_hit(first, second, offset, |_| ControlFlow::Break(())).is_break()
+pub fn intersect(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> bool {
+    each_hit(first, second, &at.into(), |_| ControlFlow::Break(())).is_break()
+}
+
+/// What [`intersect`] costs here: tests of an edge against a triangle, until the first hit.
+pub fn work(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> Work {
+    let tests = |edges_of: &Mesh, faces: usize| (faces * edges_of.edges().len()) as u64;
+    let all_of_first = tests(first, second.triangles().len());
+    let all_of_second = tests(second, first.triangles().len());
+    let (mut meet, mut done) = (false, all_of_first + all_of_second);
+    let _ = each_hit(first, second, &at.into(), |pair| {
+        let (side, edge, _) = pair.edge;
+        let (face, edge) = (pair.face.0 as usize, u64::from(edge) + 1);
+        done = match side {
+            Side::First => tests(first, face) + edge,
+            Side::Second => all_of_first + tests(second, face) + edge,
+        };
+        meet = true;
+        ControlFlow::Break(())
+    });
+    Work {
+        meet,
+        boxes: 0,
+        tests: done,
+    }
 }
 
 /// Every edge of one mesh in a triangle of the other, the first mesh's edges first, by edge and
 /// face.
-pub fn hits(first: &Mesh, second: &Mesh, offset: DVec3) -> Vec<Hit> {
+pub fn hits(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> Vec<Hit> {
     let mut hits = Vec::new();
-    let _ = each_hit(first, second, offset, |pair| {
+    let _ = each_hit(first, second, &at.into(), |pair| {
         hits.push(pair.measure());
         ControlFlow::Continue(())
     });
@@ -43,16 +66,11 @@ impl Pair {
 fn each_hit(
     first: &Mesh,
     second: &Mesh,
-    offset: DVec3,
+    at: &Placement,
     mut found: impl FnMut(Pair) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    let offset = snap(offset);
     let first_vertices: Vec<DVec3> = first.vertices().iter().map(|v| v.as_dvec3()).collect();
-    let second_vertices: Vec<DVec3> = second
-        .vertices()
-        .iter()
-        .map(|&v| place(v, offset))
-        .collect();
+    let second_vertices: Vec<DVec3> = second.vertices().iter().map(|&v| at.place(v)).collect();
     let ways = [
         (
             Side::First,

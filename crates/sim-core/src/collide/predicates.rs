@@ -8,8 +8,11 @@
 //! Coordinates must lie within ±1e100 and be multiples of 2^-340, as those of placed vertices are
 //! ([`super`]), so that products of three differences neither overflow nor underflow.
 
+use core::cmp::Ordering;
 use glam::DVec3;
 use robust::{Coord, Coord3D};
+
+use super::plane::Plane;
 
 /// Positive if `d` sees `a`, `b`, `c` clockwise, negative if counter-clockwise, zero if the four
 /// points lie in a plane: the exact sign of `det(a - d, b - d, c - d)`.
@@ -26,19 +29,14 @@ pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
 ///
 /// Segment and triangle may be degenerate (a point, a segment).
 pub fn segment_meets_triangle(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
-    let sp = orient3d(a, b, c, p);
-    let sq = orient3d(a, b, c, q);
-    if (sp > 0.0 && sq > 0.0) || (sp < 0.0 && sq < 0.0) {
-        return false;
-    }
-    if sp == 0.0 && sq == 0.0 {
-        return coplanar_segment_meets_triangle(p, q, [a, b, c]);
+    let plane = Plane::of([a, b, c]);
+    let [sp, sq] = [p, q].map(|x| exact_side(plane, [a, b, c], x));
+    if sp == sq {
+        return sp == Ordering::Equal && coplanar_segment_meets_triangle(p, q, [a, b, c]);
     }
     // The segment reaches the plane; its line passes inside if it has all edges on one side.
-    let s1 = orient3d(p, q, a, b);
-    let s2 = orient3d(p, q, b, c);
-    let s3 = orient3d(p, q, c, a);
-    same_side(s1, s2, s3)
+    let sides = [(a, b), (b, c), (c, a)].map(|(x, y)| side([p, q, x], y));
+    !(sides.contains(&Ordering::Greater) && sides.contains(&Ordering::Less))
 }
 
 /// Whether two closed triangles share a point.
@@ -47,10 +45,87 @@ pub fn segment_meets_triangle(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]) -> bool
 /// they share ends on an edge of either, and where one lies in the other's plane, edges cross or
 /// lie inside.
 pub fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
-    let edge_of_one_meets = |s: [DVec3; 3], t: [DVec3; 3]| {
-        (0..3).any(|i| segment_meets_triangle(s[i], s[(i + 1) % 3], t))
-    };
-    edge_of_one_meets(s, t) || edge_of_one_meets(t, s)
+    let t_sides = sides(s, t);
+    if t_sides[0] != Ordering::Equal && t_sides == [t_sides[0]; 3] {
+        return false;
+    }
+    let s_sides = sides(t, s);
+    if s_sides[0] != Ordering::Equal && s_sides == [s_sides[0]; 3] {
+        return false;
+    }
+    match (lone(s, s_sides), lone(t, t_sides)) {
+        (Some((s, s_above)), Some((t, t_above))) => crossing_meet(s, s_above, t, t_above),
+        _ => {
+            let edge_of_one_meets = |s: [DVec3; 3], t: [DVec3; 3]| {
+                (0..3).any(|i| segment_meets_triangle(s[i], s[(i + 1) % 3], t))
+            };
+            edge_of_one_meets(s, t) || edge_of_one_meets(t, s)
+        }
+    }
+}
+
+/// Whether two triangles meet that cross each other's planes, each with its first corner alone on
+/// its side and none in the plane: whether the parts overlap in which they cut the line that the
+/// planes share (Guigue, Devillers 2003, "Fast and robust triangle-triangle overlap test using
+/// orientation predicates", sec. 3).
+#[inline]
+fn crossing_meet(s: [DVec3; 3], s_above: bool, t: [DVec3; 3], t_above: bool) -> bool {
+    // Wound so that each first corner lies above the other's plane.
+    let wound =
+        |c: [DVec3; 3], above: bool| [c[0], c[2 - usize::from(above)], c[1 + usize::from(above)]];
+    let ([p1, q1, r1], [p2, q2, r2]) = (wound(s, t_above), wound(t, s_above));
+    side([p1, q1, p2], q2) != Ordering::Greater && side([p1, r1, r2], p2) != Ordering::Greater
+}
+
+/// The triangle turned so that its first corner is alone on its side of a plane, and whether it is
+/// above; none if a corner lies in the plane. Which one it is, is anyone's guess, so it is looked
+/// up and not branched on.
+#[inline]
+fn lone(corners: [DVec3; 3], sides: [Ordering; 3]) -> Option<([DVec3; 3], bool)> {
+    if sides.contains(&Ordering::Equal) {
+        return None;
+    }
+    let above = sides.map(|side| usize::from(side == Ordering::Greater));
+    let alone = [0, 0, 1, 2, 2, 1, 0, 0][above[0] | above[1] << 1 | above[2] << 2];
+    let corner = |i: usize| corners[[0, 1, 2, 0, 1][alone + i]];
+    Some(([corner(0), corner(1), corner(2)], above[alone] == 1))
+}
+
+/// On which side of the plane of `abc` some points lie: above is where it is counter-clockwise.
+#[inline]
+fn sides(abc: [DVec3; 3], points: [DVec3; 3]) -> [Ordering; 3] {
+    let plane = Plane::of(abc);
+    points.map(|p| exact_side(plane, abc, p))
+}
+
+/// Whether a point lies above the plane of `abc`, on the side where it is counter-clockwise.
+pub(super) fn above(abc: [DVec3; 3], p: DVec3) -> bool {
+    side(abc, p) == Ordering::Greater
+}
+
+#[inline]
+fn side(abc: [DVec3; 3], p: DVec3) -> Ordering {
+    exact_side(Plane::of(abc), abc, p)
+}
+
+#[inline]
+fn exact_side(plane: Plane, abc: [DVec3; 3], p: DVec3) -> Ordering {
+    match plane.side(p) {
+        Ordering::Equal => side_by_expansion(abc, p),
+        side => side,
+    }
+}
+
+#[cold]
+fn side_by_expansion([a, b, c]: [DVec3; 3], p: DVec3) -> Ordering {
+    let height = -orient3d(a, b, c, p);
+    if height > 0.0 {
+        Ordering::Greater
+    } else if height < 0.0 {
+        Ordering::Less
+    } else {
+        Ordering::Equal
+    }
 }
 
 /// All signs in `[0, ∞)` or all in `(-∞, 0]`.
@@ -102,7 +177,7 @@ pub fn segments_meet(p: DVec3, q: DVec3, a: DVec3, b: DVec3) -> bool {
 
 /// The axis along which a plane is projected.
 #[derive(Clone, Copy)]
-enum Axis {
+pub(super) enum Axis {
     X,
     Y,
     Z,
@@ -112,7 +187,7 @@ impl Axis {
     const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
     /// The exact sign of the projected triangle's area.
-    fn orient(self, a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    pub(super) fn orient(self, a: DVec3, b: DVec3, c: DVec3) -> f64 {
         let at = |p: DVec3| match self {
             Axis::X => Coord { x: p.y, y: p.z },
             Axis::Y => Coord { x: p.z, y: p.x },

@@ -25,13 +25,13 @@
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::{
-    pairs::{Leaves, Stack, TILE, Tiles, descend},
-    place, snap,
+    pairs::{Portable, TILE, Tiles, descend},
+    snap,
 };
-use crate::bvh::{Bvh, Node, TRIANGLE, WIDTH};
+use crate::bvh::{Boxes, Bvh, Slabs, WIDTH};
 
 /// What touches what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -105,40 +105,41 @@ struct Search<'a> {
 /// differences, two multiplications, and the sums, doubled for the rounding of the bound itself.
 const TRIPLE_ERROR: f64 = 16.0 * f64::EPSILON;
 
+/// Times that differ by more are no tie, whatever the error of either.
+const LONGEST_TIE: f64 = 1e-9;
+
 impl Tiles for Search<'_> {
-    /// Boxes that meet no later than the earliest contact so far, the one that is first on top.
-    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
-        let (mut next, mut soonest, mut count) = (0, f64::INFINITY, 0);
-        for pair in 0..TILE {
-            let (i, j) = (pair / WIDTH, pair % WIDTH);
-            if first.child(i).is_none() || second.child(j).is_none() {
-                continue;
-            }
-            let Some(time) = self
-                .entry(first, i, second, j)
-                .filter(|&t| t <= self.earliest)
-            else {
-                continue;
-            };
-            let (a, b) = (first.child[i], second.child[j]);
-            if a & b & TRIANGLE != 0 {
-                leaves.push(a & !TRIANGLE, b & !TRIANGLE);
-            } else {
-                stack.push(a, b);
-                if time < soonest {
-                    (next, soonest) = (count, time);
-                }
-                count += 1;
+    type Lanes = Portable;
+
+    /// Boxes that meet no later than the earliest contact so far.
+    fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, Portable) {
+        let (mut bits, mut times) = (0, [f32::INFINITY; TILE]);
+        for (pair, place) in times.iter_mut().enumerate() {
+            let time = self.entry(first, pair / WIDTH, second, pair % WIDTH);
+            if let Some(time) = time.filter(|&t| t <= self.earliest) {
+                bits |= 1 << pair;
+                *place = time as f32;
             }
         }
-        if count > 1 {
-            stack.raise(count - 1 - next);
-        }
+        (bits, Portable::new(times))
     }
 
-    fn triangles(&mut self, (first, second): (&[u32], &[u32])) -> ControlFlow<()> {
-        for (&s, &t) in first.iter().zip(second) {
-            self.try_triangles(s, t);
+    /// Slabs know nothing of motion.
+    fn slabs(&self, _: (&Boxes, &Slabs), _: (&Boxes, &Slabs), pairs: u32) -> u32 {
+        pairs
+    }
+
+    fn triangles(&mut self, first: u32, second: u32, mut pairs: u32) -> ControlFlow<()> {
+        let (first, second) = (self.first.node(first), self.second.node(second));
+        let (first, second) = (self.first.triangles(first), self.second.triangles(second));
+        while pairs != 0 {
+            let pair = pairs.trailing_zeros() as usize;
+            pairs &= pairs - 1;
+            let (i, j) = (pair / WIDTH, pair % WIDTH);
+            self.try_triangles(
+                (first.face[i], first.corners(i)),
+                (second.face[j], second.corners(j)),
+            );
         }
         ControlFlow::Continue(())
     }
@@ -146,17 +147,19 @@ impl Tiles for Search<'_> {
 
 impl Search<'_> {
     /// When two boxes begin to meet, rounded down; `None` if they do not within the motion.
-    fn entry(&self, first: &Node, i: usize, second: &Node, j: usize) -> Option<f64> {
+    fn entry(&self, first: &Boxes, i: usize, second: &Boxes, j: usize) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
         for axis in 0..3 {
-            let (a_min, a_max) = (first.min[axis][i], first.max[axis][i]);
-            let (b_min, b_max) = (second.min[axis][j], second.max[axis][j]);
+            let wide = |x: &[[f32; WIDTH]; 3], lane: usize| f64::from(x[axis][lane]);
+            let (a, b) = (wide(&first.centre, i), wide(&second.centre, j));
+            let reach = wide(&first.half, i) + wide(&second.half, j);
+            if reach < 0.0 {
+                return None;
+            }
             let offset = self.offset[axis];
-            let near = f64::from(a_min) - (f64::from(b_max) + offset);
-            let far = f64::from(a_max) - (f64::from(b_min) + offset);
-            let size =
-                f64::from(a_min.abs().max(a_max.abs())) + f64::from(b_min.abs().max(b_max.abs()));
-            let slack = 8.0 * f64::EPSILON * (size + offset.abs());
+            let between = a - (b + offset);
+            let (near, far) = (between - reach, between + reach);
+            let slack = 8.0 * f64::EPSILON * (a.abs() + b.abs() + reach + offset.abs());
             let (near, far) = (near - slack, far + slack);
             let motion = self.motion[axis];
             let inverse = 1.0 / motion;
@@ -172,26 +175,26 @@ impl Search<'_> {
         (enter <= leave).then_some(enter)
     }
 
-    fn try_triangles(&mut self, s: u32, t: u32) {
-        let first = self.first.corners(s).map(|v| v.as_dvec3());
-        let second = self.second.corners(t).map(|v| place(v, self.offset));
-        let (s, t) = (self.first.origin(s), self.second.origin(t));
-        for i in (0..3).filter(|&i| t.owns_vertex[i]) {
+    fn try_triangles(&mut self, (s_face, s): (u32, [Vec3; 3]), (t_face, t): (u32, [Vec3; 3])) {
+        let first = s.map(|v| v.as_dvec3());
+        let second = t.map(|v| v.as_dvec3() + self.offset);
+        let (s, t) = (self.first.origin(s_face), self.second.origin(t_face));
+        for i in (0..3).filter(|&i| t.owned.vertex[i]) {
             let feature = Feature::FaceVertex {
-                face: s.face,
+                face: s_face,
                 vertex: t.vertices[i],
             };
             self.vertex_face(second[i], first, self.motion, feature);
         }
-        for i in (0..3).filter(|&i| s.owns_vertex[i]) {
+        for i in (0..3).filter(|&i| s.owned.vertex[i]) {
             let feature = Feature::VertexFace {
                 vertex: s.vertices[i],
-                face: t.face,
+                face: t_face,
             };
             self.vertex_face(first[i], second, -self.motion, feature);
         }
-        for i in (0..3).filter(|&i| s.owns_edge[i]) {
-            for j in (0..3).filter(|&j| t.owns_edge[j]) {
+        for i in (0..3).filter(|&i| s.owned.edge[i]) {
+            for j in (0..3).filter(|&j| t.owned.edge[j]) {
                 let feature = Feature::EdgeEdge {
                     first: s.edges[i],
                     second: t.edges[j],
@@ -287,8 +290,9 @@ impl Search<'_> {
 
     fn best(mut self) -> Option<Touch> {
         let earliest = self.earliest;
+        // A time that is known badly (motion almost along the feature) does not tie with all others.
         self.found
-            .retain(|(touch, error)| touch.time - error <= earliest);
+            .retain(|(touch, error)| touch.time - error.min(LONGEST_TIE) <= earliest);
         let rank = |touch: &Touch| {
             let edges = matches!(touch.feature, Feature::EdgeEdge { .. });
             (edges, touch.normal.dot(self.direction), touch.feature)

@@ -148,6 +148,43 @@ impl Force {
         }
     }
 
+    /// How it changes with a small relative motion: the Jacobians' product with `dx` and `dv`,
+    /// which springs and gravitation have without the matrices.
+    #[inline]
+    pub(crate) fn pair_change(&self, at: &PairMotion, dx: DVec3, dv: DVec3) -> DVec3 {
+        match self {
+            Force::Spring {
+                rest_length,
+                stiffness,
+                damping,
+                ..
+            } => {
+                let squared = dot(at.position, at.position);
+                if squared == 0.0 {
+                    return *stiffness * dx + *damping * dv;
+                }
+                let inverse = 1.0 / libm::sqrt(squared);
+                let n = inverse * at.position;
+                let (stretch, speed) = (dot(n, dx), dot(n, at.velocity));
+                let across = dx - stretch * n;
+                let slack = stiffness * (1.0 - rest_length * inverse) + damping * inverse * speed;
+                let turned = damping * inverse * dot(at.velocity, across);
+                (stiffness * stretch + turned + damping * dot(n, dv)) * n + slack * across
+            }
+            Force::Gravitation { constant } => {
+                let squared = dot(at.position, at.position);
+                let strength = constant * at.mass[0] * at.mass[1];
+                let cubed = squared * libm::sqrt(squared);
+                let along = 3.0 * dot(at.position, dx) / squared;
+                strength / cubed * (dx - along * at.position)
+            }
+            _ => {
+                let slopes = self.pair_jacobians(at);
+                slopes.position * dx + slopes.velocity * dv
+            }
+        }
+    }
+
     /// Its potential energy, J.
     pub(crate) fn pair_potential(&self, at: &PairMotion) -> Option<f64> {
         match self {

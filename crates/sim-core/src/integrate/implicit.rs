@@ -5,7 +5,7 @@
 //! ```
 //!
 //! for the velocities `w`. Backward Euler has `d = h = dt`; the implicit midpoint rule has half of
-//! that; each stage of a diagonally implicit Runge-Kutta method has `d = h = γ dt`; a kick by a
+//! that; a kick by a
 //! force that depends on the velocity has `d = 0`.
 //!
 //! Newton's method solves it: `(1 - h ∂a/∂v - h d ∂a/∂x) δ = w - v - h a`, then `w - δ`, until `δ`
@@ -40,6 +40,39 @@ pub(super) struct Equation<'a> {
     pub(super) drift: f64,
 }
 
+/// How often a correction that makes matters worse is halved.
+const HALVINGS: u32 = 10;
+
+/// The size of a correction, which says nothing if its own equations were not solved.
+pub(super) fn trusted(size: f64, solved: bool) -> f64 {
+    if solved { size } else { size.max(1.0) }
+}
+
+/// Corrects until a solution is reached. `correct` returns the body with the largest correction and
+/// its relative size.
+pub(super) fn iterate(mut correct: impl FnMut() -> (usize, f64)) -> Result<(), Failure> {
+    let mut last = f64::INFINITY;
+    for iteration in 1.. {
+        let (body, size) = correct();
+        // The next correction would be smaller than this one by at least as much again.
+        let next = size * (size / last);
+        let solved = size <= TOLERANCE || last.is_finite() && next <= 0.01 * TOLERANCE;
+        // Corrections that no longer shrink are rounding, where large forces cancel.
+        let stalled = size <= LOOSE_TOLERANCE && size > 0.5 * last;
+        if solved || stalled {
+            break;
+        }
+        if iteration == ITERATIONS || !size.is_finite() {
+            return Err(Failure::NotConverged {
+                body,
+                iterations: iteration,
+            });
+        }
+        last = size;
+    }
+    Ok(())
+}
+
 impl Equation<'_> {
     /// Solves for the velocities, starting from those in `w`.
     pub(super) fn solve(
@@ -48,26 +81,13 @@ impl Equation<'_> {
         w: &mut [DVec3],
         room: &mut Newton,
     ) -> Result<(), Failure> {
-        let mut worst = (0, f64::INFINITY);
-        for _ in 0..ITERATIONS {
-            let last = worst.1;
-            worst = if system.is_coupled() {
-                self.correct_together(system, w, room)
+        let mut last_residual = f64::INFINITY;
+        iterate(|| {
+            if system.is_coupled() {
+                self.correct_together(system, w, room, &mut last_residual)
             } else {
                 self.correct_each(system, w, room)
-            };
-            // Corrections that no longer shrink are rounding, where large forces cancel.
-            let stalled = worst.1 <= LOOSE_TOLERANCE && worst.1 > 0.5 * last;
-            if worst.1 <= TOLERANCE || stalled {
-                return Ok(());
             }
-            if !worst.1.is_finite() {
-                break;
-            }
-        }
-        Err(Failure::NotConverged {
-            body: worst.0,
-            iterations: ITERATIONS,
         })
     }
 
@@ -86,34 +106,57 @@ impl Equation<'_> {
         system.jacobians(self.time, x, w, jacobians);
         let mut worst = (0, 0.0);
         for i in 0..n {
-            let correction = solve3(self.matrix(&jacobians[i]), residual[i]);
+            let matrix = self.matrix(&jacobians[i]).transpose();
+            let correction = solve(matrix.to_cols_array_2d(), residual[i].to_array());
+            let correction = DVec3::from(correction);
             w[i] -= correction;
             let size = largest(correction) / self.scale(i, w[i]);
-            if !(size <= worst.1) {
+            // A NaN is the worst of all.
+            if size > worst.1 || size.is_nan() {
                 worst = (i, size);
             }
         }
         worst
     }
 
-    /// One correction of bodies that do, relative to the greatest speed among them.
+    /// One correction of bodies that do, relative to the greatest speed among them. First, half of
+    /// the last correction is taken back as long as it has made the residual larger.
     fn correct_together(
         &self,
         system: &dyn System,
         w: &mut [DVec3],
         room: &mut Newton,
+        last_residual: &mut f64,
     ) -> (usize, f64) {
         let n = w.len();
         let ([x, residual, correction, moved, krylov @ ..], jacobians) =
             room.columns::<{ 4 + krylov::COLUMNS }>(n);
         jacobians.resize(n, Jacobians::ZERO);
         self.residual(system, w, x, residual);
+        let mut size = krylov::dot(residual, residual);
+        for _ in 0..HALVINGS {
+            if size <= *last_residual {
+                break;
+            }
+            for (w, correction) in w.iter_mut().zip(correction.iter_mut()) {
+                *correction *= 0.5;
+                *w += *correction;
+            }
+            self.residual(system, w, x, residual);
+            size = krylov::dot(residual, residual);
+        }
+        *last_residual = size;
         system.jacobians(self.time, x, w, jacobians);
         for jacobians in jacobians.iter_mut() {
             // The block on the diagonal, inverted, is what makes the Krylov method quick.
             jacobians.position = self.matrix(jacobians).inverse();
         }
-        let mut apply = |u: &[DVec3], out: &mut [DVec3]| {
+        let condition = |from: &[DVec3], to: &mut [DVec3]| {
+            for ((to, from), block) in to.iter_mut().zip(from).zip(jacobians.iter()) {
+                *to = block.position * *from;
+            }
+        };
+        let apply = |u: &[DVec3], out: &mut [DVec3]| {
             for (moved, u) in moved.iter_mut().zip(u) {
                 *moved = self.drift * *u;
             }
@@ -122,18 +165,19 @@ impl Equation<'_> {
                 *out = *u - self.h * *out;
             }
         };
-        krylov::solve(&mut apply, jacobians, residual, correction, krylov);
+        let solved = krylov::solve(apply, condition, residual, correction, krylov);
         let mut scale: f64 = f64::MIN_POSITIVE;
         let mut worst = (0, 0.0);
         for i in 0..n {
             w[i] -= correction[i];
             scale = scale.max(self.scale(i, w[i]));
             let size = largest(correction[i]);
-            if !(size <= worst.1) {
+            // A NaN is the worst of all.
+            if size > worst.1 || size.is_nan() {
                 worst = (i, size);
             }
         }
-        (worst.0, worst.1 / scale)
+        (worst.0, trusted(worst.1 / scale, solved))
     }
 
     /// `w - v - h a(x + d w, w)`, and the positions at which it is.
@@ -152,41 +196,48 @@ impl Equation<'_> {
         DMat3::IDENTITY - self.h * slopes.velocity - self.h * self.drift * slopes.position
     }
 
-    /// The velocity against which a correction of a body is small. A position of many digits
-    /// leaves few of them to the velocity that moves it.
     fn scale(&self, i: usize, w: DVec3) -> f64 {
-        let moving = largest(self.velocity[i]).max(largest(w));
-        let placed = largest(self.position[i]) / self.h.abs();
-        moving.max(placed).max(f64::MIN_POSITIVE)
+        scale(self.position[i], self.velocity[i], w, self.h)
     }
 }
 
-fn largest(v: DVec3) -> f64 {
+/// The velocity against which a correction of `w` is small. A position of many digits leaves few
+/// of them to the velocity that moves it.
+pub(super) fn scale(x: DVec3, v: DVec3, w: DVec3, h: f64) -> f64 {
+    let moving = largest(v).max(largest(w));
+    moving.max(largest(x) / h.abs()).max(f64::MIN_POSITIVE)
+}
+
+pub(super) fn largest(v: DVec3) -> f64 {
     v.abs().max_element()
 }
 
-/// The solution of a 3×3 system, by elimination with row exchanges.
-fn solve3(matrix: DMat3, right: DVec3) -> DVec3 {
-    let [x, y, z] = matrix.transpose().to_cols_array_2d();
-    let mut rows = [
-        [x[0], x[1], x[2], right.x],
-        [y[0], y[1], y[2], right.y],
-        [z[0], z[1], z[2], right.z],
-    ];
-    for column in 0..3 {
-        let below = column..3;
-        let pivot = below.max_by(|&i, &j| rows[i][column].abs().total_cmp(&rows[j][column].abs()));
-        rows.swap(column, pivot.unwrap_or(column));
-        let top = rows[column];
-        for row in &mut rows[column + 1..] {
-            let factor = row[column] / top[column];
-            for (entry, above) in row.iter_mut().zip(top).skip(column) {
-                *entry -= factor * above;
+/// The solution of a small system, given by rows: elimination with row exchanges.
+pub(super) fn solve<const N: usize>(mut rows: [[f64; N]; N], mut right: [f64; N]) -> [f64; N] {
+    for column in 0..N {
+        let mut pivot = column;
+        for row in column + 1..N {
+            if rows[row][column].abs() > rows[pivot][column].abs() {
+                pivot = row;
             }
         }
+        rows.swap(column, pivot);
+        right.swap(column, pivot);
+        let (top, top_right) = (rows[column], right[column]);
+        for row in column + 1..N {
+            let factor = rows[row][column] / top[column];
+            for (entry, above) in rows[row].iter_mut().zip(top).skip(column) {
+                *entry -= factor * above;
+            }
+            right[row] -= factor * top_right;
+        }
     }
-    let z = rows[2][3] / rows[2][2];
-    let y = (rows[1][3] - rows[1][2] * z) / rows[1][1];
-    let x = (rows[0][3] - rows[0][1] * y - rows[0][2] * z) / rows[0][0];
-    DVec3::new(x, y, z)
+    for row in (0..N).rev() {
+        let mut rest = right[row];
+        for column in row + 1..N {
+            rest -= rows[row][column] * right[column];
+        }
+        right[row] = rest / rows[row][row];
+    }
+    right
 }

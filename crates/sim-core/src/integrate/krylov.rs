@@ -1,13 +1,11 @@
 //! Linear systems of coupled bodies by products with their matrix alone.
 //!
 //! BiCGSTAB (van der Vorst 1992, "Bi-CGSTAB: a fast and smoothly converging variant of Bi-CG",
-//! SIAM J. Sci. Stat. Comput. 13(2), p. 635), preconditioned from the right by the inverted 3×3
-//! blocks on the diagonal. Dampers make the matrices unsymmetric, which conjugate gradients do not
+//! SIAM J. Sci. Stat. Comput. 13(2), p. 635), preconditioned from the right by the inverted
+//! blocks of single bodies on the diagonal. Dampers make the matrices unsymmetric, which conjugate gradients do not
 //! allow, and its memory is a few columns, unlike that of GMRES.
 
 use glam::DVec3;
-
-use super::Jacobians;
 
 /// Columns of room that [`solve`] needs.
 pub(super) const COLUMNS: usize = 7;
@@ -15,18 +13,18 @@ pub(super) const COLUMNS: usize = 7;
 /// The residual to reach, relative to the right-hand side. Newton's method goes on from there.
 const TOLERANCE: f64 = 1e-8;
 
-/// Writes into `solution` an approximation of the solution of `apply(solution) = right`. The
-/// preconditioner is the `position` of each of `blocks`.
+/// Writes into `solution` an approximation of the solution of `apply(solution) = right`, where
+/// `condition` applies the preconditioner.
 ///
-/// It stops at [`TOLERANCE`], after as many products as the matrix has rows and some, or when the
-/// recurrence breaks down; the caller looks at what came out.
+/// It stops at [`TOLERANCE`] and tells `true`; or after as many products as the matrix has rows and
+/// some, or when the recurrence breaks down, with the best that it has.
 pub(super) fn solve(
-    apply: &mut impl FnMut(&[DVec3], &mut [DVec3]),
-    blocks: &[Jacobians],
+    mut apply: impl FnMut(&[DVec3], &mut [DVec3]),
+    condition: impl Fn(&[DVec3], &mut [DVec3]),
     right: &[DVec3],
     solution: &mut [DVec3],
     room: [&mut [DVec3]; COLUMNS],
-) {
+) -> bool {
     let [
         residual,
         shadow,
@@ -36,11 +34,6 @@ pub(super) fn solve(
         second,
         ready_second,
     ] = room;
-    let condition = |from: &[DVec3], to: &mut [DVec3]| {
-        for ((to, from), block) in to.iter_mut().zip(from).zip(blocks) {
-            *to = block.position * *from;
-        }
-    };
     solution.fill(DVec3::ZERO);
     residual.copy_from_slice(right);
     shadow.copy_from_slice(right);
@@ -48,8 +41,12 @@ pub(super) fn solve(
     let goal = TOLERANCE * TOLERANCE * dot(right, right);
     let mut rho = dot(shadow, residual);
     for _ in 0..50 + 3 * right.len() {
-        if !(rho != 0.0) || !(dot(residual, residual) > goal) {
-            return;
+        let squared = dot(residual, residual);
+        if squared <= goal {
+            return true;
+        }
+        if rho == 0.0 || squared.is_nan() {
+            return false;
         }
         condition(direction, ready);
         apply(ready, image);
@@ -70,12 +67,13 @@ pub(super) fn solve(
         let beta = next / rho * (alpha / omega);
         rho = next;
         if !beta.is_finite() {
-            return;
+            return dot(residual, residual) <= goal;
         }
         for ((d, r), i) in direction.iter_mut().zip(&*residual).zip(&*image) {
             *d = *r + beta * (*d - omega * *i);
         }
     }
+    false
 }
 
 fn add(to: &mut [DVec3], factor: f64, what: &[DVec3]) {
@@ -84,7 +82,7 @@ fn add(to: &mut [DVec3], factor: f64, what: &[DVec3]) {
     }
 }
 
-fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
+pub(super) fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
     a.iter()
         .zip(b)
         .map(|(a, b)| a.x * b.x + a.y * b.y + a.z * b.z)

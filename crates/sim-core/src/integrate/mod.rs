@@ -13,9 +13,9 @@ mod forward_euler;
 mod implicit;
 mod implicit_midpoint;
 mod krylov;
+mod radau5;
 mod rk4;
 mod scratch;
-mod sdirk4;
 mod splitting;
 pub(crate) mod stability;
 mod stepper;
@@ -61,6 +61,11 @@ pub struct Method {
 }
 
 /// Every method, the course's four first.
+///
+/// All keep their order for forces that depend on velocities. Symplectic Euler takes such a force
+/// at the old velocity; the other splitting methods partly at the new one, for which they solve an
+/// equation. None is symplectic then, since nothing is; the implicit midpoint rule and those made
+/// of drifts and kicks, symplectic Euler aside, stay reversible.
 pub static METHODS: [&Method; 11] = [
     &forward_euler::METHOD,
     &backward_euler::METHOD,
@@ -70,7 +75,7 @@ pub static METHODS: [&Method; 11] = [
     &implicit_midpoint::METHOD,
     &symplectic4::METHOD,
     &symplectic8::METHOD,
-    &sdirk4::METHOD,
+    &radau5::METHOD,
     &dopri5::METHOD,
     &dop853::METHOD,
 ];

@@ -18,6 +18,8 @@ pub struct Scratch {
 pub(super) struct Newton {
     columns: Vec<DVec3>,
     pub(super) jacobians: Vec<Jacobians>,
+    /// Matrices of three stages of each body, inverted.
+    pub(super) inverses: Vec<[[f64; 9]; 9]>,
 }
 
 impl Scratch {
@@ -42,6 +44,20 @@ impl Newton {
         len: usize,
     ) -> ([&mut [DVec3]; N], &mut Vec<Jacobians>) {
         (columns(&mut self.columns, len), &mut self.jacobians)
+    }
+
+    /// The same with the matrices of three stages.
+    #[expect(clippy::type_complexity, reason = "each part is borrowed for itself")]
+    pub(super) fn with_inverses<const N: usize>(
+        &mut self,
+        len: usize,
+    ) -> (
+        [&mut [DVec3]; N],
+        &mut Vec<Jacobians>,
+        &mut Vec<[[f64; 9]; 9]>,
+    ) {
+        let columns = columns(&mut self.columns, len);
+        (columns, &mut self.jacobians, &mut self.inverses)
     }
 }
 

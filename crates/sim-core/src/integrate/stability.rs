@@ -20,12 +20,12 @@ impl Method {
     /// ```
     pub fn stable_dt(&self, k: f64, c: f64) -> f64 {
         let rate = libm::sqrt(k.max(0.0)).max(c.abs());
-        let unstable = |dt: f64| self.growth(k, c, dt) > 1.0 + 1e-9;
+        let unstable = |dt: f64| self.growth(k, c, dt) > 1.0 + 1e-11;
         if self.adaptive || rate == 0.0 || k < 0.0 || c < 0.0 {
             // It follows the motion, or the motion itself grows.
             return f64::INFINITY;
         }
-        let (mut stable, factor) = (1e-3 / rate, 1.02);
+        let (mut stable, factor) = (1e-2 / rate, 1.02);
         if unstable(stable) {
             return 0.0;
         }

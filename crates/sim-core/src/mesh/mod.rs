@@ -10,6 +10,7 @@ use glam::{DQuat, DVec3, Vec3};
 use crate::Aabb;
 pub use error::MeshError;
 pub use repair::Repairs;
+pub(crate) use topology::Owned;
 use topology::Topology;
 
 /// A triangle mesh in its own frame: open or closed, concave or convex, in any number of pieces.
@@ -34,7 +35,7 @@ impl Mesh {
         }
         Ok(Mesh {
             bounds: Aabb::around(vertices.iter().copied()),
-            topology: Topology::of(&triangles),
+            topology: Topology::of(vertices.len(), &triangles),
             vertices,
             triangles,
         })
@@ -58,6 +59,11 @@ impl Mesh {
     /// For each triangle `[a, b, c]` the edges `ab`, `bc` and `ca` as indices of [`Mesh::edges`].
     pub fn triangle_edges(&self) -> &[[u32; 3]] {
         &self.topology.triangle_edges
+    }
+
+    /// For each triangle which of its corners and edges it owns.
+    pub(crate) fn owned(&self) -> &[Owned] {
+        &self.topology.owned
     }
 
     /// The corners of a triangle, m.
@@ -134,6 +140,10 @@ impl Mesh {
         }
         for [ab, _, ca] in &mut self.topology.triangle_edges {
             core::mem::swap(ab, ca);
+        }
+        for Owned { vertex, edge } in &mut self.topology.owned {
+            vertex.swap(1, 2);
+            edge.swap(0, 2);
         }
     }
 }

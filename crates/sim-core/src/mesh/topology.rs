@@ -2,17 +2,27 @@
 
 use alloc::{vec, vec::Vec};
 
+/// Of the corners and edges of a triangle, those for which it is the first of all that have it. By
+/// owners, each edge and vertex comes up once.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Owned {
+    pub(crate) vertex: [bool; 3],
+    pub(crate) edge: [bool; 3],
+}
+
 /// Edges of a mesh and what follows from counting their triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Topology {
     pub(super) edges: Vec<[u32; 2]>,
     pub(super) triangle_edges: Vec<[u32; 3]>,
+    pub(super) owned: Vec<Owned>,
     pub(super) closed: bool,
     pub(super) oriented: bool,
 }
 
 impl Topology {
-    pub(super) fn of(triangles: &[[u32; 3]]) -> Topology {
+    /// Of triangles over so many vertices.
+    pub(super) fn of(vertices: usize, triangles: &[[u32; 3]]) -> Topology {
         // Every side of every triangle, sorted so that the sides of one edge lie together.
         let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * triangles.len());
         for (triangle, &[a, b, c]) in triangles.iter().enumerate() {
@@ -25,6 +35,7 @@ impl Topology {
         let mut topology = Topology {
             edges: Vec::with_capacity(sides.len() / 2 + 1),
             triangle_edges: vec![[0; 3]; triangles.len()],
+            owned: vertex_owners(vertices, triangles),
             closed: true,
             oriented: true,
         };
@@ -33,6 +44,9 @@ impl Topology {
             topology
                 .edges
                 .push([(run[0].0 >> 32) as u32, run[0].0 as u32]);
+            // Sides of one edge are in the order of their triangles.
+            let first = run[0].1 as usize;
+            topology.owned[first / 3].edge[first % 3] = true;
             let mut upward = 0;
             for &(_, place) in run {
                 let (triangle, side) = (place as usize / 3, place as usize % 3);
@@ -50,4 +64,15 @@ impl Topology {
 /// Orders edges by their lower vertex, then by their higher one.
 fn edge_key(from: u32, to: u32) -> u64 {
     u64::from(from.min(to)) << 32 | u64::from(from.max(to))
+}
+
+fn vertex_owners(vertices: usize, triangles: &[[u32; 3]]) -> Vec<Owned> {
+    let mut owned = vec![Owned::default(); triangles.len()];
+    let mut seen = vec![false; vertices];
+    for (corners, owned) in triangles.iter().zip(&mut owned) {
+        for (&v, owned) in corners.iter().zip(&mut owned.vertex) {
+            *owned = !core::mem::replace(&mut seen[v as usize], true);
+        }
+    }
+    owned
 }

@@ -270,11 +270,15 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
                 self.rejected_last = false;
                 return Ok(());
             }
-            self.rejected += u64::from(self.steps > 0);
+            self.rejected += 1;
             self.rejected_last = true;
             let [exponent, _] = P::CONTROL;
-            let change = SAFETY * power_of_2(-exponent * rough_log2(error));
-            self.next = h * factor::<P, Y>(change).min(1.0);
+            let [least, _] = P::FACTORS;
+            let change = match error.is_finite() {
+                true => SAFETY * power_of_2(-exponent * rough_log2(error)),
+                false => least,
+            };
+            self.next = h * factor::<P, Y>(change).min(SAFETY);
         }
     }
 
@@ -293,7 +297,7 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
         self.steps
     }
 
-    /// Steps tried in vain, but for the first one's.
+    /// Steps tried in vain.
     pub fn rejected(&self) -> u64 {
         self.rejected
     }
@@ -365,7 +369,7 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
         let steps = self.steps + self.rejected;
         let failure = if steps >= self.most_steps {
             SolveError::TooManySteps { time, steps }
-        } else if !(0.1 * h.abs() > f64::EPSILON * time.abs()) {
+        } else if h == 0.0 || h.is_nan() || 0.1 * h.abs() <= f64::EPSILON * time.abs() {
             SolveError::StepTooSmall { time, step: h }
         } else {
             return Ok(());
@@ -380,29 +384,28 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
     fn first_step(&mut self, rest: f64) -> f64 {
         let (n, y) = (self.start.as_ref().len(), self.start.as_ref());
         let weight = |i: usize| self.tolerance.absolute + self.tolerance.relative * y[i].abs();
-        let square = |x: f64| x * x;
         let (slope, moved) = self.pair.slope();
         let slope = slope.as_ref();
-        let (mut size, mut speed) = (0.0, 0.0);
-        for i in 0..n {
-            size += square(y[i] / weight(i));
-            speed += square(slope[i] / weight(i));
-        }
+        let total = |of: &dyn Fn(usize) -> f64| -> f64 {
+            (0..n)
+                .map(|i| (of(i) / weight(i)) * (of(i) / weight(i)))
+                .sum()
+        };
+        let (size, speed) = (total(&|i| y[i]), total(&|i| slope[i]));
         let guess = if size < 1e-10 || speed < 1e-10 {
             1e-6
         } else {
             0.01 * libm::sqrt(size / speed)
         };
         let h = libm::copysign(guess.min(rest.abs()), rest);
-        for i in 0..n {
-            self.room.as_mut()[i] = y[i] + h * slope[i];
+        let trial = self.room.as_mut().iter_mut();
+        for (trial, (y, slope)) in trial.zip(y.iter().zip(slope)) {
+            *trial = y + h * slope;
         }
         (self.f)(self.time + h, &self.room, moved);
         self.evaluations += 1;
-        let mut change = 0.0;
-        for i in 0..n {
-            change += square((moved.as_ref()[i] - slope[i]) / weight(i));
-        }
+        let moved = moved.as_ref();
+        let change = total(&|i| moved[i] - slope[i]);
         let rate = libm::sqrt(speed).max(libm::sqrt(change) / h.abs());
         let step = if rate <= 1e-15 {
             (1e-3 * h.abs()).max(1e-6)
@@ -419,7 +422,7 @@ const SAFETY: f64 = 0.9;
 /// Of 1e-4: errors below it are remembered as that.
 const LOG2_LEAST_ERROR: f64 = -13.287712379549449;
 
-/// The logarithm to about seven digits, which are plenty for the length of a step, at a quarter of
+/// The logarithm to about six digits, which are plenty for the length of a step, at a quarter of
 /// the cost of an exact one: that of the mantissa in `[√½, √2)` by `2 artanh((m - 1)/(m + 1))`.
 /// Very low for 0.
 fn rough_log2(x: f64) -> f64 {
@@ -428,18 +431,18 @@ fn rough_log2(x: f64) -> f64 {
     let m = f64::from_bits(x.to_bits().wrapping_sub((shifted as u64) << 52));
     let s = (m - 1.0) / (m + 1.0);
     let square = s * s;
-    let series = 1.0 + square * (1.0 / 3.0 + square * (1.0 / 5.0 + square / 7.0));
+    let series = 1.0 + square * (1.0 / 3.0 + square * (1.0 / 5.0));
     shifted as f64 + 2.0 * core::f64::consts::LOG2_E * s * series
 }
 
-/// `2^x` to about seven digits, for `x` within ±1000 or beyond them by clamping.
+/// `2^x` to about five digits, for `x` within ±1000 or beyond them by clamping.
 fn power_of_2(x: f64) -> f64 {
-    let x = x.max(-1000.0).min(1000.0);
+    let x = x.clamp(-1000.0, 1000.0);
     let whole = libm::rint(x);
     let t = (x - whole) * core::f64::consts::LN_2;
-    let series = 1.0
-        + t * (1.0
-            + t / 2.0 * (1.0 + t / 3.0 * (1.0 + t / 4.0 * (1.0 + t / 5.0 * (1.0 + t / 6.0)))));
+    let square = t * t;
+    let rest = (1.0 / 24.0 + t * (1.0 / 120.0)) * square;
+    let series = (1.0 + t) + square * ((0.5 + t * (1.0 / 6.0)) + rest);
     series * f64::from_bits(((whole as i64 + 1023) as u64) << 52)
 }
 

@@ -88,7 +88,8 @@ pub enum StepError {
     },
     /// Speeds have grown a millionfold, and the step is longer than the method is stable for.
     #[error(
-        "step {step}: the motion of body {body} grows without bound: dt is too long for {method},          which is stable here up to {stable_dt:.4e} s"
+        "step {step}: the motion of body {body} grows without bound: dt is too long for \
+         {method}, which is stable here up to {stable_dt:.4e} s"
     )]
     Unstable {
         /// Index of the fastest body.
@@ -116,7 +117,8 @@ pub enum StepError {
     },
     /// An adaptive method did not reach the end of the step.
     #[error(
-        "step {step}: {method} needs more than {steps} steps within dt to hold the tolerance for          body {body}; lower dt or raise the tolerance"
+        "step {step}: {method} needs more than {steps} steps within dt to hold the tolerance for \
+         body {body}; lower dt or raise the tolerance"
     )]
     TooManySteps {
         /// Index of the body.

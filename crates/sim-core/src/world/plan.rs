@@ -134,6 +134,8 @@ impl Plan {
 
 #[cfg(test)]
 mod tests {
+    use core::slice;
+
     use super::*;
 
     fn spring(i: usize, j: usize) -> Force {
@@ -163,7 +165,7 @@ mod tests {
         let weight = Force::Gravity {
             acceleration: glam::DVec3::Y,
         };
-        assert_eq!(sections(&[weight.clone()], 9), []);
+        assert_eq!(sections(slice::from_ref(&weight), 9), []);
         assert_eq!(sections(&[weight, drag(Some(4))], 9), [(4..5, false)]);
         let two = [drag(Some(4)), drag(Some(3)), drag(Some(4))];
         assert_eq!(sections(&two, 9), [(3..5, false)]);
@@ -183,7 +185,7 @@ mod tests {
         let expected = [(0..3, false), (3..6, true), (6..9, false)];
         assert_eq!(sections(&forces, 9), expected);
         let gravitation = Force::Gravitation { constant: 1.0 };
-        assert_eq!(sections(&[gravitation.clone()], 9), [(0..9, true)]);
+        assert_eq!(sections(slice::from_ref(&gravitation), 9), [(0..9, true)]);
         assert_eq!(sections(&[gravitation], 1), []);
     }
 }

@@ -118,8 +118,8 @@ impl System for Part<'_> {
             da[i] += (slopes.position * dx[i] + slopes.velocity * dv[i]) / self.mass[i];
         });
         self.on_pairs(|force, i, j| {
-            let slopes = force.pair_jacobians(&self.pair(at, i, j));
-            let change = slopes.position * (dx[j] - dx[i]) + slopes.velocity * (dv[j] - dv[i]);
+            let (dx, dv) = (dx[j] - dx[i], dv[j] - dv[i]);
+            let change = force.pair_change(&self.pair(at, i, j), dx, dv);
             da[i] += change / self.mass[i];
             da[j] -= change / self.mass[j];
         });

@@ -1,73 +1,113 @@
 //! The descent through two hierarchies at once.
 //!
-//! A *tile* is a pair of nodes: the four boxes of one against the four of the other, sixteen
-//! pairs at once. Pairs that may meet go on a stack, to be tiles in their turn, the nearest on
-//! top; pairs of triangles are collected and handed over several at a time. A tile is a hundred
-//! instructions or less, so what counts is how few branches are guessed wrong.
+//! A *tile* is a pair of nodes or leaves: the four boxes of one against the four of the other,
+//! sixteen pairs at once. Pairs of children that may meet go on a stack, to be tiles in their turn,
+//! the nearest on top. A leaf against a node goes down on the node's side only, and where two
+//! leaves have come together the pairs of triangles whose boxes meet are handed over.
 
-mod list;
+mod lanes;
+mod level;
 mod overlap;
+mod reach;
 #[cfg(target_arch = "x86_64")]
 mod simd;
+mod stack;
 
 use core::ops::ControlFlow;
 
-use crate::bvh::{Bvh, Child, Node, WIDTH};
-pub(super) use list::{Leaves, Stack};
-pub use overlap::Level;
-pub(super) use overlap::{Reach, each_pair};
+use crate::bvh::{Boxes, Bvh, LEAF, Slabs, WIDTH};
+pub(super) use lanes::{Lanes, Portable};
+pub use level::Level;
+pub(super) use overlap::{Meshes, Question, each_pair};
+pub(super) use reach::{Reach, dot, dot0, splat};
+pub(super) use stack::Stack;
 
 /// Pairs in a tile.
-pub(super) const TILE: usize = WIDTH * WIDTH;
+pub(in crate::collide) const TILE: usize = WIDTH * WIDTH;
 
-/// How many pairs of triangles are handed over at once.
-pub(super) const BATCH: usize = 8;
-
-/// What a descent does with nodes and triangles.
+/// What a descent does with boxes and triangles.
 pub(super) trait Tiles {
-    /// Lists the pairs of children that are worth a look.
-    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves);
+    type Lanes: Lanes;
 
-    /// Takes up to [`BATCH`] pairs of triangles, by their places in leaf order.
-    fn triangles(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()>;
+    /// A bit for each pair of boxes that is worth a look, and how near each is.
+    fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, Self::Lanes);
+
+    /// Those of some pairs that are worth it by their slabs too.
+    fn slabs(&self, first: (&Boxes, &Slabs), second: (&Boxes, &Slabs), pairs: u32) -> u32;
+
+    /// Takes pairs of triangles of two leaves, a bit each.
+    fn triangles(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()>;
 }
 
-/// What a question does with triangles whose boxes meet.
-pub(super) trait Visit {
-    /// Takes up to [`BATCH`] pairs of triangles, by their places in leaf order. To be compiled for
-    /// the instructions of each level, it must be inlined.
-    fn visit(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()>;
-}
+/// How many tiles are looked at one after the other, always the nearest pair next. Where meshes
+/// meet deeply, a hit is found by then as a rule.
+const GREEDY: usize = 16;
+/// How many tiles are looked at side by side after that, in no order, as then the hope is gone and
+/// throughput counts.
+const ABREAST: usize = 4;
 
 /// Visits the pairs of triangles that `tiles` leaves, until told to stop.
 #[inline(always)]
-pub(super) fn descend(first: &Bvh, second: &Bvh, tiles: &mut impl Tiles) -> ControlFlow<()> {
-    let (mut stack, mut leaves) = (Stack::new(), Leaves::new());
-    // Where meshes meet, one of the first pairs does as a rule: these are not kept waiting.
-    let mut enough = 1;
-    tiles.expand(first.node(0), second.node(0), &mut stack, &mut leaves);
-    loop {
-        while leaves.len() >= enough {
-            tiles.triangles(leaves.take(BATCH))?;
-            enough = (2 * enough).min(BATCH);
-        }
-        let Some((a, b)) = stack.pop() else {
-            break;
+pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> ControlFlow<()> {
+    let mut stack = Stack::new();
+    let mut next = Some((first.root(), second.root()));
+    for _ in 0..GREEDY {
+        let Some((a, b)) = next.or_else(|| stack.pop()) else {
+            return ControlFlow::Continue(());
         };
-        match (Child::of(a), Child::of(b)) {
-            (Child::Triangle(s), _) => {
-                let alone = Node::of_triangle(s, first.corners(s));
-                tiles.expand(&alone, second.node(b), &mut stack, &mut leaves);
-            }
-            (_, Child::Triangle(t)) => {
-                let alone = Node::of_triangle(t, second.corners(t));
-                tiles.expand(first.node(a), &alone, &mut stack, &mut leaves);
-            }
-            _ => tiles.expand(first.node(a), second.node(b), &mut stack, &mut leaves),
+        let (node, other) = (first.node(a), second.node(b));
+        let (pairs, distance) = tiles.boxes(&node.boxes, &other.boxes);
+        let bits = below(a, b, pairs);
+        next = None;
+        if bits != 0 {
+            let nearest = distance.least(bits);
+            let (i, j) = (nearest as usize / WIDTH, nearest as usize % WIDTH);
+            next = Some((node.child[i], other.child[j]));
+            T::Lanes::push(
+                &mut stack,
+                bits & !(1 << nearest),
+                &node.child,
+                &other.child,
+            );
+        } else if pairs != 0 {
+            tiles.triangles(a, b, pairs)?;
         }
     }
-    while leaves.len() > 0 {
-        tiles.triangles(leaves.take(BATCH))?;
+    if let Some((a, b)) = next {
+        stack.push(a, b);
     }
-    ControlFlow::Continue(())
+    loop {
+        let mut abreast = [(0, 0); ABREAST];
+        let count = stack.take(&mut abreast);
+        if count == 0 {
+            return ControlFlow::Continue(());
+        }
+        let (mut leaves, mut waiting) = ([(0, 0, 0); ABREAST], 0);
+        for &(a, b) in &abreast[..count] {
+            let (node, other) = (first.node(a), second.node(b));
+            let (pairs, _) = tiles.boxes(&node.boxes, &other.boxes);
+            let slabs = (first.slabs(a), second.slabs(b));
+            let pairs = tiles.slabs((&node.boxes, slabs.0), (&other.boxes, slabs.1), pairs);
+            let bits = below(a, b, pairs);
+            T::Lanes::push(&mut stack, bits, &node.child, &other.child);
+            leaves[waiting] = (a, b, pairs);
+            waiting += usize::from((bits == 0) & (pairs != 0));
+        }
+        for &(a, b, pairs) in &leaves[..waiting] {
+            tiles.triangles(a, b, pairs)?;
+        }
+    }
+}
+
+/// The pairs to go on with: of two nodes all; where one is a leaf, it stays for the other's
+/// children, once for all its triangles; where both are leaves none.
+#[inline(always)]
+fn below(a: u32, b: u32, pairs: u32) -> u32 {
+    let columns = (pairs | pairs >> 4 | pairs >> 8 | pairs >> 12) & 0x000f;
+    let rows = (pairs | pairs >> 1 | pairs >> 2 | pairs >> 3) & 0x1111;
+    let of_first = if a & LEAF == 0 { u32::MAX } else { columns };
+    let of_second = if b & LEAF == 0 { u32::MAX } else { rows };
+    let both = if a & b & LEAF == 0 { u32::MAX } else { 0 };
+    let any = if (a | b) & LEAF == 0 { pairs } else { u32::MAX };
+    any & of_first & of_second & both
 }

@@ -1,158 +1,182 @@
-//! Which boxes of two nodes meet, sixteen pairs at once, at the widest level of the processor.
+//! Which boxes and slabs of two nodes meet, sixteen pairs at once.
 
 use core::ops::ControlFlow;
-use glam::{DVec3, Vec3};
 
-#[cfg(target_arch = "x86_64")]
-use super::simd;
-use super::{Leaves, Stack, TILE, Tiles, Visit, descend};
-use crate::bvh::{Bvh, Node, TRIANGLE, WIDTH};
+use super::reach::{Placed, PlacedSlabs, abs, dot, dot0};
+use super::{Lanes, Level, Portable, Reach, TILE, Tiles, descend};
+use crate::bvh::{Boxes, Bvh, Slabs, WIDTH};
+use crate::collide::Placement;
 
-/// Offsets of the second mesh that a comparison of boxes allows for, rounded outward: from one
-/// corner of a box to the other, along each axis.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Reach {
-    pub(super) low: [f32; 3],
-    pub(super) high: [f32; 3],
+/// Two meshes, the second one placed.
+#[derive(Clone, Copy)]
+pub(in crate::collide) struct Meshes<'a> {
+    pub(in crate::collide) first: &'a Bvh,
+    pub(in crate::collide) second: &'a Bvh,
+    pub(in crate::collide) at: &'a Placement,
 }
 
-impl Reach {
-    /// Allows for the one `offset`.
-    ///
-    /// A box's corner moved in f32 errs by the rounding of the offset and of the sum, at most
-    /// `2^-24 |offset|` and `2^-24 (|corner| + |offset|)`, or half the least float. Moved that
-    /// far outward and more, the box holds every placed vertex of it. Beyond the range of f32 every
-    /// pair is let through, for the exact tests to decide.
-    pub(crate) fn new(second: &Bvh, offset: DVec3) -> Reach {
-        let bounds = second.bounds();
-        let widest = bounds.min.abs().max(bounds.max.abs()).as_dvec3() + offset.abs();
-        let margin =
-            widest * f64::from(f32::EPSILON) + f64::from(f32::MIN_POSITIVE * f32::EPSILON) * 4.0;
-        let (low, high) = if widest.max_element() < 1e37 {
-            ((offset - margin).as_vec3(), (offset + margin).as_vec3())
-        } else {
-            (Vec3::NEG_INFINITY, Vec3::INFINITY)
-        };
-        Reach {
-            low: low.to_array(),
-            high: high.to_array(),
-        }
-    }
+/// What is asked about two meshes, triangle by triangle.
+pub(in crate::collide) trait Question {
+    /// Takes pairs of triangles of two leaves whose boxes meet, a bit each; `reach` is there where
+    /// f32 is. To be compiled for the instructions of each level, it must be inlined.
+    fn triangles<L: Lanes>(
+        &mut self,
+        meshes: Meshes<'_>,
+        leaves: (u32, u32),
+        pairs: u32,
+        reach: Option<&Reach>,
+    ) -> ControlFlow<()>;
+
+    /// Hears of each tile whose boxes are compared.
+    fn tile(&mut self) {}
 }
 
-/// Instructions that a descent may use. All give the same answers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
-    /// What the crate was compiled for: 128-bit vectors on x86-64 and on AArch64.
-    Portable,
-    /// 256-bit vectors of x86-64.
-    Avx2,
-    /// 512-bit vectors of x86-64: a tile is one comparison for each side of the box.
-    Avx512,
-}
-
-impl Level {
-    /// Every level, narrowest first.
-    pub const ALL: [Level; 3] = [Level::Portable, Level::Avx2, Level::Avx512];
-
-    /// Whether this processor has it. Without the feature `std` only what the crate was compiled
-    /// for is known.
-    pub fn is_available(self) -> bool {
-        #[cfg(target_arch = "x86_64")]
-        match self {
-            Level::Portable => true,
-            Level::Avx2 => simd::has_avx2(),
-            Level::Avx512 => simd::has_avx512(),
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        matches!(self, Level::Portable)
-    }
-
-    /// The widest level that this processor has.
-    #[inline]
-    pub fn best() -> Level {
-        if Level::Avx512.is_available() {
-            Level::Avx512
-        } else if Level::Avx2.is_available() {
-            Level::Avx2
-        } else {
-            Level::Portable
-        }
-    }
-}
-
-/// Visits the pairs of triangles whose boxes meet somewhere in `reach`, nearest first as far as
-/// depth-first goes, until told to stop. A level that is not available is `Portable`.
+/// Asks about the pairs of triangles whose boxes meet, nearest first as far as depth-first goes,
+/// until told to stop.
 #[inline]
-pub(crate) fn each_pair(
+pub(in crate::collide) fn each_pair<Q: Question>(
     level: Level,
-    first: &Bvh,
-    second: &Bvh,
-    reach: Reach,
-    visit: impl Visit,
+    meshes: Meshes<'_>,
+    question: &mut Q,
 ) -> ControlFlow<()> {
-    #[cfg(target_arch = "x86_64")]
-    match level {
-        Level::Avx512 if simd::has_avx512() => {
-            return simd::each_pair_avx512(first, second, reach, visit);
-        }
-        Level::Avx2 if simd::has_avx2() => {
-            return simd::each_pair_avx2(first, second, reach, visit);
-        }
-        _ => {}
+    let Meshes { first, second, at } = meshes;
+    if !at.boxes_meet(&first.bounds(), &second.bounds()) {
+        return ControlFlow::Continue(());
     }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = level;
-    descend(first, second, &mut Boxes { reach, visit })
+    if at.turn().is_some() {
+        level.ask::<Q, true>(meshes, question)
+    } else {
+        level.ask::<Q, false>(meshes, question)
+    }
 }
 
-struct Boxes<V> {
+/// [`each_pair`] in the lanes of a level.
+#[inline(always)]
+pub(super) fn ask<L: Lanes, Q: Question, const TURNED: bool>(
+    meshes: Meshes<'_>,
+    question: &mut Q,
+) -> ControlFlow<()> {
+    let Meshes { first, second, at } = meshes;
+    match Reach::new(first, second, at) {
+        Some(reach) => {
+            let mut overlaps = Overlaps::<L, Q, TURNED> {
+                meshes,
+                margin: L::splat(reach.margin()),
+                slack: L::splat(SLACK * reach.margin()),
+                reach,
+                question,
+            };
+            descend(first, second, &mut overlaps)
+        }
+        None => descend(first, second, &mut Wide { meshes, question }),
+    }
+}
+
+/// Heights above slabs add up more products than boxes do: their roundings stay below 128 units
+/// `2^-24 S`, where the margin of boxes is sixteen. Twice that is allowed for.
+const SLACK: f32 = 16.0;
+
+struct Overlaps<'a, L, Q, const TURNED: bool> {
+    meshes: Meshes<'a>,
     reach: Reach,
-    visit: V,
+    margin: L,
+    slack: L,
+    question: &'a mut Q,
 }
 
-impl<V: Visit> Tiles for Boxes<V> {
+impl<L: Lanes, Q: Question, const TURNED: bool> Tiles for Overlaps<'_, L, Q, TURNED> {
+    type Lanes = L;
+
     #[inline(always)]
-    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
-        let mut apart = [[0u32; WIDTH]; WIDTH];
-        let mut distance = [[0.0f32; WIDTH]; WIDTH];
-        for axis in 0..3 {
-            let min = second.min[axis].map(|x| x + self.reach.low[axis]);
-            let max = second.max[axis].map(|x| x + self.reach.high[axis]);
-            for i in 0..WIDTH {
-                let (a_min, a_max) = (first.min[axis][i], first.max[axis][i]);
-                for j in 0..WIDTH {
-                    let meet = u32::from(a_min <= max[j]) & u32::from(min[j] <= a_max);
-                    apart[i][j] |= meet ^ 1;
-                    let d = (a_min + a_max) - (min[j] + max[j]);
-                    distance[i][j] += d * d;
-                }
-            }
-        }
-        let (mut nearest, mut least, mut count) = (0, f32::INFINITY, 0);
-        for pair in 0..TILE {
-            let (i, j) = (pair / WIDTH, pair % WIDTH);
-            if apart[i][j] != 0 {
-                continue;
-            }
-            let (a, b) = (first.child[i], second.child[j]);
-            if a & b & TRIANGLE != 0 {
-                leaves.push(a & !TRIANGLE, b & !TRIANGLE);
-            } else {
-                stack.push(a, b);
-                if distance[i][j] < least {
-                    (nearest, least) = (count, distance[i][j]);
-                }
-                count += 1;
-            }
-        }
-        if count > 1 {
-            stack.raise(count - 1 - nearest);
-        }
+    fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, L) {
+        self.question.tile();
+        let a = Placed::<L>::first(first);
+        let b = Placed::<L>::second::<TURNED>(second, &self.reach);
+        let x = separation(&a, &b, 0);
+        let separation = x.max(separation(&a, &b, 1)).max(separation(&a, &b, 2));
+        (separation.at_most(self.margin), separation)
     }
 
     #[inline(always)]
-    fn triangles(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()> {
-        self.visit.visit(pairs)
+    fn slabs(&self, first: (&Boxes, &Slabs), second: (&Boxes, &Slabs), pairs: u32) -> u32 {
+        let a = Placed::<L>::first(first.0);
+        let b = Placed::<L>::second::<TURNED>(second.0, &self.reach);
+        let s = PlacedSlabs::<L>::first(first.1);
+        let t = PlacedSlabs::<L>::second::<TURNED>(second.1, &self.reach);
+        let along = dot0(&s.normal, &t.normal);
+        let one = slab_misses(&s, &t, along, &b, self.slack);
+        pairs & !(one | slab_misses(&t, &s, along, &a, self.slack))
+    }
+
+    #[inline(always)]
+    fn triangles(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()> {
+        let reach = Some(&self.reach);
+        self.question
+            .triangles::<L>(self.meshes, (first, second), pairs, reach)
+    }
+}
+
+/// How far apart boxes are along an axis.
+#[inline(always)]
+fn separation<L: Lanes>(a: &Placed<L>, b: &Placed<L>, axis: usize) -> L {
+    let between = a.centre[axis].sub(b.centre[axis]).abs();
+    between.sub(a.half[axis].add(b.half[axis]))
+}
+
+/// A bit for each pair in which a slab holds nothing of what lies in another slab and box.
+///
+/// Along the normal `n` of the one, a point `x` of the other has the height
+/// `n·x = k m·x + (n - k m)·x` for any `k`, with the other's normal `m`. For `k = n·m` the second
+/// part is small where the normals are alike; the other's slab bounds the first part, its box the
+/// second one.
+#[inline(always)]
+fn slab_misses<L: Lanes>(
+    slab: &PlacedSlabs<L>,
+    other: &PlacedSlabs<L>,
+    k: L,
+    boxes: &Placed<L>,
+    slack: L,
+) -> u32 {
+    let (n, m) = (&slab.normal, &other.normal);
+    let rest = [
+        n[0].sub(k.mul(m[0])),
+        n[1].sub(k.mul(m[1])),
+        n[2].sub(k.mul(m[2])),
+    ];
+    let middle = dot(&rest, &boxes.centre, k.mul(other.middle).sub(slab.middle));
+    let reach = k.abs().mul_add(other.half, slab.half.add(slack));
+    middle.abs().above(dot(&abs(&rest), &boxes.half, reach))
+}
+
+/// Boxes in f64, for meshes so large that f32 is of no use. It need not be fast.
+struct Wide<'a, Q> {
+    meshes: Meshes<'a>,
+    question: &'a mut Q,
+}
+
+impl<Q: Question> Tiles for Wide<'_, Q> {
+    type Lanes = Portable;
+
+    fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, Portable) {
+        self.question.tile();
+        let at = self.meshes.at;
+        let meet = |pair: &usize| {
+            let (i, j) = (pair / WIDTH, pair % WIDTH);
+            let used = first.half[0][i] >= 0.0 && second.half[0][j] >= 0.0;
+            used && at.boxes_meet(&first.bounds(i), &second.bounds(j))
+        };
+        let bits = (0..TILE)
+            .filter(meet)
+            .fold(0, |bits, pair| bits | 1 << pair);
+        (bits, Portable::splat(0.0))
+    }
+
+    fn slabs(&self, _: (&Boxes, &Slabs), _: (&Boxes, &Slabs), pairs: u32) -> u32 {
+        pairs
+    }
+
+    fn triangles(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()> {
+        self.question
+            .triangles::<Portable>(self.meshes, (first, second), pairs, None)
     }
 }

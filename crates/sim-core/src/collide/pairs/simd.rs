@@ -1,250 +1,280 @@
-//! Tiles in 256- and 512-bit vectors of x86-64.
+//! Lanes in 256- and 512-bit vectors of x86-64.
 //!
-//! The only `unsafe` of the crate. It says no more than that instructions which have been found
-//! to exist may be executed: no pointer is made or followed.
+//! The `unsafe` here says no more than that instructions which have been found to exist may be
+//! executed: no pointer is made or followed but in loads of whole arrays.
 #![allow(unsafe_code)]
 
 use core::arch::x86_64::*;
 use core::ops::ControlFlow;
 
-use super::{Leaves, Reach, Stack, TILE, Tiles, Visit, descend};
-use crate::bvh::{Bvh, Node, TRIANGLE, WIDTH};
+use super::lanes::{least, push_each};
+use super::{Lanes, Meshes, Question, Stack, TILE, overlap};
+use crate::bvh::WIDTH;
+
+#[cfg(feature = "std")]
+macro_rules! has {
+    ($($feature:tt),*) => { $(std::arch::is_x86_feature_detected!($feature))&&* };
+}
+#[cfg(not(feature = "std"))]
+macro_rules! has {
+    ($($feature:tt),*) => { cfg!(all($(target_feature = $feature),*)) };
+}
 
 #[inline]
 pub(super) fn has_avx2() -> bool {
-    #[cfg(feature = "std")]
-    return std::arch::is_x86_feature_detected!("avx2")
-        && std::arch::is_x86_feature_detected!("fma");
-    #[cfg(not(feature = "std"))]
-    cfg!(all(target_feature = "avx2", target_feature = "fma"))
+    has!("avx2", "fma", "bmi1", "bmi2", "popcnt")
 }
 
 #[inline]
 pub(super) fn has_avx512() -> bool {
-    #[cfg(feature = "std")]
-    return std::arch::is_x86_feature_detected!("avx512f") && has_avx2();
-    #[cfg(not(feature = "std"))]
-    cfg!(all(target_feature = "avx512f", target_feature = "avx2"))
+    has!("avx512f") && has_avx2()
 }
 
-/// [`super::each_pair`] in 256-bit vectors. The caller has asked [`has_avx2`].
-pub(super) fn each_pair_avx2(
-    first: &Bvh,
-    second: &Bvh,
-    reach: Reach,
-    visit: impl Visit,
+/// Answers a question in 256-bit vectors.
+pub(super) fn ask_avx2<Q: Question, const TURNED: bool>(
+    meshes: Meshes<'_>,
+    question: &mut Q,
 ) -> ControlFlow<()> {
     assert!(has_avx2());
-    // SAFETY: the processor has AVX2 and FMA, by the assertion.
-    unsafe { avx2(first, second, reach, visit) }
+    // SAFETY: the processor has what `avx2` is compiled for, by the assertion.
+    unsafe { avx2::<Q, TURNED>(meshes, question) }
 }
 
-/// [`super::each_pair`] in 512-bit vectors. The caller has asked [`has_avx512`].
-pub(super) fn each_pair_avx512(
-    first: &Bvh,
-    second: &Bvh,
-    reach: Reach,
-    visit: impl Visit,
+/// Answers a question in 512-bit vectors.
+pub(super) fn ask_avx512<Q: Question, const TURNED: bool>(
+    meshes: Meshes<'_>,
+    question: &mut Q,
 ) -> ControlFlow<()> {
     assert!(has_avx512());
-    // SAFETY: the processor has AVX-512F and AVX2, by the assertion.
-    unsafe { avx512(first, second, reach, visit) }
+    // SAFETY: the processor has what `avx512` is compiled for, by the assertion.
+    unsafe { avx512::<Q, TURNED>(meshes, question) }
 }
 
-#[target_feature(enable = "avx2,fma")]
-fn avx2(first: &Bvh, second: &Bvh, reach: Reach, visit: impl Visit) -> ControlFlow<()> {
-    descend(first, second, &mut Avx2 { reach, visit })
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
+fn avx2<Q: Question, const TURNED: bool>(meshes: Meshes<'_>, question: &mut Q) -> ControlFlow<()> {
+    overlap::ask::<Avx2, Q, TURNED>(meshes, question)
 }
 
-#[target_feature(enable = "avx512f,avx2,fma")]
-fn avx512(first: &Bvh, second: &Bvh, reach: Reach, visit: impl Visit) -> ControlFlow<()> {
-    descend(first, second, &mut Avx512 { reach, visit })
+#[target_feature(enable = "avx512f,avx2,fma,bmi1,bmi2,popcnt")]
+fn avx512<Q: Question, const TURNED: bool>(
+    meshes: Meshes<'_>,
+    question: &mut Q,
+) -> ControlFlow<()> {
+    overlap::ask::<Avx512, Q, TURNED>(meshes, question)
 }
 
-/// Made only in [`avx2`].
-struct Avx2<V> {
-    reach: Reach,
-    visit: V,
-}
-
-impl<V: Visit> Tiles for Avx2<V> {
-    #[inline(always)]
-    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
-        // SAFETY: an `Avx2` exists only inside `avx2`, which runs where AVX2 and FMA are.
-        unsafe { expand_avx2(&self.reach, first, second, stack, leaves) }
-    }
-
-    #[inline(always)]
-    fn triangles(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()> {
-        self.visit.visit(pairs)
-    }
-}
+/// Two rows of four in each vector. Made only in [`avx2`].
+#[derive(Clone, Copy)]
+struct Avx2(__m256, __m256);
 
 /// Made only in [`avx512`].
-struct Avx512<V> {
-    reach: Reach,
-    visit: V,
+#[derive(Clone, Copy)]
+struct Avx512(__m512);
+
+/// Calls an intrinsic; safe, since the type exists only where its instructions do.
+macro_rules! call {
+    ($($call:tt)*) => {
+        // SAFETY: values of this type are made only in functions that run where the processor
+        // has these instructions; loads are of whole arrays.
+        unsafe { $($call)* }
+    };
 }
 
-impl<V: Visit> Tiles for Avx512<V> {
+impl Lanes for Avx2 {
     #[inline(always)]
-    fn expand(&mut self, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
-        // SAFETY: an `Avx512` exists only inside `avx512`, which runs where AVX-512F is.
-        unsafe { expand_avx512(&self.reach, first, second, stack, leaves) }
+    fn splat(x: f32) -> Avx2 {
+        call! { let x = _mm256_set1_ps(x); Avx2(x, x) }
     }
 
     #[inline(always)]
-    fn triangles(&mut self, pairs: (&[u32], &[u32])) -> ControlFlow<()> {
-        self.visit.visit(pairs)
-    }
-}
-
-#[inline]
-#[target_feature(enable = "avx2,fma")]
-fn expand_avx2(reach: &Reach, first: &Node, second: &Node, stack: &mut Stack, leaves: &mut Leaves) {
-    let (mut nearest, mut least, mut count) = (0, u32::MAX, 0);
-    // Two lanes of the first node at a time, each against the four of the second.
-    for half in 0..2 {
-        let mut meet = _mm256_castsi256_ps(_mm256_set1_epi32(-1));
-        let mut distance = _mm256_setzero_ps();
-        for axis in 0..3 {
-            let a_min = pair_of(first.min[axis], half);
-            let a_max = pair_of(first.max[axis], half);
-            let b_min = _mm_add_ps(four(second.min[axis]), _mm_set1_ps(reach.low[axis]));
-            let b_max = _mm_add_ps(four(second.max[axis]), _mm_set1_ps(reach.high[axis]));
-            let (b_min, b_max) = (_mm256_set_m128(b_min, b_min), _mm256_set_m128(b_max, b_max));
-            meet = _mm256_and_ps(meet, _mm256_cmp_ps::<_CMP_LE_OQ>(a_min, b_max));
-            meet = _mm256_and_ps(meet, _mm256_cmp_ps::<_CMP_LE_OQ>(b_min, a_max));
-            let d = _mm256_sub_ps(_mm256_add_ps(a_min, a_max), _mm256_add_ps(b_min, b_max));
-            distance = _mm256_fmadd_ps(d, d, distance);
-        }
-        let mut bits = _mm256_movemask_ps(meet) as u32;
-        if bits == 0 {
-            continue;
-        }
-        // Distances are not negative, so their bits are in order.
-        let distance: [u32; 8] = words_256(_mm256_castps_si256(distance));
-        while bits != 0 {
-            let lane = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            let a = first.child[2 * half + lane / WIDTH];
-            let b = second.child[lane % WIDTH];
-            if a & b & TRIANGLE != 0 {
-                leaves.push(a & !TRIANGLE, b & !TRIANGLE);
-            } else {
-                stack.push(a, b);
-                if distance[lane] < least {
-                    (nearest, least) = (count, distance[lane]);
-                }
-                count += 1;
-            }
+    fn rows(x: &[f32; WIDTH]) -> Avx2 {
+        call! {
+            let x = _mm256_broadcast_ps(&*x.as_ptr().cast());
+            Avx2(
+                _mm256_permutevar_ps(x, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)),
+                _mm256_permutevar_ps(x, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3)),
+            )
         }
     }
-    if count > 1 {
-        stack.raise(count - 1 - nearest);
+
+    #[inline(always)]
+    fn columns(x: &[f32; WIDTH]) -> Avx2 {
+        call! { let x = _mm256_broadcast_ps(&*x.as_ptr().cast()); Avx2(x, x) }
+    }
+
+    #[inline(always)]
+    fn add(self, other: Avx2) -> Avx2 {
+        call! { Avx2(_mm256_add_ps(self.0, other.0), _mm256_add_ps(self.1, other.1)) }
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Avx2) -> Avx2 {
+        call! { Avx2(_mm256_sub_ps(self.0, other.0), _mm256_sub_ps(self.1, other.1)) }
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Avx2, sum: Avx2) -> Avx2 {
+        call! {
+            Avx2(
+                _mm256_fmadd_ps(self.0, factor.0, sum.0),
+                _mm256_fmadd_ps(self.1, factor.1, sum.1),
+            )
+        }
+    }
+
+    #[inline(always)]
+    fn mul(self, factor: Avx2) -> Avx2 {
+        call! { Avx2(_mm256_mul_ps(self.0, factor.0), _mm256_mul_ps(self.1, factor.1)) }
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Avx2 {
+        call! {
+            let sign = _mm256_set1_ps(-0.0);
+            Avx2(_mm256_andnot_ps(sign, self.0), _mm256_andnot_ps(sign, self.1))
+        }
+    }
+
+    #[inline(always)]
+    fn min(self, other: Avx2) -> Avx2 {
+        call! { Avx2(_mm256_min_ps(self.0, other.0), _mm256_min_ps(self.1, other.1)) }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Avx2) -> Avx2 {
+        call! { Avx2(_mm256_max_ps(self.0, other.0), _mm256_max_ps(self.1, other.1)) }
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Avx2) -> u32 {
+        call! {
+            let low = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0));
+            let high = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.1, other.1));
+            (low | high << 8) as u32
+        }
+    }
+
+    #[inline(always)]
+    fn above(self, other: Avx2) -> u32 {
+        call! {
+            let low = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(self.0, other.0));
+            let high = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(self.1, other.1));
+            (low | high << 8) as u32
+        }
+    }
+
+    #[inline(always)]
+    fn least(self, among: u32) -> u32 {
+        let mut lanes = [0.0; TILE];
+        call! {
+            _mm256_storeu_ps(lanes.as_mut_ptr(), self.0);
+            _mm256_storeu_ps(lanes[8..].as_mut_ptr(), self.1);
+        }
+        least(&lanes, among)
+    }
+
+    #[inline(always)]
+    fn push(stack: &mut Stack, bits: u32, rows: &[u32; WIDTH], columns: &[u32; WIDTH]) {
+        push_each(stack, bits, rows, columns);
     }
 }
 
-#[inline]
-#[target_feature(enable = "avx512f,avx2,fma")]
-fn expand_avx512(
-    reach: &Reach,
-    first: &Node,
-    second: &Node,
-    stack: &mut Stack,
-    leaves: &mut Leaves,
-) {
-    let mut meet: __mmask16 = !0;
-    let mut distance = _mm512_setzero_ps();
-    for axis in 0..3 {
-        let a_min = each_four_times(first.min[axis]);
-        let a_max = each_four_times(first.max[axis]);
-        let b_min = _mm_add_ps(four(second.min[axis]), _mm_set1_ps(reach.low[axis]));
-        let b_max = _mm_add_ps(four(second.max[axis]), _mm_set1_ps(reach.high[axis]));
-        let (b_min, b_max) = (_mm512_broadcast_f32x4(b_min), _mm512_broadcast_f32x4(b_max));
-        meet = _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(meet, a_min, b_max);
-        meet = _mm512_mask_cmp_ps_mask::<_CMP_LE_OQ>(meet, b_min, a_max);
-        let d = _mm512_sub_ps(_mm512_add_ps(a_min, a_max), _mm512_add_ps(b_min, b_max));
-        distance = _mm512_fmadd_ps(d, d, distance);
+impl Lanes for Avx512 {
+    #[inline(always)]
+    fn splat(x: f32) -> Avx512 {
+        call! { Avx512(_mm512_set1_ps(x)) }
     }
-    let a = _mm512_permutexvar_epi32(
-        FOUR_TIMES.vector(),
-        _mm512_castsi128_si512(four_words(first.child)),
-    );
-    let b = _mm512_broadcast_i32x4(four_words(second.child));
-    let flag = _mm512_set1_epi32(TRIANGLE as i32);
-    let leaf = _mm512_mask_test_epi32_mask(meet, _mm512_and_si512(a, b), flag);
-    if leaf != 0 {
-        let pack = |x| {
-            words(_mm512_maskz_compress_epi32(
-                leaf,
-                _mm512_andnot_si512(flag, x),
-            ))
-        };
-        leaves.push_tile(pack(a), pack(b), leaf.count_ones() as usize);
+
+    #[inline(always)]
+    fn rows(x: &[f32; WIDTH]) -> Avx512 {
+        call! {
+            let x = _mm512_broadcast_f32x4(_mm_loadu_ps(x.as_ptr()));
+            Avx512(_mm512_permutevar_ps(x, row_of_lane()))
+        }
     }
-    let inner = meet & !leaf;
-    if inner != 0 {
-        let pack = |x| words(_mm512_maskz_compress_epi32(inner, x));
-        stack.push_tile(pack(a), pack(b), inner.count_ones() as usize);
-        // Distances are not negative, so their bits are in order; the lowest ones name the lane.
-        let distance = _mm512_castps_si512(distance);
-        let keys = _mm512_or_si512(
-            _mm512_and_si512(distance, _mm512_set1_epi32(!15)),
-            LANES.vector(),
-        );
-        let nearest = _mm512_mask_reduce_min_epu32(inner, keys) & 15;
-        stack.raise((inner >> nearest).count_ones() as usize - 1);
+
+    #[inline(always)]
+    fn columns(x: &[f32; WIDTH]) -> Avx512 {
+        call! { Avx512(_mm512_broadcast_f32x4(_mm_loadu_ps(x.as_ptr()))) }
+    }
+
+    #[inline(always)]
+    fn add(self, other: Avx512) -> Avx512 {
+        call! { Avx512(_mm512_add_ps(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Avx512) -> Avx512 {
+        call! { Avx512(_mm512_sub_ps(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Avx512, sum: Avx512) -> Avx512 {
+        call! { Avx512(_mm512_fmadd_ps(self.0, factor.0, sum.0)) }
+    }
+
+    #[inline(always)]
+    fn mul(self, factor: Avx512) -> Avx512 {
+        call! { Avx512(_mm512_mul_ps(self.0, factor.0)) }
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Avx512 {
+        call! { Avx512(_mm512_abs_ps(self.0)) }
+    }
+
+    #[inline(always)]
+    fn min(self, other: Avx512) -> Avx512 {
+        call! { Avx512(_mm512_min_ps(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Avx512) -> Avx512 {
+        call! { Avx512(_mm512_max_ps(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Avx512) -> u32 {
+        call! { u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    fn above(self, other: Avx512) -> u32 {
+        call! { u32::from(_mm512_cmp_ps_mask::<_CMP_GT_OQ>(self.0, other.0)) }
+    }
+
+    #[inline(always)]
+    fn least(self, among: u32) -> u32 {
+        call! {
+            // Floats in the order of signed integers: the magnitude's bits of negative ones turned
+            // over. The lowest bits name the lane.
+            let bits = _mm512_castps_si512(self.0);
+            let turned = _mm512_srli_epi32::<1>(_mm512_srai_epi32::<31>(bits));
+            let key = _mm512_xor_si512(bits, turned);
+            let lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+            let key = _mm512_or_si512(_mm512_and_si512(key, _mm512_set1_epi32(!15)), lane);
+            _mm512_mask_reduce_min_epi32(among as __mmask16, key) as u32 & 15
+        }
+    }
+
+    #[inline(always)]
+    fn push(stack: &mut Stack, bits: u32, rows: &[u32; WIDTH], columns: &[u32; WIDTH]) {
+        call! {
+            let rows = _mm512_broadcast_i32x4(_mm_loadu_si128(rows.as_ptr().cast()));
+            let rows = _mm512_permutevar_ps(_mm512_castsi512_ps(rows), row_of_lane());
+            let columns = _mm512_broadcast_i32x4(_mm_loadu_si128(columns.as_ptr().cast()));
+            let pack = |x| words(_mm512_maskz_compress_epi32(bits as __mmask16, x));
+            let rows = pack(_mm512_castps_si512(rows));
+            stack.push_tile(rows, pack(columns), bits.count_ones() as usize);
+        }
     }
 }
 
-/// Four floats as a vector.
-#[inline]
-#[target_feature(enable = "sse2")]
-fn four([a, b, c, d]: [f32; WIDTH]) -> __m128 {
-    _mm_setr_ps(a, b, c, d)
-}
-
-/// Lanes `2 half` and `2 half + 1`, four times each.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn pair_of(x: [f32; WIDTH], half: usize) -> __m256 {
-    _mm256_set_m128(_mm_set1_ps(x[2 * half + 1]), _mm_set1_ps(x[2 * half]))
-}
-
-/// Each lane four times, in order.
+/// Within each four lanes, takes the one of their own number.
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn each_four_times(x: [f32; WIDTH]) -> __m512 {
-    _mm512_permutexvar_ps(FOUR_TIMES.vector(), _mm512_castps128_ps512(four(x)))
-}
-
-/// Four words as a vector.
-#[inline]
-#[target_feature(enable = "sse2")]
-fn four_words(x: [u32; WIDTH]) -> __m128i {
-    let [a, b, c, d] = x.map(|x| x as i32);
-    _mm_setr_epi32(a, b, c, d)
-}
-
-/// Numbers of lanes.
-struct Lanes([i32; TILE]);
-
-const LANES: Lanes = Lanes([0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
-const FOUR_TIMES: Lanes = Lanes([0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3]);
-
-impl Lanes {
-    #[inline(always)]
-    fn vector(&self) -> __m512i {
-        // SAFETY: both are 64 bytes in which every pattern is a value.
-        unsafe { core::mem::transmute(self.0) }
-    }
-}
-
-#[inline(always)]
-fn words_256(x: __m256i) -> [u32; 8] {
-    // SAFETY: both are 32 bytes in which every pattern is a value.
-    unsafe { core::mem::transmute(x) }
+fn row_of_lane() -> __m512i {
+    _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3)
 }
 
 #[inline(always)]

@@ -1,0 +1,69 @@
+//! Which instructions a descent uses.
+
+use core::ops::ControlFlow;
+
+#[cfg(target_arch = "x86_64")]
+use super::simd;
+use super::{Meshes, Portable, Question, overlap};
+
+/// Instructions that a descent may use. All give the same answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// What the crate was compiled for: 128-bit vectors on x86-64 and on AArch64.
+    Portable,
+    /// 256-bit vectors of x86-64.
+    Avx2,
+    /// 512-bit vectors of x86-64: all of a tile in one.
+    Avx512,
+}
+
+impl Level {
+    /// Every level, narrowest first.
+    pub const ALL: [Level; 3] = [Level::Portable, Level::Avx2, Level::Avx512];
+
+    /// Whether this processor has it. Without the feature `std` only what the crate was compiled
+    /// for is known.
+    #[inline]
+    pub fn is_available(self) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        match self {
+            Level::Portable => true,
+            Level::Avx2 => simd::has_avx2(),
+            Level::Avx512 => simd::has_avx512(),
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        matches!(self, Level::Portable)
+    }
+
+    /// The widest level that this processor has.
+    #[inline]
+    pub fn best() -> Level {
+        if Level::Avx512.is_available() {
+            Level::Avx512
+        } else if Level::Avx2.is_available() {
+            Level::Avx2
+        } else {
+            Level::Portable
+        }
+    }
+
+    /// Answers a question at this level; one that is not available is `Portable`.
+    #[inline]
+    pub(in crate::collide) fn ask<Q: Question, const TURNED: bool>(
+        self,
+        meshes: Meshes<'_>,
+        question: &mut Q,
+    ) -> ControlFlow<()> {
+        #[cfg(target_arch = "x86_64")]
+        match self {
+            Level::Avx512 if simd::has_avx512() => {
+                return simd::ask_avx512::<Q, TURNED>(meshes, question);
+            }
+            Level::Avx2 if simd::has_avx2() => {
+                return simd::ask_avx2::<Q, TURNED>(meshes, question);
+            }
+            _ => {}
+        }
+        overlap::ask::<Portable, Q, TURNED>(meshes, question)
+    }
+}

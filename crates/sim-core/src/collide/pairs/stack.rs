@@ -1,0 +1,79 @@
+//! Pairs that are still to be looked at.
+//!
+//! The only other `unsafe` of the crate besides that around vector instructions. Setting eight
+//! kilobytes to zero before every query costs as much as a dozen tiles; here they stay as they are
+//! until written.
+#![allow(unsafe_code)]
+
+use core::mem::MaybeUninit;
+
+use super::{ABREAST, TILE};
+use crate::bvh::MAX_DEPTH;
+
+/// Each pair lies lower in one tree or both than the pair that it comes from, and pairs lie in the
+/// order of their levels: those of one level all come from one round, sixteen from each pair of
+/// it. A tile's sixteen are written in one piece, however few count.
+const CAPACITY: usize = TILE * ABREAST * 2 * MAX_DEPTH + TILE;
+
+/// A stack of pairs, in two columns.
+///
+/// Invariant: the first `len` elements of both columns have been written.
+pub(in crate::collide) struct Stack {
+    first: [MaybeUninit<u32>; CAPACITY],
+    second: [MaybeUninit<u32>; CAPACITY],
+    len: usize,
+}
+
+impl Stack {
+    #[inline(always)]
+    pub(super) fn new() -> Stack {
+        Stack {
+            first: [const { MaybeUninit::uninit() }; CAPACITY],
+            second: [const { MaybeUninit::uninit() }; CAPACITY],
+            len: 0,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn pop(&mut self) -> Option<(u32, u32)> {
+        self.len = self.len.checked_sub(1)?;
+        let (first, second) = (self.first[self.len], self.second[self.len]);
+        // SAFETY: `len` was one more, so by the invariant both have been written.
+        Some(unsafe { (first.assume_init(), second.assume_init()) })
+    }
+
+    /// Takes pairs from the top, the lowest first, and returns how many.
+    #[inline(always)]
+    pub(super) fn take(&mut self, pairs: &mut [(u32, u32); ABREAST]) -> usize {
+        let count = self.len.min(ABREAST);
+        self.len -= count;
+        for (i, pair) in pairs.iter_mut().enumerate().take(count) {
+            let place = self.len + i;
+            // SAFETY: it is below what `len` was, so by the invariant both have been written.
+            *pair = unsafe {
+                (
+                    self.first[place].assume_init(),
+                    self.second[place].assume_init(),
+                )
+            };
+        }
+        count
+    }
+
+    #[inline(always)]
+    pub(in crate::collide) fn push(&mut self, first: u32, second: u32) {
+        self.first[self.len].write(first);
+        self.second[self.len].write(second);
+        self.len += 1;
+    }
+
+    /// Adds the first `count` of sixteen pairs.
+    #[inline(always)]
+    pub(super) fn push_tile(&mut self, first: [u32; TILE], second: [u32; TILE], count: usize) {
+        assert!(count <= TILE);
+        let range = self.len..self.len + TILE;
+        self.first[range.clone()].copy_from_slice(&first.map(MaybeUninit::new));
+        self.second[range].copy_from_slice(&second.map(MaybeUninit::new));
+        self.len += count;
+    }
+}

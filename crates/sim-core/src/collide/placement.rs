@@ -1,0 +1,101 @@
+//! Where the second mesh is in the first one's frame.
+
+use glam::{DMat3, DQuat, DVec3, Vec3};
+
+use crate::Aabb;
+
+/// Where the second of two meshes is, seen from the first: displaced, and turned or not.
+///
+/// Its vertices are *placed*, each once and for all: `fl64(f64(v) + offset)`, or with a rotation
+/// the products and sums of `R v + offset` in a fixed order. Every decision is exact for the placed
+/// vertices. Components of the offset below 2^-250 m count as zero, so that no product in an exact
+/// decision underflows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    offset: DVec3,
+    /// Columns of the rotation, where there is one.
+    turn: Option<DMat3>,
+}
+
+impl From<DVec3> for Placement {
+    /// Displaced by an offset, m, each component within ±1e100.
+    fn from(offset: DVec3) -> Placement {
+        Placement {
+            offset: snap(offset),
+            turn: None,
+        }
+    }
+}
+
+impl Placement {
+    /// Turned about its origin, then displaced, m; `None` unless `rotation` is of unit length.
+    pub fn turned(rotation: DQuat, offset: DVec3) -> Option<Placement> {
+        let is_identity = rotation.xyz() == DVec3::ZERO;
+        rotation.is_normalized().then(|| Placement {
+            offset: snap(offset),
+            turn: (!is_identity).then(|| DMat3::from_quat(rotation)),
+        })
+    }
+
+    /// The displacement, m.
+    pub fn offset(&self) -> DVec3 {
+        self.offset
+    }
+
+    pub(super) fn turn(&self) -> Option<&DMat3> {
+        self.turn.as_ref()
+    }
+
+    /// A vertex of the second mesh in the first one's frame, m.
+    #[inline(always)]
+    pub fn place(&self, v: Vec3) -> DVec3 {
+        let v = v.as_dvec3();
+        match self.turn {
+            None => v + self.offset,
+            Some(turn) => {
+                snap(turn.x_axis * v.x + turn.y_axis * v.y + turn.z_axis * v.z + self.offset)
+            }
+        }
+    }
+
+    /// Least and greatest corner of a box around every placed vertex of `bounds`.
+    fn corners(&self, bounds: &Aabb) -> (DVec3, DVec3) {
+        match self.turn {
+            // Rounding is monotone.
+            None => (
+                bounds.min.as_dvec3() + self.offset,
+                bounds.max.as_dvec3() + self.offset,
+            ),
+            Some(turn) => {
+                let (centre, half) = (bounds.centre(), bounds.half_extent());
+                let middle = turn * centre + self.offset;
+                let reach = turn.x_axis.abs() * half.x
+                    + turn.y_axis.abs() * half.y
+                    + turn.z_axis.abs() * half.z;
+                let size = centre.abs().element_sum()
+                    + half.element_sum()
+                    + self.offset.abs().element_sum();
+                // More than all roundings, and than what becomes of small components.
+                let reach = reach + DVec3::splat(16.0 * f64::EPSILON * size + TINY);
+                (middle - reach, middle + reach)
+            }
+        }
+    }
+
+    /// Whether a box of the first mesh meets a box of the second; a "no" is a proof.
+    pub(super) fn boxes_meet(&self, first: &Aabb, second: &Aabb) -> bool {
+        let (min, max) = self.corners(second);
+        first.min.as_dvec3().cmple(max).all() && min.cmple(first.max.as_dvec3()).all()
+    }
+}
+
+/// 2^-250.
+const TINY: f64 = f64::from_bits((1023 - 250) << 52);
+
+/// A vector as it is used: components below 2^-250 are zero.
+///
+/// Placed vertices are then multiples of 2^-303, as f32 has none below 2^-149, and no product in
+/// an exact decision underflows.
+pub(crate) fn snap(offset: DVec3) -> DVec3 {
+    DVec3::select(offset.abs().cmplt(DVec3::splat(TINY)), DVec3::ZERO, offset)
+}

@@ -1,0 +1,117 @@
+//! No step but the first allocates, and no question about meshes.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use std::ops::ControlFlow;
+
+use sim_core::collide::{self, Placement, tree};
+use sim_core::{Body, Bvh, DQuat, DVec3, Force, METHODS, Settings, World};
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// The system's allocator, counting on each thread.
+struct Counting;
+
+#[allow(unsafe_code)]
+// SAFETY: every call goes to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn allocations(act: impl FnOnce()) -> u64 {
+    let before = ALLOCATIONS.with(Cell::get);
+    act();
+    ALLOCATIONS.with(Cell::get) - before
+}
+
+#[test]
+fn what_is_allocated_is_counted() {
+    assert_eq!(allocations(|| drop(std::hint::black_box(vec![0; 9]))), 1);
+}
+
+#[test]
+fn steps_after_the_first_do_not_allocate() {
+    let drag = Force::QuadraticDrag {
+        body: None,
+        coefficient: 0.1,
+    };
+    let weak = Force::LinearDrag {
+        body: Some(4),
+        coefficient: 0.2,
+    };
+    let spring = Force::Spring {
+        bodies: [3, 9],
+        rest_length: 1.0,
+        stiffness: 20.0,
+        damping: 0.5,
+    };
+    let gravitation = Force::Gravitation { constant: 1e-3 };
+    let forces: [&[Force]; 4] = [&[], &[weak], &[drag.clone(), spring], &[drag, gravitation]];
+    for forces in forces {
+        for method in METHODS {
+            let settings = Settings {
+                method,
+                ..Settings::default()
+            };
+            let mut world = World::new(settings).expect("settings");
+            for i in 0..20 {
+                world
+                    .add(Body {
+                        position: f64::from(i) * DVec3::X,
+                        velocity: DVec3::new(0.0, 1.0, 0.1 * f64::from(i)),
+                        force: -DVec3::Y,
+                        ..Body::default()
+                    })
+                    .expect("a body");
+            }
+            for force in forces {
+                world.add_force(force.clone()).expect("a force");
+            }
+            world.step().expect("a step");
+            let later = allocations(|| (0..20).for_each(|_| world.step().expect("a step")));
+            assert_eq!(later, 0, "{} {forces:?}", method.name);
+        }
+    }
+}
+
+#[test]
+fn questions_about_meshes_do_not_allocate() {
+    let cow = scene::mesh_file::builtin("cow.obj").expect("built in");
+    let cow = Bvh::build(&cow);
+    let turn = DQuat::from_rotation_y(0.7);
+    let questions = || {
+        let mut answers = 0;
+        for i in 0..40 {
+            let offset = DVec3::new(0.03 * f64::from(i), 0.5, 0.2);
+            let turned = Placement::turned(turn, offset).expect("a rotation");
+            for at in [Placement::from(offset), turned] {
+                answers += usize::from(tree::intersect(&cow, &cow, at));
+                answers += usize::from(collide::contains(&cow, &cow, at));
+                let _ = tree::each_hit(&cow, &cow, at, |_| {
+                    answers += 1;
+                    ControlFlow::Continue(())
+                });
+            }
+            answers += usize::from(cow.ray(offset, -offset).is_some());
+            answers += usize::from(collide::segment_meets(&cow, offset, -offset));
+            answers += usize::from(collide::locate(&cow, offset).is_some());
+        }
+        assert!(answers > 1000, "{answers}");
+    };
+    assert_eq!(allocations(questions), 0);
+}
