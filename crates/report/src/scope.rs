@@ -34,7 +34,7 @@ impl Scope {
 
     /// Timed repeats of each run, an odd number so that there is one in the middle.
     pub(crate) fn repeats(self) -> usize {
-        self.either(7, 1)
+        self.either(5, 1)
     }
 
     /// Orbits over which drift is watched.

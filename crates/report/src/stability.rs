@@ -156,7 +156,7 @@ fn class(method: &'static Method, damping: f64, z: f64, steps: u32) -> Class {
             return Class::Unstable;
         }
         let size = size.of(&stepper);
-        if !(size < 1e100) {
+        if size.is_nan() || size > 1e100 {
             return Class::Unstable;
         }
         if (half - tenth..half).contains(&step) {
