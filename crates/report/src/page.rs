@@ -6,6 +6,7 @@ use crate::hard_cases::CASES;
 use crate::plots::{Figure, Plot};
 use crate::results::Results;
 use crate::scope::Scope;
+use crate::stopwatch::WHAT_IS_TIMED;
 use crate::table::Table;
 use crate::tables;
 
@@ -53,9 +54,11 @@ pub(crate) fn render(
                 h1 { "Cowbell: speed against error" }
                 p {
                     "What each method costs and what it gets wrong. Every figure on this page was \
-                     measured by one run of the command below. Times are medians of repeated runs, \
-                     after one to warm up, and include setting a run up; errors are those achieved, \
-                     never those asked for."
+                     measured by one run of the command below. Times are "
+                    (WHAT_IS_TIMED)
+                    ", medians \
+                     of repeated runs after one to warm up, and include setting a run up; errors are \
+                     those achieved, never those asked for."
                 }
                 @if scope == Scope::Quick {
                     p.quick {

@@ -152,9 +152,8 @@ fn sweep(problem: &dyn Solve, who: Who, scope: Scope) -> Series {
     let mut ended = "the sweep is complete";
     let mut last_error = f64::INFINITY;
     for effort in efforts {
-        let clock = stopwatch::start();
-        let end = solve(problem, who, effort, true).and_then(refuse_nonsense);
-        let cost = clock.seconds();
+        let (end, cost) = stopwatch::timed(|| solve(problem, who, effort, true));
+        let end = end.and_then(refuse_nonsense);
         let outcome = end.map(|end| Point {
             error: end.error,
             seconds: cost,

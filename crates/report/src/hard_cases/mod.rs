@@ -200,7 +200,8 @@ pub(crate) static CASES: [Case; 29] = [
     case(
         7,
         "Pleiades, T = 3",
-        "14 end positions as published; figure: the least error of the work-precision diagram",
+        "14 end positions as published; figure: the least error of the work-precision diagram, \
+         whose sweeps end with the first run that takes a tenth of a second",
         Test::Methods(pleiades::test),
     ),
     case(
