@@ -1,0 +1,54 @@
+//! Everything that is measured, in the order in which it is.
+
+use crate::contact;
+use crate::drift::{self, Drift};
+use crate::hard_cases::{self, Measured, Outcome};
+use crate::problems;
+use crate::runs::{self, Diagram};
+use crate::scope::Scope;
+use crate::stability;
+
+pub(crate) struct Results {
+    pub(crate) diagrams: Vec<Diagram>,
+    pub(crate) drifts: Vec<Drift>,
+    pub(crate) stability: Vec<stability::Row>,
+    pub(crate) cases: Vec<Outcome>,
+    pub(crate) contact: Vec<contact::Row>,
+}
+
+/// Measures all, and says what it is at.
+pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
+    let problems = problems::all();
+    let count = problems.len();
+    let mut diagrams: Vec<Diagram> = problems
+        .iter()
+        .enumerate()
+        .map(|(i, problem)| {
+            let title = problem.card().title;
+            progress(&format!("problem {} of {count}: {title}", i + 1));
+            runs::diagram(problem.as_ref(), scope)
+        })
+        .collect();
+    let passes = scope.repeats();
+    runs::time(&problems, &mut diagrams, scope, |pass| {
+        progress(&format!("timing, pass {pass} of {passes}"));
+    });
+    progress("naive against BVH");
+    let contact = contact::measure(scope);
+    progress("drift");
+    let drifts = drift::measure(scope);
+    progress("stability");
+    let stability = stability::measure(scope);
+    progress("hard cases");
+    let cases = hard_cases::measure(&Measured {
+        diagrams: &diagrams,
+        drifts: &drifts,
+    });
+    Results {
+        diagrams,
+        drifts,
+        stability,
+        cases,
+        contact,
+    }
+}
