@@ -6,7 +6,7 @@ pub(super) static METHOD: Method = Method {
     name: "symplectic-4",
     title: "Blanes-Moan 4",
     order: 4,
-    stability: "stable while ω dt < 6.3: energy swings by little and does not drift",
+    stability: "stable while ω dt < 3.13: energy swings by little and does not drift",
     source: "Blanes, Moan 2002, J. Comput. Appl. Math. 142, p. 313, table 2, S6",
     symplectic: true,
     reversible: true,

@@ -405,6 +405,9 @@ fn stability_limits_hold_from_both_sides() {
 #[test]
 fn forward_euler_has_no_stable_step_without_damping() {
     assert_eq!(forward_euler::METHOD.stable_dt(4.0, 0.0), 0.0);
+    // A narrow window of instability, where half a turn a step meets the composition's own rhythm.
+    assert!((symplectic4::METHOD.stable_dt(1.0, 0.0) - 3.1328).abs() < 1e-3);
+    assert!(symplectic4::METHOD.growth(1.0, 0.0, 3.145) > 1.01);
     assert!((velocity_verlet::METHOD.stable_dt(4.0, 0.0) - 1.0).abs() < 1e-6);
 }
 

@@ -1,0 +1,228 @@
+//! Meshes so large that slabs are compared, on the brink of contact.
+
+mod agree;
+
+use agree::assert_same;
+use sim_core::collide::{Placement, tree};
+use sim_core::{Bvh, DQuat, DVec3, Mesh, Vec3};
+
+/// A square of 24 by 24 squares about the origin, bent.
+fn sheet(at: impl Fn(f32, f32) -> Vec3) -> Mesh {
+    let n = 24u32;
+    let place = |i: u32| i as f32 / n as f32 - 0.5;
+    let vertices = (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j)));
+    let vertices = vertices.map(|(i, j)| at(place(i), place(j))).collect();
+    let corner = |i: u32, j: u32| i * (n + 1) + j;
+    let quads = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+    let triangles = quads.flat_map(|(i, j)| {
+        let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+        let [a, b, c, d] = corners.map(|(i, j)| corner(i, j));
+        [[a, b, c], [a, c, d]]
+    });
+    Mesh::new(vertices, triangles.collect()).expect("a sheet is a mesh")
+}
+
+/// The cow, and sheets whose folds lie close to each other.
+fn large() -> [Mesh; 3] {
+    let cow = cow::cow(1_000).expect("a cow of this size can be made");
+    let vertices = cow.vertices.into_iter().map(Vec3::from_array).collect();
+    let folded = |folds: f32, thickness: f32| {
+        sheet(|x, z| Vec3::new(x, thickness * (folds * x + 1.3 * z).sin(), z))
+    };
+    [
+        Mesh::new(vertices, cow.triangles).expect("the cow is a mesh"),
+        folded(20.0, 0.2),
+        folded(3.0, 0.05),
+    ]
+}
+
+/// Both sides of the first contact along many directions, to within a rounding.
+#[test]
+fn naive_and_bvh_agree_where_surfaces_come_within_a_hair() {
+    let meshes = large();
+    let mut answers = [0, 0];
+    for (i, first) in meshes.iter().enumerate() {
+        for second in &meshes[i..] {
+            let (a, b) = (Bvh::build(first), Bvh::build(second));
+            for k in 0..8 {
+                let angle = f64::from(k) * 2.4;
+                let along = DVec3::new(angle.cos(), 0.3 - 0.1 * f64::from(k), angle.sin());
+                let (mut apart, mut meeting) = (6.0, 0.0);
+                while apart - meeting > 1e-15 * apart {
+                    let middle = 0.5 * (apart + meeting);
+                    if middle <= meeting || middle >= apart {
+                        break;
+                    }
+                    let meet = tree::intersect(&a, &b, along * middle);
+                    *(if meet { &mut meeting } else { &mut apart }) = middle;
+                }
+                for far in [apart, meeting, 1.001 * apart, 0.999 * meeting] {
+                    let meet = assert_same(first, second, along * far).expect("all agree");
+                    answers[usize::from(meet)] += 1;
+                }
+            }
+        }
+    }
+    assert!(answers[0] > 60 && answers[1] > 60, "{answers:?}");
+}
+
+/// A vertex of one mesh put exactly on a vertex, on the middle of an edge and of a face of another.
+#[test]
+fn meshes_that_touch_exactly_meet() {
+    let cube = scene::mesh_file::builtin("cube.obj").expect("built in");
+    let [cow, sheet, _] = large();
+    for (first, second) in [
+        (&*cube, &cow),
+        (&cow, &cow),
+        (&cow, &sheet),
+        (&sheet, &*cube),
+    ] {
+        for k in 0..12 {
+            let pick = |n: usize, salt: usize| (k * 7919 + salt) % n;
+            let vertex = second.vertices()[pick(second.vertices().len(), 1)].as_dvec3();
+            let corners = first
+                .corners(pick(first.triangles().len(), 3))
+                .map(|v| v.as_dvec3());
+            let [x, y, _] = corners;
+            for target in [x, (x + y) * 0.5] {
+                // Exact as long as sums of these floats are, which is what the test needs.
+                let offset = target - vertex;
+                if vertex + offset == target {
+                    assert!(assert_same(first, second, offset).expect("all agree"));
+                }
+            }
+        }
+    }
+}
+
+/// Two spheres, one inside the other and nowhere touching: mostly slabs are compared.
+#[test]
+fn nested_spheres_are_apart_until_they_touch() {
+    let sphere = |n: u32, radius: f32| {
+        let ring = |i: u32, j: u32| {
+            let (polar, azimuth) = (
+                (i as f32 + 1.0) / (n as f32 + 1.0) * std::f32::consts::PI,
+                j as f32 / n as f32 * std::f32::consts::TAU,
+            );
+            radius
+                * Vec3::new(
+                    polar.sin() * azimuth.cos(),
+                    polar.cos(),
+                    polar.sin() * azimuth.sin(),
+                )
+        };
+        let vertices = (0..n)
+            .flat_map(|i| (0..n).map(move |j| ring(i, j)))
+            .collect();
+        let at = |i: u32, j: u32| i * n + j % n;
+        let quads = (0..n - 1).flat_map(|i| (0..n).map(move |j| (i, j)));
+        let triangles = quads.flat_map(|(i, j)| {
+            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+            [[a, b, c], [a, c, d]]
+        });
+        Mesh::new(vertices, triangles.collect()).expect("a sphere is a mesh")
+    };
+    let (outer, inner) = (sphere(40, 1.0), sphere(36, 0.96));
+    let mut answers = [0, 0];
+    for k in 0..60 {
+        let far = 0.001 * f64::from(k);
+        let meet = assert_same(&outer, &inner, DVec3::new(0.6, 0.64, 0.48) * far);
+        answers[usize::from(meet.expect("all agree"))] += 1;
+        let turn = DQuat::from_rotation_y(0.1 * f64::from(k));
+        let at = Placement::turned(turn, DVec3::new(-0.8, 0.0, 0.6) * far).expect("a rotation");
+        let meet = assert_same(&outer, &inner, at);
+        answers[usize::from(meet.expect("all agree"))] += 1;
+    }
+    assert!(answers[0] > 40 && answers[1] > 40, "{answers:?}");
+}
+
+/// Flat sheets far out in their own frames, so that their slabs are as thin as what f32 misses
+/// there, and bent ones at all scales, where products of coordinates leave f32.
+#[test]
+fn slabs_and_planes_prove_nothing_that_is_false() {
+    let out = Vec3::new(900.0, 1100.0, -700.0);
+    let tilted = |x: f32, z: f32| out + Vec3::new(x + 0.3 * z, 0.61 * x - 0.43 * z, z - 0.2 * x);
+    let flat = sheet(tilted);
+    let normal = DVec3::new(0.61, -1.0, -0.37).normalize();
+    let mut answers = [0, 0];
+    for k in -30..=30 {
+        let offset = DVec3::new(0.11, 0.03, 0.07) + normal * (f64::from(k) * 4e-6);
+        let meet = assert_same(&flat, &flat, offset).expect("all agree");
+        answers[usize::from(meet)] += 1;
+    }
+    let bent = sheet(|x, z| Vec3::new(x, 0.1 * (9.0 * x).sin() * (7.0 * z).cos(), z));
+    for exponent in [-36, -20, -10, 10, 12, 13, 14, 15, 18, 25, 36, 38] {
+        let scale = 10.0_f64.powi(exponent);
+        let scaled = bent
+            .transformed(DQuat::IDENTITY, DVec3::splat(scale))
+            .expect("in range");
+        for k in 0..12 {
+            let offset = DVec3::new(0.2, 0.02 * f64::from(k), 0.1) * scale;
+            let meet = assert_same(&scaled, &scaled, offset).expect("all agree");
+            answers[usize::from(meet)] += 1;
+            let turn = DQuat::from_axis_angle(DVec3::new(0.6, 0.64, 0.48), 0.3);
+            let at = Placement::turned(turn, offset).expect("a rotation");
+            let meet = assert_same(&scaled, &scaled, at).expect("all agree");
+            answers[usize::from(meet)] += 1;
+        }
+    }
+    assert!(answers[0] > 50 && answers[1] > 50, "{answers:?}");
+}
+
+/// Found by a review: slabs turned by a matrix that is not quite a rotation are slabs of another
+/// mesh.
+#[test]
+fn what_passes_as_of_unit_length_is_a_rotation() {
+    let turn = DQuat::from_axis_angle(DVec3::new(0.8, 0.0, -0.6), 3.0);
+    let longer = DQuat::from_array(turn.to_array().map(|x| x * 1.00009));
+    let at = Placement::turned(longer, DVec3::ZERO).expect("passes");
+    let second = sheet(|x, z| Vec3::new(x, 10.0 + 1e-4 * (20.0 * x).sin() * (17.0 * z).cos(), z));
+    let up = at.place(Vec3::Y);
+    let mut answers = [0, 0];
+    for k in -40..40 {
+        let gap = f64::from(k) * 1e-5 * up;
+        let first = sheet(|x, z| {
+            let over = at.place(Vec3::new(x, 10.0 + 0.3e-4 * x, z));
+            (over + gap).as_vec3()
+        });
+        let meet = assert_same(&first, &second, at).expect("all agree");
+        answers[usize::from(meet)] += 1;
+    }
+    assert!(answers[0] > 10 && answers[1] > 10, "{answers:?}");
+    assert!(Placement::turned(DQuat::from_array([0.0; 4]), DVec3::ZERO).is_none());
+    assert!(Placement::turned(DQuat::from_array([0.0, 0.0, 0.0, 1.1]), DVec3::ZERO).is_none());
+}
+
+/// Found by a review: at the end of f32 boxes are infinite, and say nothing.
+#[test]
+fn the_largest_floats_are_in_range() {
+    let end = f32::MAX;
+    let corners = vec![
+        Vec3::ZERO,
+        Vec3::new(end, 0.0, 0.0),
+        Vec3::new(0.0, end, 0.0),
+    ];
+    let mesh = Mesh::new(corners, vec![[0, 1, 2]]).expect("a triangle");
+    let turn = DQuat::from_rotation_z(0.3);
+    for offset in [0.0, 1e38, 1e39, -7e38, 1e200, f64::NAN, f64::INFINITY] {
+        let offset = DVec3::splat(offset);
+        let meet = assert_same(&mesh, &mesh, offset).expect("all agree");
+        assert_eq!(meet, offset == DVec3::ZERO);
+        let turned = Placement::turned(turn, offset).expect("a rotation");
+        let meet = assert_same(&mesh, &mesh, turned).expect("all agree");
+        assert_eq!(meet, offset == DVec3::ZERO);
+    }
+}
+
+/// Found by a review: the middle of two neighbouring floats is one of them.
+#[test]
+fn triangles_with_almost_one_centre_make_a_tree() {
+    for count in [5, 9, 17, 40, 200] {
+        let ends = [f32::from_bits(0x3f80_0001), f32::from_bits(0x3f80_0002)];
+        let corners = (0..count).flat_map(|i| [0.0, ends[i % 2], 0.0]);
+        let corners = corners.map(|x| Vec3::new(x, 0.0, 0.0)).collect();
+        let triangles = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+        let mesh = Mesh::new(corners, triangles.collect()).expect("a soup");
+        assert!(assert_same(&mesh, &mesh, DVec3::ZERO).expect("all agree"));
+    }
+}
