@@ -226,3 +226,36 @@ fn triangles_with_almost_one_centre_make_a_tree() {
         assert!(assert_same(&mesh, &mesh, DVec3::ZERO).expect("all agree"));
     }
 }
+
+/// Two soups in one plane, interleaved, that meet in a single triangle: their slabs have no
+/// thickness, and as the second one lies far from its own origin, their heights differ by rounding.
+#[test]
+fn roundings_of_slabs_are_allowed_for() {
+    let soup = |shift: f32, extra: Option<(f32, f32)>, at: &dyn Fn(f32, f32) -> Vec3| {
+        let cells = (0..14u8).flat_map(|i| (0..14u8).map(move |j| (f32::from(i), f32::from(j))));
+        let corners = cells.map(|(s, z)| (s + shift, z + shift)).chain(extra);
+        let corners = corners.flat_map(|(s, z)| [(s, z), (s + 0.25, z), (s, z + 0.25)]);
+        let vertices: Vec<Vec3> = corners.map(|(s, z)| at(s, z)).collect();
+        let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+        Mesh::new(vertices, triangles.collect()).expect("a soup")
+    };
+    for far in [500.0f32, 50_000.0] {
+        let first = soup(0.0, None, &|s, z| Vec3::new(far + s, -far - s, z));
+        let offset = DVec3::new(f64::from(far), f64::from(-far - 1.0), 0.0);
+        for (extra, meet) in [
+            (None, false),
+            (Some((9.125, 5.0)), true),
+            (Some((3.0, 11.125)), true),
+        ] {
+            let second = soup(0.5, extra, &|s, z| Vec3::new(s, 1.0 - s, z));
+            assert_eq!(
+                assert_same(&first, &second, offset).expect("all agree"),
+                meet
+            );
+            assert_eq!(
+                assert_same(&second, &first, -offset).expect("all agree"),
+                meet
+            );
+        }
+    }
+}
