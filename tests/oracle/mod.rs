@@ -128,11 +128,3 @@ fn on_segment(p: &Point, u: &Point, x: &Point) -> bool {
     let along = dot(&d, u);
     is_zero(&cross(&d, u)) && along >= zero() && along <= dot(u, u)
 }
-
-/// Whether two closed triangles share a point: an edge of one meets the other.
-pub(crate) fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
-    let crosses = |s: [DVec3; 3], t: [DVec3; 3]| {
-        (0..3).any(|i| segment_meets_triangle(s[i], s[(i + 1) % 3], t))
-    };
-    crosses(s, t) || crosses(t, s)
-}
