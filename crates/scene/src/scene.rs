@@ -94,6 +94,19 @@ impl Scene {
         scene_file::write(self)
     }
 
+    /// Removes a body and the forces that name it; says how many those were. Other forces keep
+    /// the bodies they name.
+    pub fn remove_body(&mut self, body: usize) -> usize {
+        self.bodies.remove(body);
+        let before = self.forces.len();
+        self.forces
+            .retain(|force| force.bodies().all(|named| named != body));
+        for force in &mut self.forces {
+            force.rename_bodies(|named| named - usize::from(named > body));
+        }
+        before - self.forces.len()
+    }
+
     pub(crate) fn body_name(&self, body: usize) -> String {
         let body = self.bodies.get(body);
         body.map_or_else(String::new, |body| body.name.clone())

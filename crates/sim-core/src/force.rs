@@ -254,6 +254,20 @@ impl Force {
         first.into_iter().chain(second)
     }
 
+    /// Gives the bodies it names other indices, as when a body before them has gone.
+    pub fn rename_bodies(&mut self, rename: impl Fn(usize) -> usize) {
+        match self {
+            Force::Gravity { .. } | Force::Gravitation { .. } => {}
+            Force::Anchor { body, .. } => *body = rename(*body),
+            Force::LinearDrag { body, .. }
+            | Force::QuadraticDrag { body, .. }
+            | Force::Attraction { body, .. }
+            | Force::Body { body, .. } => *body = body.map(rename),
+            Force::Spring { bodies, .. } => *bodies = bodies.map(rename),
+            Force::Pair { bodies, .. } => *bodies = bodies.map(|pair| pair.map(rename)),
+        }
+    }
+
     pub(crate) fn reach(&self) -> Reach {
         match *self {
             Force::Gravity { .. } => Reach::Weight,

@@ -1,13 +1,17 @@
 //! Where bodies are: picking them with a ray, and the room they take up.
 
 use scene::SceneBody;
-use sim_core::{Aabb, DVec3};
+use sim_core::{Aabb, DVec3, Force};
 
 use super::{Session, State};
 
 /// Largest way that the opening view makes room for, in radii of the body: a bullet would be a
 /// dot in it.
 const OPENING_REACH: f64 = 8.0;
+/// How far ahead the opening view looks under forces: simulated time, s, steps, and positions.
+const OPENING_TIME: f64 = 6.4;
+const OPENING_STEPS: f64 = 720.0;
+const OPENING_POSITIONS: f64 = 20_000.0;
 
 impl Session {
     /// Where body `i` is drawn, m: between the last two states while running.
@@ -55,6 +59,9 @@ impl Session {
         let Some((centre, radius)) = self.extent() else {
             return;
         };
+        if !self.world.forces().is_empty() {
+            return self.frame_motion();
+        }
         if self.world.len() > 1 {
             return self.camera.frame(centre, 1.2 * radius);
         }
@@ -70,6 +77,44 @@ impl Session {
         }
         let ball = (max - min).length() / 2.0;
         self.camera.frame((min + max) / 2.0, ball);
+    }
+
+    /// Looks at where forces will take the bodies next. What falls below the lowest start is let go.
+    fn frame_motion(&mut self) {
+        let Some((low, high)) = self.world_box() else {
+            return;
+        };
+        let has_weight = |force: &Force| matches!(force, Force::Gravity { .. });
+        let falls = self.world.forces().iter().any(has_weight);
+        let size = (high - low).max_element();
+        let (mut min, mut max) = (low, high);
+        for force in self.world.forces() {
+            if let Force::Anchor { anchor: point, .. } | Force::Attraction { centre: point, .. } =
+                *force
+            {
+                (min, max) = (min.min(point), max.max(point));
+            }
+        }
+        let mut ahead = self.world.clone();
+        let steps = (OPENING_TIME / ahead.settings().dt).min(OPENING_STEPS);
+        let steps = steps.min(OPENING_POSITIONS / self.world.len().max(1) as f64);
+        for _ in 0..steps as u32 {
+            if ahead.step().is_err() {
+                break;
+            }
+            for i in 0..ahead.len() {
+                let at = ahead.position(i);
+                if falls && at.y < low.y {
+                    continue;
+                }
+                let at = at.clamp(low - OPENING_REACH * size, high + OPENING_REACH * size);
+                let half = self.world.mesh(i).map(|mesh| mesh.bounds().half_extent());
+                let half = half.unwrap_or_default();
+                (min, max) = (min.min(at - half), max.max(at + half));
+            }
+        }
+        let ball = (0.5 * (max - min).length()).max(1e-3);
+        self.camera.frame(0.5 * (min + max), ball);
     }
 
     /// A place for `body` that touches nothing: beside all others along x, at their height.
