@@ -211,7 +211,8 @@ impl App {
         let measuring = compare.on && (compare.is_under_way() || self.session.wants_trial());
         if self.session.state() == State::Running && shown {
             self.schedule(now + SHORTEST_FRAME);
-        } else if self.session.state() == State::Running || self.session.awaits_steps() || measuring {
+        } else if self.session.state() == State::Running || self.session.awaits_steps() || measuring
+        {
             self.schedule(now + UNSEEN_FRAME);
         }
     }

@@ -123,7 +123,11 @@ impl Session {
         let deepest = self.bvh_depth().saturating_sub(1);
         let view = &mut self.display.bvh;
         view.every_depth = false;
-        view.depth = view.depth.min(deepest).saturating_add_signed(by).min(deepest);
+        view.depth = view
+            .depth
+            .min(deepest)
+            .saturating_add_signed(by)
+            .min(deepest);
     }
 
     /// From the surface of the body's box, so that a slow body's arrow is not hidden inside it.

@@ -1,7 +1,7 @@
 //! How to simulate: integrator, rate and collision test, all changeable while running.
 
 use egui::{ComboBox, Slider};
-use sim_core::{Collision, METHODS};
+use sim_core::{Collision, METHODS, Settings};
 
 use super::field;
 use crate::number;
@@ -32,6 +32,9 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             .response
             .on_hover_text(about(now.method));
     });
+    if now.method.adaptive {
+        tolerance(ui, session, now.tolerance);
+    }
     ui.horizontal(|ui| {
         field::label(ui, "Rate", "Steps per second of simulated time");
         let mut rate = 1.0 / now.dt;
@@ -69,6 +72,23 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             {
                 session.set_collision(how);
             }
+        }
+    });
+}
+
+fn tolerance(ui: &mut egui::Ui, session: &mut Session, now: f64) {
+    let meaning =
+        "Error that a step may make, relative and, in m and m/s, absolute: from 1e-15 to 1";
+    ui.horizontal(|ui| {
+        field::label(ui, "Tolerance", meaning);
+        let mut value = now;
+        let slider = Slider::new(&mut value, Settings::TOLERANCES)
+            .logarithmic(true)
+            .clamping(egui::SliderClamping::Edits)
+            .custom_formatter(|value, _| format!("{value:.1e}"))
+            .custom_parser(|text| text.trim().parse().ok());
+        if ui.add(slider).on_hover_text(meaning).changed() {
+            session.set_tolerance(value);
         }
     });
 }
