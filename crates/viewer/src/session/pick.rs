@@ -8,6 +8,10 @@ use super::{Session, State};
 /// Largest way that the opening view makes room for, in radii of the body: a bullet would be a
 /// dot in it.
 const OPENING_REACH: f64 = 8.0;
+/// Depth over width and height below which all is in an upright plane, and where to look at that
+/// from: yaw and pitch, radians.
+const FLAT: f64 = 0.5;
+const FRONT: (f64, f64) = (0.2, 0.16);
 /// How far ahead the opening view looks under forces: simulated time, s, steps, and positions.
 const OPENING_TIME: f64 = 6.4;
 const OPENING_STEPS: f64 = 720.0;
@@ -113,8 +117,12 @@ impl Session {
                 (min, max) = (min.min(at - half), max.max(at + half));
             }
         }
-        let ball = (0.5 * (max - min).length()).max(1e-3);
-        self.camera.frame(0.5 * (min + max), ball);
+        let (size, middle) = (max - min, 0.5 * (min + max));
+        if size.z < FLAT * size.x.max(size.y) {
+            // Motion in an upright plane is looked at nearly from the front.
+            (self.camera.yaw, self.camera.pitch) = FRONT;
+        }
+        self.camera.frame(middle, (0.47 * size.length()).max(1e-3));
     }
 
     /// A place for `body` that touches nothing: beside all others along x, at their height.
