@@ -10,7 +10,7 @@ use super::{Session, State};
 const OPENING_REACH: f64 = 8.0;
 /// Depth over width and height below which all is in an upright plane, and where to look at that
 /// from: yaw and pitch, radians.
-const FLAT: f64 = 0.5;
+const FLAT: f64 = 0.3;
 const FRONT: (f64, f64) = (0.2, 0.16);
 /// How far ahead the opening view looks under forces: simulated time, s, steps, and positions.
 const OPENING_TIME: f64 = 6.4;

@@ -21,7 +21,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             "The selected body has no other to meet.".to_owned()
         }
         Contest::NoPair => "It takes two bodies with meshes.".to_owned(),
-        Contest::Apart => "Boxes are apart: neither way has anything to do.".to_owned(),
+        Contest::Apart => "The boxes are apart: nothing to measure.".to_owned(),
         Contest::Pair(i, j) => format!("The boxes of {} and {} overlap.", name(i), name(j)),
     };
     ui.label(RichText::new(now).weak());
