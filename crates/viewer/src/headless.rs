@@ -20,6 +20,7 @@ struct RunReport<'a> {
     impacts: u64,
     kinetic_energy: f64,
     potential_energy: Option<f64>,
+    total_energy: Option<f64>,
     /// Relative change of both together since the start.
     energy_drift: Option<f64>,
     /// Whether a force takes energy away: then the drift is no error.
@@ -139,6 +140,8 @@ impl<'a> RunReport<'a> {
             impacts: world.impacts(),
             kinetic_energy: world.kinetic_energy(),
             potential_energy: Some(world.potential_energy()).filter(|energy| energy.is_finite()),
+            total_energy: Some(world.kinetic_energy() + world.potential_energy())
+                .filter(|energy| energy.is_finite()),
             energy_drift: drift.energy,
             dissipates: drift.dissipates,
             momentum_drift: drift.momentum,
@@ -193,10 +196,7 @@ impl<'a> RunReport<'a> {
             ("Impacts", self.impacts.to_string()),
             ("Kinetic energy", format!("{} J", self.kinetic_energy)),
             ("Potential", joules(self.potential_energy)),
-            (
-                "Total energy",
-                joules(self.potential_energy.map(|p| p + self.kinetic_energy)),
-            ),
+            ("Total energy", joules(self.total_energy)),
             (
                 "Momentum",
                 format!("{} kg m/s", vector(self.momentum.into()).trim_start()),

@@ -5,6 +5,8 @@ use sim_core::{Aabb, DVec3, Force};
 
 use super::{Session, State};
 
+/// Half the size, in distances of the camera, up to which a body is drawn as a dot.
+const SPECK: f64 = 0.004;
 /// Largest way that the opening view makes room for, in radii of the body: a bullet would be a
 /// dot in it.
 const OPENING_REACH: f64 = 8.0;
@@ -38,7 +40,28 @@ impl Session {
                 Some((hit.t, i))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
+        let hit = hit.or_else(|| self.dot_near(origin, direction.normalize_or_zero()));
         self.select(hit.map(|(_, i)| i));
+    }
+
+    /// The body drawn as a dot that a ray passes most closely, in distances along it, and close enough.
+    fn dot_near(&self, origin: DVec3, direction: DVec3) -> Option<(f64, usize)> {
+        (0..self.world.len())
+            .filter(|&i| self.is_dot(i))
+            .filter_map(|i| {
+                let way = self.shown_position(i) - origin;
+                let along = way.dot(direction);
+                let aside = (way - along * direction).length() / along;
+                (along > 0.0 && aside < 2.0 * SPECK).then_some((aside, i))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Whether a body is a point, or too small to be seen.
+    pub(super) fn is_dot(&self, i: usize) -> bool {
+        let least = SPECK * self.camera.distance;
+        let mesh = self.world.mesh(i);
+        mesh.is_none_or(|mesh| mesh.bounds().half_extent().max_element() <= least)
     }
 
     /// Centre and radius, m, of a ball around the selected body, or around all bodies.

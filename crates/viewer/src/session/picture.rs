@@ -11,8 +11,6 @@ const BLUE: [f32; 3] = [0.10, 0.35, 1.0];
 const ORANGE: [f32; 3] = [1.0, 0.45, 0.05];
 /// Simulated time for which an impact stays in sight, s.
 const IMPACT_SHOWN: f64 = 0.75;
-/// Half the size, in distances of the camera, up to which a body is drawn as a dot.
-const SPECK: f64 = 0.004;
 /// Which boxes of the bounding volume hierarchies are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BvhView {
@@ -120,12 +118,7 @@ impl Session {
 
     /// Points, and bodies too small to be seen, as dots.
     fn add_dots(&self, lines: &mut Vec<Line>) {
-        let least = SPECK * self.camera.distance;
-        for i in 0..self.world.len() {
-            let mesh = self.world.mesh(i);
-            if mesh.is_some_and(|mesh| mesh.bounds().half_extent().max_element() > least) {
-                continue;
-            }
+        for i in (0..self.world.len()).filter(|&i| self.is_dot(i)) {
             let at = self.shown_position(i);
             let [red, green, blue] = self.colour(i);
             // A line of no length is its round end.

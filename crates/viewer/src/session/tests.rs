@@ -663,6 +663,19 @@ fn trails_are_kept_for_scenes_with_forces_and_bounded() {
 }
 
 #[test]
+fn specks_are_dots_that_can_be_picked() {
+    let mut session = gallery("pleiades");
+    session.show_trails(false);
+    assert_eq!(session.picture().lines.len(), 7);
+    let at = session.world().position(3);
+    let eye = at + DVec3::new(0.05, 0.05, 20.0);
+    session.pick(eye, DVec3::NEG_Z);
+    assert_eq!(session.selection(), Some(3));
+    session.pick(eye + DVec3::X, DVec3::NEG_Z);
+    assert_eq!(session.selection(), None);
+}
+
+#[test]
 fn depth_steps_stay_within_the_tree() {
     let mut session = gallery("cube-cow");
     session.step_depth(1);
