@@ -59,13 +59,9 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
         new.map(|new| *value = new).is_some()
     };
     let changed = match &mut force {
-        Force::Gravity { acceleration } => vector(
-            ui,
-            "Acceler.",
-            "m/s²",
-            "Acceleration of every body",
-            acceleration,
-        ),
+        Force::Gravity { acceleration } => {
+            vector(ui, "g", "m/s²", "Acceleration of every body", acceleration)
+        }
         Force::LinearDrag { body, coefficient } => {
             maybe_body(ui, names, body)
                 | scalar(
@@ -167,6 +163,7 @@ fn choose(
         ComboBox::from_id_salt(title)
             .selected_text(body.map_or(all.unwrap_or("?"), name))
             .width(ui.available_width() - 8.0)
+            .height(340.0)
             .show_ui(ui, |ui| {
                 if let Some(all) = all {
                     ui.selectable_value(body, None, all);
@@ -231,6 +228,7 @@ fn add(ui: &mut egui::Ui, session: &mut Session) {
         ComboBox::from_id_salt("add force")
             .selected_text("a force…")
             .width(ui.available_width() - 8.0)
+            .height(340.0)
             .show_ui(ui, |ui| {
                 for force in offers {
                     let offer = ui.selectable_label(false, title(&force));

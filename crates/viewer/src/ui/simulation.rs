@@ -18,6 +18,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         ComboBox::from_id_salt("integrator")
             .selected_text(now.method.title)
             .width(ui.available_width() - 8.0)
+            .height(340.0)
             .show_ui(ui, |ui| {
                 for method in METHODS {
                     let chosen = ui
@@ -95,7 +96,7 @@ fn tolerance(ui: &mut egui::Ui, session: &mut Session, now: f64) {
 
 fn about(method: &sim_core::Method) -> String {
     format!(
-        "{}\nOrder {}. {}\n{}",
+        "{}\nOrder {}; {}\n{}",
         method.title, method.order, method.stability, method.source
     )
 }
