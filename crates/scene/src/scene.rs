@@ -95,20 +95,21 @@ impl Scene {
         scene_file::write(self)
     }
 
-    /// Removes a body and the forces that name it; the others follow their bodies to their new
-    /// places. Panics if there is no such body, as vectors do.
-    pub fn remove_body(&mut self, body: usize) -> SceneBody {
-        let removed = self.bodies.remove(body);
+    /// Removes a body and the forces that name it, and says how many those were; the others follow
+    /// their bodies to their new places. Panics if there is no such body, as vectors do.
+    pub fn remove_body(&mut self, body: usize) -> usize {
+        self.bodies.remove(body);
         let renumber = |i: usize| match i.cmp(&body) {
             Ordering::Less => Some(i),
             Ordering::Equal => None,
             Ordering::Greater => Some(i - 1),
         };
+        let before = self.forces.len();
         let forces = self.forces.drain(..);
         self.forces = forces
             .filter_map(|force| force.renumbered(renumber))
             .collect();
-        removed
+        before - self.forces.len()
     }
 
     pub(crate) fn body_name(&self, body: usize) -> String {

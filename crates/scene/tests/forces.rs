@@ -191,7 +191,8 @@ fn forces_follow_their_bodies_when_one_is_removed() {
         (linear.bodies().next(), quadratic.bodies().next()),
         (Some(1), Some(2))
     );
-    assert_eq!(scene.remove_body(1).name, "linear");
+    assert_eq!(scene.bodies[1].name, "linear");
+    assert_eq!(scene.remove_body(1), 1);
     let moved = Force::QuadraticDrag {
         body: Some(1),
         coefficient: 0.1,

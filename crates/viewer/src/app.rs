@@ -14,7 +14,7 @@ use winit::window::{Window, WindowId};
 
 use crate::failure::Failure;
 use crate::gpu::{Gpu, UiFrame};
-use crate::session::{STEP_BUDGET, Session, State};
+use crate::session::{Done, Job, STEP_BUDGET, Session, State, Trial, Tried};
 use crate::stopwatch::Stopwatch;
 use crate::ui::{self, Ui};
 use crate::worker::Worker;
@@ -32,6 +32,7 @@ pub fn run(scene: Scene) -> Result<(), Failure> {
         session,
         ui: Ui::default(),
         worker: None,
+        measurer: None,
         stopwatch: Stopwatch::start(),
         proxy: event_loop.create_proxy(),
         open: None,
@@ -53,7 +54,9 @@ struct App {
     session: Session,
     ui: Ui,
     /// Takes the steps; none while none is under way.
-    worker: Option<Worker>,
+    worker: Option<Worker<Job, Done>>,
+    /// Measures naive against BVH; none while that is off.
+    measurer: Option<Worker<Trial, Tried>>,
     stopwatch: Stopwatch,
     proxy: EventLoopProxy<Redraw>,
     open: Option<Open>,
@@ -126,7 +129,7 @@ impl App {
         // A worker that is busy now has outdated steps, and ends by itself once it is let go.
         self.worker = self.worker.take().filter(|worker| !worker.is_busy());
         if self.worker.is_none() {
-            self.worker = Worker::start().ok();
+            self.worker = Worker::start("steps", |job: Job, time| job.run(|| time.read())).ok();
         }
         let done = match &mut self.worker {
             Some(worker) => {
@@ -140,10 +143,39 @@ impl App {
         }
     }
 
+    /// Lets measurements go on, never waiting for one.
+    fn measure(&mut self, elapsed: Duration) {
+        if let Some(measurer) = &mut self.measurer {
+            if let Some(tried) = measurer.result(Duration::ZERO) {
+                self.session.accept_trial(tried);
+            } else if measurer.is_gone() {
+                self.measurer = None;
+                self.session.drop_trial();
+                let text =
+                    "A measurement broke down. This is a fault of the program: please report it.";
+                self.session.notices().error("compare", text.to_owned());
+            }
+        }
+        if !self.session.compare.on {
+            self.measurer = None;
+        } else if let Some(trial) = self.session.trial_due(elapsed) {
+            if self.measurer.is_none() {
+                let run = |trial: Trial, time: &Stopwatch| trial.run(|| time.read());
+                self.measurer = Worker::start("measuring", run).ok();
+            }
+            match &mut self.measurer {
+                Some(measurer) => measurer.hand_over(trial),
+                None => self.session.drop_trial(),
+            }
+        }
+    }
+
     /// Lets physics go on, lays out the control panel and paints both.
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
         let now = self.stopwatch.read();
-        self.steps(now.saturating_sub(self.last_frame));
+        let elapsed = now.saturating_sub(self.last_frame);
+        self.steps(elapsed);
+        self.measure(elapsed);
         self.last_frame = now;
 
         let Some(open) = &mut self.open else { return };
@@ -175,9 +207,12 @@ impl App {
                 Err(failure) => return self.fail(event_loop, failure),
             }
         }
+        let compare = &self.session.compare;
+        let measuring = compare.on && (compare.is_under_way() || self.session.wants_trial());
         if self.session.state() == State::Running && shown {
             self.schedule(now + SHORTEST_FRAME);
-        } else if self.session.state() == State::Running || self.session.awaits_steps() {
+        } else if self.session.state() == State::Running || self.session.awaits_steps() || measuring
+        {
             self.schedule(now + UNSEEN_FRAME);
         }
     }

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use scene::Scene;
-use sim_core::{Collision, METHODS, Method};
+use sim_core::{Collision, METHODS, Method, Settings};
 
 use crate::{app, failure::Failure, headless, shot};
 
@@ -84,6 +84,9 @@ struct SettingArgs {
     /// Steps per simulated second, Hz
     #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
     rate: Option<f64>,
+    /// Error that adaptive methods may make in a step, from 1e-15 to 1
+    #[arg(long, value_name = "ERROR", value_parser = tolerance, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
     /// How meshes are tested for contact
     #[arg(long, value_name = "HOW")]
     collision: Option<CollisionArg>,
@@ -175,6 +178,9 @@ fn load(name_or_path: &str, settings: &SettingArgs) -> Result<Scene, Failure> {
     if let Some(dt) = settings.dt.or(settings.rate.map(|rate| 1.0 / rate)) {
         scene.dt = dt;
     }
+    if let Some(tolerance) = settings.tolerance {
+        scene.tolerance = tolerance;
+    }
     match settings.collision {
         None => {}
         Some(CollisionArg::Naive) => scene.collision = Collision::Naive,
@@ -218,6 +224,13 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("must be a number above 0".to_owned()),
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if Settings::TOLERANCES.contains(&value) => Ok(value),
+        _ => Err("must be a number from 1e-15 to 1".to_owned()),
     }
 }
 

@@ -19,6 +19,14 @@ struct RunReport<'a> {
     steps: u64,
     impacts: u64,
     kinetic_energy: f64,
+    potential_energy: Option<f64>,
+    total_energy: Option<f64>,
+    /// Relative change of both together since the start.
+    energy_drift: Option<f64>,
+    /// Whether a force takes energy away: then the drift is no error.
+    dissipates: bool,
+    momentum_drift: Option<f64>,
+    path_error: Option<f64>,
     momentum: [f64; 3],
     bodies: Vec<BodyReport<'a>>,
 }
@@ -60,11 +68,12 @@ pub fn run(scene: &Scene, steps: u64, json: bool) -> Result<String, Failure> {
             .map_err(|error| Failure::Run(step_error(scene, &error)))?;
     }
     let seconds_per_step = stopwatch.read().as_secs_f64() / steps.max(1) as f64;
-    let report = RunReport::of(scene, &world);
+    let drift = reference.drift(&world);
+    let report = RunReport::of(scene, &world, drift);
     Ok(if json {
         to_json(&report)
     } else {
-        report.table(scene, seconds_per_step, reference.drift(&world))
+        report.table(scene, seconds_per_step)
     })
 }
 
@@ -124,12 +133,19 @@ fn repairs(repairs: &Repairs) -> Vec<RepairReport> {
 }
 
 impl<'a> RunReport<'a> {
-    fn of(scene: &'a Scene, world: &World) -> Self {
+    fn of(scene: &'a Scene, world: &World, drift: Drift) -> Self {
         Self {
             time: world.time(),
             steps: world.steps(),
             impacts: world.impacts(),
             kinetic_energy: world.kinetic_energy(),
+            potential_energy: Some(world.potential_energy()).filter(|energy| energy.is_finite()),
+            total_energy: Some(world.kinetic_energy() + world.potential_energy())
+                .filter(|energy| energy.is_finite()),
+            energy_drift: drift.energy,
+            dissipates: drift.dissipates,
+            momentum_drift: drift.momentum,
+            path_error: drift.position,
             momentum: world.momentum().to_array(),
             bodies: scene
                 .bodies
@@ -145,7 +161,26 @@ impl<'a> RunReport<'a> {
         }
     }
 
-    fn table(&self, scene: &Scene, seconds_per_step: f64, drift: Drift) -> String {
+    /// How far the result has drifted since the start.
+    fn errors(&self) -> String {
+        let relative =
+            |drift: Option<f64>| drift.map_or_else(|| "unknown".to_owned(), number::relative);
+        let mut text = format!("energy {}", relative(self.energy_drift));
+        if self.dissipates {
+            text += " (friction takes it: no error)";
+        }
+        match self.momentum_drift {
+            Some(drift) => text += &format!(", momentum {}", number::relative(drift)),
+            None => text += ", momentum not kept by these forces",
+        }
+        text += " (drift since the start, relative)";
+        if let Some(away) = self.path_error {
+            text += &format!(", position {} m", number::figure(away));
+        }
+        text
+    }
+
+    fn table(&self, scene: &Scene, seconds_per_step: f64) -> String {
         let mut text = String::new();
         let settings = format!(
             "{} steps of {} s, {}, {}",
@@ -160,23 +195,14 @@ impl<'a> RunReport<'a> {
             ("Time", format!("{} s", self.time)),
             ("Impacts", self.impacts.to_string()),
             ("Kinetic energy", format!("{} J", self.kinetic_energy)),
+            ("Potential", joules(self.potential_energy)),
+            ("Total energy", joules(self.total_energy)),
             (
                 "Momentum",
                 format!("{} kg m/s", vector(self.momentum.into()).trim_start()),
             ),
             ("Speed", format!("{:.3} µs a step", seconds_per_step * 1e6)),
-            (
-                "Error",
-                format!(
-                    "energy {}, momentum {} (drift since the start, relative){}",
-                    number::relative(drift.energy),
-                    number::relative(drift.momentum),
-                    drift.position.map_or_else(String::new, |away| format!(
-                        ", position {} m",
-                        number::figure(away)
-                    ))
-                ),
-            ),
+            ("Error", self.errors()),
         ];
         for (what, value) in lines {
             // Writing to a String cannot fail.
@@ -206,6 +232,13 @@ impl<'a> RunReport<'a> {
         }
         text
     }
+}
+
+fn joules(energy: Option<f64>) -> String {
+    energy.map_or_else(
+        || "unbounded: a body is at a centre of attraction".to_owned(),
+        |energy| format!("{energy} J"),
+    )
 }
 
 fn vector(v: DVec3) -> String {

@@ -28,6 +28,28 @@ pub fn seconds(value: f64) -> String {
     }
 }
 
+/// A whole number, in groups of three digits.
+pub fn count(value: f64) -> String {
+    let digits = format!("{value:.0}");
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// An energy, J; not every one is finite, as where a body is at a centre of attraction.
+pub fn energy(value: f64) -> String {
+    if value.is_finite() {
+        format!("{} J", figure(value))
+    } else {
+        "unbounded".to_owned()
+    }
+}
+
 /// A relative error: 0, or sign and magnitude.
 pub fn relative(value: f64) -> String {
     if value == 0.0 {
@@ -39,7 +61,7 @@ pub fn relative(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{figure, relative, seconds};
+    use super::{count, energy, figure, relative, seconds};
 
     #[test]
     fn figures_stay_short() {
@@ -64,6 +86,22 @@ mod tests {
         assert_eq!(seconds(12.34e-6), "12.3 µs");
         assert_eq!(seconds(0.0167), "16.7 ms");
         assert_eq!(seconds(2.0), "2.00 s");
+    }
+
+    #[test]
+    fn counts_are_grouped_and_energies_are_numbers() {
+        let cases = [
+            (0.0, "0"),
+            (999.0, "999"),
+            (1e3, "1,000"),
+            (1234567.0, "1,234,567"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(count(value), text);
+        }
+        assert_eq!(energy(-2.5), "-2.5000 J");
+        assert_eq!(energy(f64::NEG_INFINITY), "unbounded");
+        assert_eq!(energy(f64::NAN), "unbounded");
     }
 
     #[test]

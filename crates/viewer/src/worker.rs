@@ -1,31 +1,30 @@
-//! A thread that takes steps, so that the window never waits for a slow one.
+//! A thread that takes steps or measures, so that the window never waits for what is slow.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use crate::session::{Done, Job};
 use crate::stopwatch::Stopwatch;
 
 /// The other end of the thread. Dropped, it lets the thread end after its present job.
-pub struct Worker {
+pub struct Worker<Job, Done> {
     jobs: Sender<Job>,
     results: Receiver<Done>,
     thread: JoinHandle<()>,
     busy: bool,
 }
 
-impl Worker {
-    /// Starts a thread.
-    pub fn start() -> std::io::Result<Self> {
+impl<Job: Send + 'static, Done: Send + 'static> Worker<Job, Done> {
+    /// Starts a thread that does jobs by `run`.
+    pub fn start(name: &str, run: fn(Job, &Stopwatch) -> Done) -> std::io::Result<Self> {
         let (jobs, to_do) = channel::<Job>();
         let (finished, results) = channel();
         let stopwatch = Stopwatch::start();
         let thread = std::thread::Builder::new()
-            .name("steps".to_owned())
+            .name(name.to_owned())
             .spawn(move || {
                 for job in to_do {
-                    if finished.send(job.run(|| stopwatch.read())).is_err() {
+                    if finished.send(run(job, &stopwatch)).is_err() {
                         break;
                     }
                 }

@@ -62,11 +62,17 @@ fn run_prints_the_final_state() {
         keys(&state),
         [
             "bodies",
+            "dissipates",
+            "energy_drift",
             "impacts",
             "kinetic_energy",
             "momentum",
+            "momentum_drift",
+            "path_error",
+            "potential_energy",
             "steps",
-            "time"
+            "time",
+            "total_energy"
         ]
     );
     assert_eq!(state["steps"], 60);
@@ -75,6 +81,58 @@ fn run_prints_the_final_state() {
     let body = &state["bodies"][0];
     assert_eq!(keys(body), ["mass", "name", "position", "velocity"]);
     assert_eq!(body["position"].as_array().map(Vec::len), Some(3));
+}
+
+#[test]
+fn energies_and_errors_are_told_as_far_as_they_are_known() {
+    for method in sim_core::METHODS {
+        let arguments = ["run", "spring", "--steps", "200", "--json", "--method"];
+        let state = json(&[&arguments[..], &[method.name]].concat());
+        let energy = |name: &str| state[name].as_f64().expect("a number");
+        let total = energy("kinetic_energy") + energy("potential_energy");
+        assert_eq!(energy("total_energy"), total);
+        // It begins with 5 J, all in the spring.
+        let keeps = !matches!(
+            method.name,
+            "forward-euler" | "backward-euler" | "symplectic-euler"
+        );
+        assert_eq!(
+            (total - 5.0).abs() < 0.01,
+            keeps,
+            "{}: {total}",
+            method.name
+        );
+        assert_eq!(
+            energy("energy_drift").abs() < 2e-3,
+            keeps,
+            "{}",
+            method.name
+        );
+        assert!(state["path_error"].is_null() && state["momentum_drift"].is_null());
+    }
+    let loose = [
+        "run",
+        "kepler",
+        "--json",
+        "--method",
+        "dopri5",
+        "--tolerance",
+    ];
+    let drift = |tolerance| {
+        let state = json(&[&loose[..], &[tolerance]].concat());
+        state["energy_drift"].as_f64().expect("a number").abs()
+    };
+    assert!(drift("1e-3") > 100.0 * drift("1e-12"));
+    let text = refusal(cowbell(&["run", "kepler", "--tolerance", "nan"]), 2);
+    assert!(
+        text.contains("--tolerance") && text.contains("1e-15"),
+        "{text}"
+    );
+    let text = refusal(cowbell(&["run", "stiff-spring", "--method", "rk4"]), 1);
+    assert!(
+        text.contains("`cube`") && text.contains("2.6225e-3 s"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -13,6 +13,9 @@ impl Session {
     pub fn set_position(&mut self, position: DVec3) {
         self.edit("position", |session, i| {
             session.world.set_position(i, position)?;
+            if session.display.trails {
+                session.trails.begin(&session.world);
+            }
             Ok(move |body: &mut SceneBody| body.position = position)
         });
     }
@@ -63,11 +66,19 @@ impl Session {
         let Some(i) = self.selected_in_layout("delete") else {
             return;
         };
-        let removed = self.scene.bodies.remove(i);
-        let name = removed.name.clone();
-        self.rebuild("delete", |scene| scene.bodies.insert(i, removed));
+        let before = self.scene.clone();
+        let name = before.bodies[i].name.clone();
+        let forces = self.scene.remove_body(i);
+        if !self.rebuild("delete", |scene| *scene = before) {
+            return;
+        }
         self.select(None);
-        self.notices.info("delete", format!("Deleted {name}."));
+        let text = match forces {
+            0 => format!("Deleted {name}."),
+            1 => format!("Deleted {name} and a force that named it."),
+            _ => format!("Deleted {name} and {forces} forces that named it."),
+        };
+        self.notices.info("delete", text);
     }
 
     /// Adds a copy of the selected body beside everything else and selects it. Layout only.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use sim_core::{DVec3, World};
+use sim_core::{DVec3, Force, World};
 
 /// A mean in which old values fade: each new one counts a tenth.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,13 +56,16 @@ impl Figures {
 
 /// The state of a world at the moment that drift is counted from.
 ///
-/// Forces here are constant vectors, so what they do is known: the work `F . dx`, the impulse
-/// `F t`, and between collisions the path `x + v t + F t^2 / 2m`. Drift is what remains after
-/// they are taken away, the error of method and collisions.
+/// What constant forces and weight do is known: the work `F . dx`, the impulse `F t`, and between
+/// collisions the path `x + v t + F t^2 / 2m`. What other forces do is known where they have a
+/// potential, to the energy, and where they act between bodies, to the momentum. Drift is what
+/// remains after that is taken away, the error of method and collisions.
 #[derive(Clone, Debug)]
 pub struct Reference {
     time: f64,
     energy: f64,
+    /// Potential energy of forces that are not constant, J.
+    potential: f64,
     momentum: DVec3,
     impacts: u64,
     /// Position and velocity of each body.
@@ -72,11 +75,15 @@ pub struct Reference {
 /// Errors since a [`Reference`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
-    /// Relative error of the kinetic energy less the work of the forces.
-    pub energy: f64,
-    /// Error of the momentum less the impulse of the forces, relative to the sum of `m |v|`.
-    pub momentum: f64,
-    /// Largest distance of a body from its exact path, m; known as long as nothing collides.
+    /// Relative change of kinetic plus potential energy; none while it is not finite.
+    pub energy: Option<f64>,
+    /// Whether a force takes energy away, as drag does: then the change is no error.
+    pub dissipates: bool,
+    /// Error of the momentum less the impulse of the forces, relative to the sum of `m |v|`;
+    /// known as long as nothing but constant forces acts from outside.
+    pub momentum: Option<f64>,
+    /// Largest distance of a body from its exact path, m; known as long as nothing collides and
+    /// no force but constant ones acts.
     pub position: Option<f64>,
 }
 
@@ -86,6 +93,7 @@ impl Reference {
         Self {
             time: world.time(),
             energy: world.kinetic_energy(),
+            potential: varying_potential(world),
             momentum: world.momentum(),
             impacts: world.impacts(),
             motion: (0..world.len())
@@ -97,12 +105,13 @@ impl Reference {
     /// The drift of `world`, which must have the same bodies.
     pub fn drift(&self, world: &World) -> Drift {
         let elapsed = world.time() - self.time;
+        let weight = weight(world);
         let mut work = 0.0;
         let mut impulse = DVec3::ZERO;
         let mut speed = 0.0;
         let mut away: f64 = 0.0;
         for (i, &(start, velocity)) in self.motion.iter().enumerate() {
-            let force = world.force(i);
+            let force = world.force(i) + world.mass(i) * weight;
             work += force.dot(world.position(i) - start);
             impulse += force * elapsed;
             speed += world.mass(i) * world.velocity(i).length();
@@ -110,15 +119,68 @@ impl Reference {
             let exact = start + velocity * elapsed + bend;
             away = away.max((world.position(i) - exact).length());
         }
-        let energy = world.kinetic_energy();
+        let (energy, potential) = (world.kinetic_energy(), varying_potential(world));
+        let change = energy - self.energy - work + (potential - self.potential);
+        // A body at its turning point is at rest: the energy is elsewhere then.
+        let parts = [energy, self.energy, work, potential, self.potential];
+        let scale = parts
+            .into_iter()
+            .fold(0.0, |most: f64, part| most.max(part.abs()));
+        let momentum = (world.momentum() - impulse - self.momentum).length();
+        let momentum = ratio(momentum, speed.max(self.momentum.length()));
+        let (forces, same_impacts) = (world.forces(), world.impacts() == self.impacts);
         Drift {
-            energy: ratio(energy - work - self.energy, energy.max(self.energy)),
-            momentum: ratio(
-                (world.momentum() - impulse - self.momentum).length(),
-                speed.max(self.momentum.length()),
-            ),
-            position: (world.impacts() == self.impacts).then_some(away),
+            energy: Some(ratio(change, scale)).filter(|change| change.is_finite()),
+            dissipates: forces.iter().any(dissipates),
+            momentum: forces
+                .iter()
+                .all(|force| is_weight(force) || is_internal(force))
+                .then_some(momentum),
+            position: (same_impacts && forces.iter().all(is_weight)).then_some(away),
         }
+    }
+}
+
+/// The part of the potential energy that is not that of a constant force, J.
+fn varying_potential(world: &World) -> f64 {
+    if world.forces().iter().all(is_weight) {
+        return 0.0;
+    }
+    let weight = weight(world);
+    let constant = |i| (world.force(i) + world.mass(i) * weight).dot(world.position(i));
+    world.potential_energy() + (0..world.len()).map(constant).sum::<f64>()
+}
+
+/// Acceleration by all weights, m/s².
+fn weight(world: &World) -> DVec3 {
+    let weights = world.forces().iter().filter_map(|force| match force {
+        Force::Gravity { acceleration } => Some(*acceleration),
+        _ => None,
+    });
+    weights.sum()
+}
+
+fn is_weight(force: &Force) -> bool {
+    matches!(force, Force::Gravity { .. })
+}
+
+/// Whether it acts between bodies, so that their momentum stays.
+fn is_internal(force: &Force) -> bool {
+    matches!(
+        force,
+        Force::Spring { .. } | Force::Gravitation { .. } | Force::Pair { .. }
+    )
+}
+
+/// Whether it may change the energy for good.
+fn dissipates(force: &Force) -> bool {
+    match *force {
+        Force::Gravity { .. } | Force::Attraction { .. } | Force::Gravitation { .. } => false,
+        Force::Anchor { damping, .. } | Force::Spring { damping, .. } => damping > 0.0,
+        Force::LinearDrag { coefficient, .. } | Force::QuadraticDrag { coefficient, .. } => {
+            coefficient > 0.0
+        }
+        Force::Body { .. } | Force::Pair { .. } => true,
     }
 }
 

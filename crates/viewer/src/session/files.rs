@@ -14,9 +14,13 @@ impl Session {
         let opened = Scene::load(name_or_path).map_err(anyhow::Error::new);
         match opened.and_then(Session::new) {
             Ok(session) => {
-                let (display, edition) = (self.display, self.edition + 1);
+                let (mut display, edition) = (self.display, self.edition + 1);
+                let mut compare = std::mem::take(&mut self.compare);
+                compare.forget();
+                display.trails = session.display.trails;
                 *self = session;
                 self.display = display;
+                self.compare = compare;
                 self.edition = edition;
                 let path = PathBuf::from(name_or_path);
                 self.file = path.extension().is_some().then_some(path);

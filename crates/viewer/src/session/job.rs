@@ -7,9 +7,9 @@
 
 use std::time::Duration;
 
-use sim_core::{StepError, World};
+use sim_core::{DVec3, StepError, World};
 
-use super::{Session, State};
+use super::{Session, State, trails};
 use crate::headless;
 
 /// Real time that the steps of one frame may take before the rest of them is given up: leaves
@@ -21,6 +21,8 @@ pub const STEP_BUDGET: Duration = Duration::from_millis(8);
 pub struct Job {
     world: World,
     steps: u32,
+    /// Positions are to be noted after each step.
+    traced: bool,
     edition: u64,
 }
 
@@ -32,6 +34,7 @@ pub struct Done {
     taken: u32,
     time: Duration,
     error: Option<StepError>,
+    trace: Vec<DVec3>,
     edition: u64,
 }
 
@@ -41,9 +44,13 @@ impl Job {
     pub fn run(mut self, stopwatch: impl Fn() -> Duration) -> Done {
         let began = stopwatch();
         let (mut taken, mut time, mut error) = (0, Duration::ZERO, None);
+        let mut trace = Vec::new();
         while taken < self.steps && time <= STEP_BUDGET && error.is_none() {
             error = self.world.step().err();
             taken += u32::from(error.is_none());
+            if self.traced && error.is_none() {
+                trace.extend(trails::positions(&self.world));
+            }
             time = stopwatch().saturating_sub(began);
         }
         Done {
@@ -52,6 +59,7 @@ impl Job {
             taken,
             time,
             error,
+            trace,
             edition: self.edition,
         }
     }
@@ -88,13 +96,14 @@ impl Session {
             Job {
                 world: self.world.clone(),
                 steps,
+                traced: self.display.trails,
                 edition: self.edition,
             }
         })
     }
 
     /// Takes in the result of a job; one from before a reset, a pause or an edit is ignored. A
-    /// failed step pauses and is shown.
+    /// failed step pauses, is shown, and selects the body where it happened.
     pub fn accept(&mut self, done: Done) {
         if !self.under_way || done.edition != self.edition {
             return;
@@ -105,6 +114,9 @@ impl Session {
             self.figures.cost.add(done.time / done.taken);
         }
         self.figures.steps_per_frame = done.taken;
+        if self.display.trails {
+            self.trails.extend(&done.trace);
+        }
         match done.error {
             None if self.state == State::Running => {
                 let left = f64::from(done.due - done.taken) * self.clock.dt();
@@ -114,6 +126,7 @@ impl Session {
             None => {}
             Some(error) => {
                 self.pause();
+                self.select(Some(error.body()));
                 self.notices
                     .error("step", headless::step_error(&self.scene, &error));
             }

@@ -9,25 +9,31 @@
 //! Nothing here draws, opens windows or reads a clock: see `picture` for what is drawn, and
 //! [`Session::due`] for how time comes in and steps are taken.
 
+mod compare;
 mod edit;
 mod figures;
 mod files;
+mod forces;
 mod job;
 mod notice;
 mod pick;
 mod picture;
 #[cfg(test)]
 mod tests;
+mod ties;
+mod trails;
 
 use std::time::Duration;
 
 use scene::{Scene, SceneBody};
 use sim_core::{Collision, FixedStep, Method, Settings, World};
 
+pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
 pub use figures::{Drift, Figures, Reference};
 pub use job::{Done, Job, STEP_BUDGET};
 pub use notice::{Notice, Notices};
 pub use picture::{BvhView, Display};
+use trails::Trails;
 
 use crate::camera::Camera;
 
@@ -60,6 +66,7 @@ pub struct Session {
     reference: Reference,
     figures: Figures,
     notices: Notices,
+    trails: Trails,
     selection: Option<usize>,
     /// Steps are being taken on a copy of the world.
     under_way: bool,
@@ -73,6 +80,8 @@ pub struct Session {
     pub camera: Camera,
     /// What is drawn besides the bodies.
     pub display: Display,
+    /// Naive against BVH.
+    pub compare: Compare,
 }
 
 impl Session {
@@ -88,6 +97,7 @@ impl Session {
             state: State::Layout,
             figures: Figures::default(),
             notices: Notices::default(),
+            trails: Trails::default(),
             selection: None,
             under_way: false,
             steps_wanted: 0,
@@ -95,7 +105,10 @@ impl Session {
             file: None,
             camera: Camera::default(),
             display: Display::default(),
+            compare: Compare::default(),
         };
+        // Where paths are curved, they show what a method does.
+        session.show_trails(!session.scene.forces.is_empty());
         session.frame_opening();
         Ok(session)
     }
@@ -213,6 +226,14 @@ impl Session {
         });
     }
 
+    /// Changes the error that adaptive methods may make in a step.
+    pub fn set_tolerance(&mut self, tolerance: f64) {
+        self.set_settings(Settings {
+            tolerance,
+            ..*self.world.settings()
+        });
+    }
+
     fn set_settings(&mut self, settings: Settings) {
         if let Err(error) = self.try_settings(settings) {
             self.notices.error("settings", error.to_string());
@@ -221,6 +242,8 @@ impl Session {
         self.scene.dt = settings.dt;
         self.scene.method = settings.method;
         self.scene.collision = settings.collision;
+        self.scene.tolerance = settings.tolerance;
+        self.notices.dismiss("settings");
         self.figures = Figures::default();
     }
 
@@ -246,6 +269,11 @@ impl Session {
         self.disown_jobs();
         self.reference = Reference::of(&self.world);
         self.figures = Figures::default();
+        self.compare.forget();
+        self.notices.dismiss("step");
+        if self.display.trails {
+            self.trails.begin(&self.world);
+        }
     }
 
     /// Takes a world freshly made from the scene.

@@ -1,13 +1,23 @@
 //! Where bodies are: picking them with a ray, and the room they take up.
 
 use scene::SceneBody;
-use sim_core::{Aabb, DVec3};
+use sim_core::{Aabb, DVec3, Force};
 
 use super::{Session, State};
 
+/// Half the size, in distances of the camera, up to which a body is drawn as a dot.
+const SPECK: f64 = 0.004;
 /// Largest way that the opening view makes room for, in radii of the body: a bullet would be a
 /// dot in it.
 const OPENING_REACH: f64 = 8.0;
+/// Depth over width and height below which all is in an upright plane, and where to look at that
+/// from: yaw and pitch, radians.
+const FLAT: f64 = 0.3;
+const FRONT: (f64, f64) = (0.2, 0.16);
+/// How far ahead the opening view looks under forces: simulated time, s, steps, and positions.
+const OPENING_TIME: f64 = 6.4;
+const OPENING_STEPS: f64 = 720.0;
+const OPENING_POSITIONS: f64 = 20_000.0;
 
 impl Session {
     /// Where body `i` is drawn, m: between the last two states while running.
@@ -30,7 +40,28 @@ impl Session {
                 Some((hit.t, i))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
+        let hit = hit.or_else(|| self.dot_near(origin, direction.normalize_or_zero()));
         self.select(hit.map(|(_, i)| i));
+    }
+
+    /// The body drawn as a dot that a ray passes most closely, in distances along it, and close enough.
+    fn dot_near(&self, origin: DVec3, direction: DVec3) -> Option<(f64, usize)> {
+        (0..self.world.len())
+            .filter(|&i| self.is_dot(i))
+            .filter_map(|i| {
+                let way = self.shown_position(i) - origin;
+                let along = way.dot(direction);
+                let aside = (way - along * direction).length() / along;
+                (along > 0.0 && aside < 2.0 * SPECK).then_some((aside, i))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Whether a body is a point, or too small to be seen.
+    pub(super) fn is_dot(&self, i: usize) -> bool {
+        let least = SPECK * self.camera.distance;
+        let mesh = self.world.mesh(i);
+        mesh.is_none_or(|mesh| mesh.bounds().half_extent().max_element() <= least)
     }
 
     /// Centre and radius, m, of a ball around the selected body, or around all bodies.
@@ -55,6 +86,9 @@ impl Session {
         let Some((centre, radius)) = self.extent() else {
             return;
         };
+        if !self.world.forces().is_empty() {
+            return self.frame_motion();
+        }
         if self.world.len() > 1 {
             return self.camera.frame(centre, 1.2 * radius);
         }
@@ -70,6 +104,48 @@ impl Session {
         }
         let ball = (max - min).length() / 2.0;
         self.camera.frame((min + max) / 2.0, ball);
+    }
+
+    /// Looks at where forces will take the bodies next. What falls below the lowest start is let go.
+    fn frame_motion(&mut self) {
+        let Some((low, high)) = self.world_box() else {
+            return;
+        };
+        let has_weight = |force: &Force| matches!(force, Force::Gravity { .. });
+        let falls = self.world.forces().iter().any(has_weight);
+        let size = (high - low).max_element();
+        let (mut min, mut max) = (low, high);
+        for force in self.world.forces() {
+            if let Force::Anchor { anchor: point, .. } | Force::Attraction { centre: point, .. } =
+                *force
+            {
+                (min, max) = (min.min(point), max.max(point));
+            }
+        }
+        let mut ahead = self.world.clone();
+        let steps = (OPENING_TIME / ahead.settings().dt).min(OPENING_STEPS);
+        let steps = steps.min(OPENING_POSITIONS / self.world.len().max(1) as f64);
+        for _ in 0..steps as u32 {
+            if ahead.step().is_err() {
+                break;
+            }
+            for i in 0..ahead.len() {
+                let at = ahead.position(i);
+                if falls && at.y < low.y {
+                    continue;
+                }
+                let at = at.clamp(low - OPENING_REACH * size, high + OPENING_REACH * size);
+                let half = self.world.mesh(i).map(|mesh| mesh.bounds().half_extent());
+                let half = half.unwrap_or_default();
+                (min, max) = (min.min(at - half), max.max(at + half));
+            }
+        }
+        let (size, middle) = (max - min, 0.5 * (min + max));
+        if size.z < FLAT * size.x.max(size.y) {
+            // Motion in an upright plane is looked at nearly from the front.
+            (self.camera.yaw, self.camera.pitch) = FRONT;
+        }
+        self.camera.frame(middle, (0.47 * size.length()).max(1e-3));
     }
 
     /// A place for `body` that touches nothing: beside all others along x, at their height.

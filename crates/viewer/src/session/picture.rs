@@ -35,6 +35,10 @@ pub struct Display {
     pub arrow_time: f64,
     /// The ground grid.
     pub grid: bool,
+    /// Where bodies have been; see [`Session::show_trails`].
+    pub trails: bool,
+    /// Springs, anchors and centres of attraction.
+    pub ties: bool,
 }
 
 impl Default for Display {
@@ -49,6 +53,8 @@ impl Default for Display {
             all_velocities: false,
             arrow_time: 0.5,
             grid: true,
+            trails: false,
+            ties: true,
         }
     }
 }
@@ -82,6 +88,13 @@ impl Session {
             if self.display.bvh.shown && (selected || self.display.bvh.every_body) {
                 self.add_boxes(i, &mut picture.lines);
             }
+            if self.display.trails {
+                self.add_trail(i, &mut picture.lines);
+            }
+        }
+        self.add_dots(&mut picture.lines);
+        if self.display.ties {
+            self.add_ties(&mut picture.lines);
         }
         self.add_impact(&mut picture);
         picture
@@ -101,6 +114,36 @@ impl Session {
             .filter_map(|i| Some(self.world.bvh(i)?.depth()))
             .max()
             .unwrap_or(0)
+    }
+
+    /// Points, and bodies too small to be seen, as dots.
+    fn add_dots(&self, lines: &mut Vec<Line>) {
+        for i in (0..self.world.len()).filter(|&i| self.is_dot(i)) {
+            let at = self.shown_position(i);
+            let [red, green, blue] = self.colour(i);
+            // A line of no length is its round end.
+            lines.push(Line {
+                from: at,
+                to: at,
+                colour: [red, green, blue, 1.0],
+                width: if self.selection == Some(i) { 13.0 } else { 9.0 },
+            });
+        }
+    }
+
+    /// Goes to another depth of the boxes shown.
+    pub fn step_depth(&mut self, by: isize) {
+        if !self.display.bvh.shown {
+            return;
+        }
+        let deepest = self.bvh_depth().saturating_sub(1);
+        let view = &mut self.display.bvh;
+        view.every_depth = false;
+        view.depth = view
+            .depth
+            .min(deepest)
+            .saturating_add_signed(by)
+            .min(deepest);
     }
 
     /// From the surface of the body's box, so that a slow body's arrow is not hidden inside it.

@@ -7,6 +7,8 @@ use sim_core::{Collision, DVec3, METHODS};
 
 use super::{STEP_BUDGET, Session, State};
 
+mod forces;
+
 const FRAME: Duration = Duration::from_millis(17);
 
 /// Two cubes of edge 1 m: `mover` at x = -3 flies at `target` at the origin with 2 m/s.
@@ -432,7 +434,8 @@ fn drift_counts_errors_and_not_what_forces_do() {
         advance(&mut session, FRAME, free());
     }
     let drift = session.drift();
-    assert!(drift.energy.abs() < 1e-12 && drift.momentum < 1e-12);
+    assert!(drift.energy.is_some_and(|change| change.abs() < 1e-12));
+    assert!(drift.momentum.is_some_and(|change| change < 1e-12));
     assert!(drift.position.is_some_and(|away| away < 1e-12));
     session.reset();
     session.set_method(METHODS[0]);
@@ -440,7 +443,11 @@ fn drift_counts_errors_and_not_what_forces_do() {
     for _ in 0..20 {
         advance(&mut session, FRAME, free());
     }
-    assert!(session.drift().energy.abs() > 1e-4, "forward Euler errs");
+    let change = session.drift().energy;
+    assert!(
+        change.is_some_and(|change| change.abs() > 1e-4),
+        "forward Euler errs"
+    );
     // Forward Euler leaves out a half of F/m dt in each of its steps.
     let world = session.world();
     let missed = 0.5 * world.time() / 60.0;

@@ -3,6 +3,7 @@
 use egui::{RichText, Slider};
 
 use super::field;
+use crate::number;
 use crate::session::Session;
 
 pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
@@ -30,6 +31,18 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         )
         .on_hover_text("An arrow shows how far its body goes in this time");
     });
+    ui.horizontal(|ui| {
+        let mut trails = session.display.trails;
+        if ui
+            .checkbox(&mut trails, "Trails")
+            .on_hover_text("Where bodies have been in the last 600 steps (T)")
+            .changed()
+        {
+            session.show_trails(trails);
+        }
+        ui.checkbox(&mut session.display.ties, "Springs and centres")
+            .on_hover_text("Springs as zigzags, anchors and centres of attraction as crosses");
+    });
     boxes(ui, session);
 }
 
@@ -51,11 +64,46 @@ fn boxes(ui: &mut egui::Ui, session: &mut Session) {
         ui.label(RichText::new("No body is selected.").weak());
     }
     ui.horizontal(|ui| {
-        field::label(ui, "Depth", "0 is the box around the whole mesh");
+        field::label(
+            ui,
+            "Depth",
+            "0 is the box around the whole mesh; [ and ] go up and down",
+        );
         ui.add_enabled(
             !view.every_depth,
             Slider::new(&mut view.depth, 0..=levels.saturating_sub(1)),
         );
         ui.checkbox(&mut view.every_depth, "all");
     });
+    tree(ui, session);
+}
+
+/// What the selected body's tree is like.
+fn tree(ui: &mut egui::Ui, session: &Session) {
+    let Some(bvh) = session.selection().and_then(|i| session.world().bvh(i)) else {
+        return;
+    };
+    field::figure(
+        ui,
+        "Tree",
+        "Nodes of up to four boxes, leaves of up to four triangles among them; levels of both",
+        format!(
+            "{} nodes, {} levels",
+            number::count(bvh.node_count() as f64),
+            bvh.depth()
+        ),
+    );
+    field::figure(
+        ui,
+        "Cost",
+        "Boxes and triangles' boxes that a random ray through the root's box is expected to meet \
+         (surface area heuristic)",
+        format!("{:.1} by surface area", bvh.surface_area_cost()),
+    );
+    field::figure(
+        ui,
+        "Memory",
+        "Nodes, leaves, and the triangles in them",
+        format!("{:.0} bytes a triangle", bvh.bytes_per_triangle()),
+    );
 }

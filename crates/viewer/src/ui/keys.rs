@@ -11,69 +11,81 @@ struct Shortcut {
     keys: &'static [Key],
     label: &'static str,
     meaning: &'static str,
-    act: fn(&mut Ui, &mut Session),
+    act: fn(&mut Ui, &mut Session, Key),
 }
 
-static SHORTCUTS: [Shortcut; 10] = [
+static SHORTCUTS: [Shortcut; 12] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
         meaning: "start / pause",
-        act: |_, session| session.toggle(),
+        act: |_, session, _| session.toggle(),
     },
     Shortcut {
         keys: &[Key::ArrowRight, Key::Period],
         label: "Right or .",
         meaning: "single step",
-        act: |_, session| session.step_once(),
+        act: |_, session, _| session.step_once(),
     },
     Shortcut {
         keys: &[Key::R],
         label: "R",
         meaning: "reset",
-        act: |_, session| session.reset(),
+        act: |_, session, _| session.reset(),
     },
     Shortcut {
         keys: &[Key::F],
         label: "F",
         meaning: "frame",
-        act: |_, session| session.frame(),
+        act: |_, session, _| session.frame(),
     },
     Shortcut {
         keys: &[Key::B],
         label: "B",
         meaning: "BVH boxes",
-        act: |_, session| session.display.bvh.shown ^= true,
+        act: |_, session, _| session.display.bvh.shown ^= true,
+    },
+    Shortcut {
+        keys: &[Key::OpenBracket, Key::CloseBracket],
+        label: "[ ]",
+        meaning: "depth of boxes",
+        act: |_, session, key| session.step_depth(if key == Key::OpenBracket { -1 } else { 1 }),
+    },
+    Shortcut {
+        keys: &[Key::T],
+        label: "T",
+        meaning: "trails",
+        act: |_, session, _| session.show_trails(!session.display.trails),
     },
     Shortcut {
         keys: &[Key::Delete],
         label: "Del",
         meaning: "delete body",
-        act: |_, session| session.delete_selected(),
+        act: |_, session, _| session.delete_selected(),
     },
     Shortcut {
         keys: &[Key::Escape],
         label: "Esc",
         meaning: "select nothing",
-        act: |_, session| session.select(None),
+        act: |_, session, _| session.select(None),
     },
     Shortcut {
         keys: &[Key::P],
         label: "P",
         meaning: "side panel",
-        act: |ui, _| ui.panel_hidden ^= true,
+        act: |ui, _, _| ui.panel_hidden ^= true,
     },
     Shortcut {
         keys: &[Key::L],
         label: "L",
         meaning: "live figures",
-        act: |ui, _| ui.live_hidden ^= true,
+        act: |ui, _, _| ui.live_hidden ^= true,
     },
     Shortcut {
         keys: &[Key::H],
         label: "H",
         meaning: "all keys",
-        act: |ui, _| ui.help ^= true,
+        act: |ui, _, _| ui.help ^= true,
     },
 ];
 
@@ -92,15 +104,15 @@ pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session)
         return;
     }
     for shortcut in &SHORTCUTS {
-        let presses = ctx.input(|i| {
-            // Ctrl and Alt belong to the system and to egui.
-            if i.modifiers.ctrl || i.modifiers.alt || i.modifiers.command {
-                return 0;
+        for &key in shortcut.keys {
+            let presses = ctx.input(|i| {
+                // Ctrl and Alt belong to the system and to egui.
+                let foreign = i.modifiers.ctrl || i.modifiers.alt || i.modifiers.command;
+                if foreign { 0 } else { i.num_presses(key) }
+            });
+            for _ in 0..presses {
+                (shortcut.act)(state, session, key);
             }
-            shortcut.keys.iter().map(|&key| i.num_presses(key)).sum()
-        });
-        for _ in 0..presses {
-            (shortcut.act)(state, session);
         }
     }
 }

@@ -60,19 +60,36 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
         "Real time given up since the start because steps came too late",
         number::seconds(figures.behind.as_secs_f64()),
     );
+    let (kinetic, potential) = (world.kinetic_energy(), world.potential_energy());
     field::figure(
         ui,
         "Energy",
-        "Kinetic energy of all bodies",
-        format!("{} J", number::figure(world.kinetic_energy())),
+        "Kinetic and potential energy of all bodies together",
+        number::energy(kinetic + potential),
     );
     field::figure(
         ui,
-        "  drift",
-        "Relative error of the energy since the start or the last edit; what the forces do is \
-         taken into account",
-        number::relative(drift.energy),
+        "  parts",
+        "Kinetic energy, and potential energy of the forces that have one: 0 for a constant force \
+         at the origin, a spring at rest, and masses infinitely far apart",
+        format!(
+            "{} kin.  {} pot.",
+            number::energy(kinetic),
+            number::energy(potential)
+        ),
     );
+    let (name, meaning) = match drift.dissipates {
+        true => (
+            "  change",
+            "Relative change of the energy since the start or the last edit: friction takes it, so it is no error",
+        ),
+        false => (
+            "  drift",
+            "Relative error of the energy since the start or the last edit",
+        ),
+    };
+    let change = drift.energy.map_or_else(none, number::relative);
+    field::figure(ui, name, meaning, change);
     let p = world.momentum();
     field::figure(
         ui,
@@ -84,13 +101,14 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
         ui,
         "  drift",
         "Relative error of the momentum since the start or the last edit; what the forces do is \
-         taken into account",
-        number::relative(drift.momentum),
+         taken into account. Unknown where a spring, drag or attraction acts from outside",
+        drift.momentum.map_or_else(none, number::relative),
     );
     field::figure(
         ui,
         "Path error",
-        "Largest distance of a body from its exact path, known until the first collision",
+        "Largest distance of a body from its exact path, known until the first collision \
+         and under constant forces only",
         drift
             .position
             .map_or_else(none, |away| format!("{} m", number::figure(away))),

@@ -6,9 +6,11 @@
 mod banner;
 mod bar;
 mod body;
+mod compare;
 mod dialog;
 mod display;
 mod field;
+mod forces;
 mod keys;
 mod live;
 mod scene;
@@ -67,7 +69,9 @@ impl Ui {
                         section(ui, "Scene", |ui| scene::show(ui, &mut self.files, session));
                         section(ui, "Simulation", |ui| simulation::show(ui, session));
                         section(ui, "Selected body", |ui| body::show(ui, session));
+                        section(ui, "Forces", |ui| forces::show(ui, session));
                         section(ui, "Display", |ui| display::show(ui, session));
+                        section(ui, "Naive against BVH", |ui| compare::show(ui, session));
                     });
             });
     }

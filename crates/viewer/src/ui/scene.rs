@@ -45,6 +45,7 @@ fn gallery(ui: &mut egui::Ui, session: &mut Session) {
         ComboBox::from_id_salt("gallery")
             .selected_text(&session.scene().name)
             .width(ui.available_width() - 8.0)
+            .height(340.0)
             .show_ui(ui, |ui| {
                 for entry in scene::SCENES {
                     let current = entry.name == session.scene().name;

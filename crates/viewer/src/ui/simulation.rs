@@ -1,7 +1,7 @@
 //! How to simulate: integrator, rate and collision test, all changeable while running.
 
 use egui::{ComboBox, Slider};
-use sim_core::{Collision, METHODS};
+use sim_core::{Collision, METHODS, Settings};
 
 use super::field;
 use crate::number;
@@ -18,6 +18,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         ComboBox::from_id_salt("integrator")
             .selected_text(now.method.title)
             .width(ui.available_width() - 8.0)
+            .height(340.0)
             .show_ui(ui, |ui| {
                 for method in METHODS {
                     let chosen = ui
@@ -32,6 +33,9 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             .response
             .on_hover_text(about(now.method));
     });
+    if now.method.adaptive {
+        tolerance(ui, session, now.tolerance);
+    }
     ui.horizontal(|ui| {
         field::label(ui, "Rate", "Steps per second of simulated time");
         let mut rate = 1.0 / now.dt;
@@ -73,9 +77,26 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     });
 }
 
+fn tolerance(ui: &mut egui::Ui, session: &mut Session, now: f64) {
+    let meaning =
+        "Error that a step may make, relative and, in m and m/s, absolute: from 1e-15 to 1";
+    ui.horizontal(|ui| {
+        field::label(ui, "Tolerance", meaning);
+        let mut value = now;
+        let slider = Slider::new(&mut value, Settings::TOLERANCES)
+            .logarithmic(true)
+            .clamping(egui::SliderClamping::Edits)
+            .custom_formatter(|value, _| format!("{value:.1e}"))
+            .custom_parser(|text| text.trim().parse().ok());
+        if ui.add(slider).on_hover_text(meaning).changed() {
+            session.set_tolerance(value);
+        }
+    });
+}
+
 fn about(method: &sim_core::Method) -> String {
     format!(
-        "{}\nOrder {}. {}\n{}",
+        "{}\nOrder {}; {}\n{}",
         method.title, method.order, method.stability, method.source
     )
 }

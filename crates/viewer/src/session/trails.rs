@@ -1,0 +1,87 @@
+//! Where bodies have been of late: a fading path behind each.
+
+use std::collections::VecDeque;
+
+use sim_core::{DVec3, World};
+
+use super::{Session, State};
+use crate::picture::Line;
+
+/// Steps that a path goes back.
+const LONGEST: usize = 600;
+/// Points of all paths together.
+const MOST_POINTS: usize = 60_000;
+
+/// The latest positions of all bodies, step by step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Trails {
+    bodies: usize,
+    /// A column of positions for each step, the latest last.
+    points: VecDeque<DVec3>,
+}
+
+impl Trails {
+    /// Begins afresh where the bodies of a world are.
+    pub(super) fn begin(&mut self, world: &World) {
+        self.bodies = world.len();
+        self.points.clear();
+        self.extend(&positions(world).collect::<Vec<_>>());
+    }
+
+    /// Takes in the positions after some steps, and forgets those of long ago.
+    pub(super) fn extend(&mut self, positions: &[DVec3]) {
+        self.points.extend(positions);
+        let kept = self.bodies * LONGEST.min(MOST_POINTS / self.bodies.max(1));
+        self.points.drain(..self.points.len().saturating_sub(kept));
+    }
+
+    /// Where a body was, the oldest position first.
+    fn of(&self, body: usize) -> impl ExactSizeIterator<Item = DVec3> {
+        let points = self.points.iter().copied();
+        points.skip(body).step_by(self.bodies.max(1))
+    }
+
+    /// Points kept.
+    #[cfg(test)]
+    pub(super) fn len(&self) -> usize {
+        self.points.len()
+    }
+}
+
+/// Where the bodies of a world are.
+pub(super) fn positions(world: &World) -> impl Iterator<Item = DVec3> {
+    (0..world.len()).map(|i| world.position(i))
+}
+
+impl Session {
+    /// Shows or hides the paths; shown, they begin here.
+    pub fn show_trails(&mut self, shown: bool) {
+        self.display.trails = shown;
+        self.trails = Trails::default();
+        if shown {
+            self.trails.begin(&self.world);
+        }
+    }
+
+    /// The path of a body, to where it is drawn.
+    pub(super) fn add_trail(&self, i: usize, lines: &mut Vec<Line>) {
+        let points = self.trails.of(i);
+        // While running, bodies are drawn between the last two states.
+        let whole = points.len() - usize::from(self.state == State::Running).min(points.len());
+        let [red, green, blue] = self.colour(i).map(|part| 0.8 * part);
+        let end = self.shown_position(i);
+        let mut from = None;
+        for (n, to) in points.take(whole).chain([end]).enumerate() {
+            let age = n as f32 / whole.max(1) as f32;
+            if let Some(from) = from.filter(|&from| from != to) {
+                lines.push(Line {
+                    from,
+                    to,
+                    colour: [red, green, blue, 0.9 * age],
+                    width: 2.0,
+                });
+            }
+            from = Some(to);
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Naive against BVH: what an answer costs each way, on the bodies that are near each other now.
+
+use egui::{Grid, RichText};
+
+use super::style;
+use crate::number;
+use crate::session::{Comparison, Contest, Cost, Session};
+
+pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
+    ui.checkbox(&mut session.compare.on, "Measure")
+        .on_hover_text(
+            "Ask both ways whether the two bodies meet, now and then, on a thread of its own. \
+             Off, it costs nothing.",
+        );
+    if !session.compare.on {
+        return;
+    }
+    let name = |i: usize| session.scene().bodies[i].name.as_str();
+    let now = match session.contest() {
+        Contest::NoPair if session.selection().is_some() => {
+            "The selected body has no other to meet.".to_owned()
+        }
+        Contest::NoPair => "It takes two bodies with meshes.".to_owned(),
+        Contest::Apart => "The boxes are apart: nothing to measure.".to_owned(),
+        Contest::Pair(i, j) => format!("The boxes of {} and {} overlap.", name(i), name(j)),
+    };
+    ui.label(RichText::new(now).weak());
+    match session.compare.last() {
+        Some(last) => table(ui, session, last),
+        None if session.compare.is_under_way() => {
+            ui.label(RichText::new("Measuring…").weak());
+        }
+        None => {}
+    }
+}
+
+fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
+    Grid::new("compare")
+        .num_columns(4)
+        .min_col_width(58.0)
+        .spacing([12.0, 3.0])
+        .show(ui, |ui| {
+            for title in ["", "Naive", "BVH", "Ratio"] {
+                ui.label(RichText::new(title).strong());
+            }
+            ui.end_row();
+            row(
+                ui,
+                last,
+                "Tests",
+                TESTS,
+                |cost| cost.tests as f64,
+                number::count,
+            );
+            row(
+                ui,
+                last,
+                "Boxes",
+                BOXES,
+                |cost| cost.boxes as f64,
+                number::count,
+            );
+            row(ui, last, "Time", TIME, |cost| cost.seconds, number::seconds);
+        });
+    if last.naive.is_none() {
+        ui.label(
+            RichText::new("These meshes are too large for the naive way.").color(style::AMBER),
+        )
+        .on_hover_text("It would take many seconds for one answer.");
+    }
+    let (i, j) = last.pair;
+    let bodies = &session.scene().bodies;
+    let (Some(first), Some(second)) = (bodies.get(i), bodies.get(j)) else {
+        return;
+    };
+    let age = session.world().time() - last.time;
+    let when = if age > 0.0 {
+        format!("{age:.2} s ago")
+    } else {
+        "now".to_owned()
+    };
+    let meet = if last.meet { "meet" } else { "do not meet" };
+    let text = format!("{} and {} {meet}, as of {when}.", first.name, second.name);
+    ui.label(RichText::new(text).weak())
+        .on_hover_text("Both ways agree. The age is simulated time.");
+}
+
+const TESTS: &str =
+    "Naive: an edge with a triangle. BVH: two triangles whose boxes meet. Until the first hit.";
+const BOXES: &str = "Pairs of boxes compared";
+const TIME: &str = "Real time of one answer; of short ones the mean of up to 200";
+
+fn row(
+    ui: &mut egui::Ui,
+    last: &Comparison,
+    title: &str,
+    meaning: &str,
+    value: fn(&Cost) -> f64,
+    text: fn(f64) -> String,
+) {
+    ui.label(title).on_hover_text(meaning);
+    let tree = value(&last.tree);
+    let naive = last.naive.as_ref().map(value);
+    let none = || "-".to_owned();
+    ui.monospace(naive.map_or_else(none, text));
+    ui.monospace(text(tree));
+    let ratio = naive.map(|naive| naive / tree);
+    let ratio = ratio.filter(|ratio| ratio.is_finite() && *ratio > 0.0);
+    ui.monospace(ratio.map_or_else(none, |ratio| {
+        if ratio < 10.0 {
+            format!("{ratio:.1}")
+        } else {
+            number::count(ratio)
+        }
+    }));
+    ui.end_row();
+}

@@ -1,0 +1,270 @@
+//! The forces of the scene: one block of fields each, and a list of those that can be added.
+
+use egui::{ComboBox, RichText};
+use sim_core::{DVec3, Force};
+
+use super::field;
+use crate::session::{Session, State};
+
+pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
+    let stopped = session.state() != State::Running;
+    ui.label(RichText::new("Beside the constant force of each body.").weak());
+    if !stopped {
+        ui.label(RichText::new("Pause to change them.").weak());
+    }
+    ui.add_enabled_ui(stopped, |ui| {
+        list(ui, session);
+        add(ui, session);
+    });
+    if session.state() == State::Paused {
+        ui.label(RichText::new("Edits last until Reset.").weak());
+    }
+}
+
+fn list(ui: &mut egui::Ui, session: &mut Session) {
+    let names: Vec<String> = session
+        .scene()
+        .bodies
+        .iter()
+        .map(|b| b.name.clone())
+        .collect();
+    for (i, force) in session.world().forces().to_vec().into_iter().enumerate() {
+        ui.push_id(i, |ui| {
+            let mut removed = false;
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(title(&force)).strong())
+                    .on_hover_text(law(&force));
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    removed = ui.button("Remove").clicked();
+                });
+            });
+            if removed {
+                session.remove_force(i);
+            } else if let Some(force) = fields(ui, &names, force) {
+                session.replace_force(i, force);
+            }
+            ui.add_space(4.0);
+        });
+    }
+}
+
+/// The fields of a force; the changed force if one was changed.
+fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force> {
+    let scalar = |ui: &mut egui::Ui, name, unit, meaning, value: &mut f64| {
+        let new = field::scalar(ui, name, unit, meaning, *value);
+        new.map(|new| *value = new).is_some()
+    };
+    let vector = |ui: &mut egui::Ui, name, unit, meaning, value: &mut DVec3| {
+        let new = field::vector(ui, name, unit, meaning, *value);
+        new.map(|new| *value = new).is_some()
+    };
+    let changed = match &mut force {
+        Force::Gravity { acceleration } => {
+            vector(ui, "g", "m/s²", "Acceleration of every body", acceleration)
+        }
+        Force::LinearDrag { body, coefficient } => {
+            maybe_body(ui, names, body)
+                | scalar(
+                    ui,
+                    "Coefficient",
+                    "",
+                    "c of F = -c v, kg/s, from 0",
+                    coefficient,
+                )
+        }
+        Force::QuadraticDrag { body, coefficient } => {
+            maybe_body(ui, names, body)
+                | scalar(
+                    ui,
+                    "Coefficient",
+                    "",
+                    "c of F = -c |v| v, kg/m, from 0",
+                    coefficient,
+                )
+        }
+        Force::Anchor {
+            body,
+            anchor,
+            rest_length,
+            stiffness,
+            damping,
+        } => {
+            one_body(ui, names, "Body", body)
+                | vector(ui, "Anchor", "m", "The fixed point", anchor)
+                | scalar(ui, "Stiffness", "", "N/m, from 0", stiffness)
+                | scalar(ui, "Damping", "", "kg/s, from 0", damping)
+                | scalar(
+                    ui,
+                    "Rest length",
+                    "",
+                    "Length without force, m, from 0",
+                    rest_length,
+                )
+        }
+        Force::Spring {
+            bodies: [first, second],
+            rest_length,
+            stiffness,
+            damping,
+        } => {
+            one_body(ui, names, "From", first)
+                | one_body(ui, names, "To", second)
+                | scalar(ui, "Stiffness", "", "N/m, from 0", stiffness)
+                | scalar(ui, "Damping", "", "kg/s, from 0", damping)
+                | scalar(
+                    ui,
+                    "Rest length",
+                    "",
+                    "Length without force, m, from 0",
+                    rest_length,
+                )
+        }
+        Force::Attraction {
+            body,
+            centre,
+            strength,
+        } => {
+            maybe_body(ui, names, body)
+                | vector(ui, "Centre", "m", "The point that attracts", centre)
+                | scalar(ui, "Strength", "", "G M, m³/s², from 0", strength)
+        }
+        Force::Gravitation { constant } => {
+            scalar(ui, "Constant", "", "G, m³/(kg s²), from 0", constant)
+        }
+        Force::Body { .. } | Force::Pair { .. } => false,
+    };
+    changed.then_some(force)
+}
+
+/// A choice of one body. Whether it was changed.
+fn one_body(ui: &mut egui::Ui, names: &[String], title: &str, body: &mut usize) -> bool {
+    let mut chosen = Some(*body);
+    let changed = choose(ui, names, title, None, &mut chosen);
+    *body = chosen.unwrap_or(*body);
+    changed
+}
+
+/// A choice of one body or every one. Whether it was changed.
+fn maybe_body(ui: &mut egui::Ui, names: &[String], body: &mut Option<usize>) -> bool {
+    choose(ui, names, "Body", Some("every body"), body)
+}
+
+fn choose(
+    ui: &mut egui::Ui,
+    names: &[String],
+    title: &str,
+    all: Option<&str>,
+    body: &mut Option<usize>,
+) -> bool {
+    let before = *body;
+    let name = |i: usize| names.get(i).map_or("?", String::as_str);
+    ui.horizontal(|ui| {
+        field::label(ui, title, "The body that the force acts on");
+        ComboBox::from_id_salt(title)
+            .selected_text(body.map_or(all.unwrap_or("?"), name))
+            .width(ui.available_width() - 8.0)
+            .height(340.0)
+            .show_ui(ui, |ui| {
+                if let Some(all) = all {
+                    ui.selectable_value(body, None, all);
+                }
+                for i in 0..names.len() {
+                    ui.selectable_value(body, Some(i), name(i));
+                }
+            });
+    });
+    *body != before
+}
+
+/// The forces that can be added, for the selected body where they need one.
+fn add(ui: &mut egui::Ui, session: &mut Session) {
+    let bodies = session.world().len();
+    let body = session.selection().unwrap_or(0);
+    let other = usize::from(body == 0);
+    let mut offers = vec![
+        Force::Gravity {
+            acceleration: DVec3::new(0.0, -9.81, 0.0),
+        },
+        Force::LinearDrag {
+            body: session.selection(),
+            coefficient: 0.5,
+        },
+        Force::QuadraticDrag {
+            body: session.selection(),
+            coefficient: 0.1,
+        },
+        Force::Attraction {
+            body: session.selection(),
+            centre: DVec3::ZERO,
+            strength: 1.0,
+        },
+        Force::Gravitation { constant: 1.0 },
+    ];
+    if bodies > 0 {
+        offers.push(Force::Anchor {
+            body,
+            anchor: session.world().position(body) + DVec3::Y,
+            rest_length: 1.0,
+            stiffness: 10.0,
+            damping: 0.0,
+        });
+    }
+    if bodies > 1 {
+        let way = session.world().position(body) - session.world().position(other);
+        offers.push(Force::Spring {
+            bodies: [body, other],
+            rest_length: way.length(),
+            stiffness: 10.0,
+            damping: 0.0,
+        });
+    }
+    let mut chosen = None;
+    ui.horizontal(|ui| {
+        field::label(
+            ui,
+            "Add",
+            "A new force, for the selected body where it needs one",
+        );
+        ComboBox::from_id_salt("add force")
+            .selected_text("a force…")
+            .width(ui.available_width() - 8.0)
+            .height(340.0)
+            .show_ui(ui, |ui| {
+                for force in offers {
+                    let offer = ui.selectable_label(false, title(&force));
+                    if offer.on_hover_text(law(&force)).clicked() {
+                        chosen = Some(force);
+                    }
+                }
+            });
+    });
+    if let Some(force) = chosen {
+        session.add_force(force);
+    }
+}
+
+fn title(force: &Force) -> &'static str {
+    match force {
+        Force::Gravity { .. } => "Gravity",
+        Force::LinearDrag { .. } => "Linear drag",
+        Force::QuadraticDrag { .. } => "Quadratic drag",
+        Force::Anchor { .. } => "Spring to a point",
+        Force::Spring { .. } => "Spring between bodies",
+        Force::Attraction { .. } => "Attraction to a point",
+        Force::Gravitation { .. } => "Gravitation",
+        Force::Body { .. } | Force::Pair { .. } => "Custom",
+    }
+}
+
+fn law(force: &Force) -> &'static str {
+    match force {
+        Force::Gravity { .. } => "Weight: every body falls with the same acceleration",
+        Force::LinearDrag { .. } => "F = -c v",
+        Force::QuadraticDrag { .. } => "F = -c |v| v",
+        Force::Anchor { .. } => "F = -k (1 - L/|d|) d - c v, with d from the point to the body",
+        Force::Spring { .. } => "k times the stretch plus c times its rate, along the line",
+        Force::Attraction { .. } => "F = -m G M / r², to the point",
+        Force::Gravitation { .. } => "F = G m m / r² between every two bodies",
+        Force::Body { .. } | Force::Pair { .. } => "A law from outside",
+    }
+}
