@@ -8,7 +8,7 @@ use super::grid::Grid;
 use super::short::SHORT;
 use super::slabs::{self, Below, Slabs};
 use super::split::{Bounds, HALVE_FROM, Items, Run};
-use super::{Boxes, Bvh, LEAF, MAX_DEPTH, Node, Origin, Triangles, WIDTH};
+use super::{Boxes, Bvh, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
 use crate::Mesh;
 
 /// Runs of so few cells, or of cells with so few triangles, are built over triangles: so near the
@@ -98,9 +98,8 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
         nodes: tree.nodes,
         slabs: tree.slabs,
         triangles: tree.triangles,
-        origin: origins(mesh),
+        topology: mesh.topology().clone(),
         depth,
-        closed: mesh.is_closed(),
     }
 }
 
@@ -195,18 +194,4 @@ impl Triangles {
         }
         boxes
     }
-}
-
-/// The mesh's triangles with what they own.
-fn origins(mesh: &Mesh) -> Vec<Origin> {
-    let corners = mesh.triangles().iter();
-    let edges = mesh.triangle_edges().iter().zip(mesh.owned());
-    corners
-        .zip(edges)
-        .map(|(&vertices, (&edges, &owned))| Origin {
-            vertices,
-            edges,
-            owned,
-        })
-        .collect()
 }

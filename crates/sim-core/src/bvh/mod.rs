@@ -8,16 +8,16 @@ mod short;
 mod slabs;
 mod split;
 
-use alloc::vec::Vec;
+use alloc::{sync::Arc, vec::Vec};
 
-use crate::{Aabb, Mesh, mesh::Owned};
+use crate::{Aabb, Mesh, mesh::Topology};
 pub(crate) use node::{Boxes, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
 pub use ray::RayHit;
 pub(crate) use slabs::Slabs;
 
 /// A tree of boxes, four below each, flat in memory; each leaf has up to four triangles.
 ///
-/// It holds all that a query needs, so that a query reads nothing else.
+/// It holds all that a query needs; which edge or vertex a triangle has, it shares with the mesh.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     bounds: Aabb,
@@ -30,18 +30,9 @@ pub struct Bvh {
     slabs: Vec<Slabs>,
     /// Of each leaf.
     triangles: Vec<Triangles>,
-    /// By triangle of the mesh.
-    origin: Vec<Origin>,
+    /// Of the mesh, which shares it.
+    topology: Arc<Topology>,
     depth: usize,
-    closed: bool,
-}
-
-/// The corners and edges of a triangle in its mesh, and which of them it owns.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Origin {
-    pub(crate) vertices: [u32; 3],
-    pub(crate) edges: [u32; 3],
-    pub(crate) owned: Owned,
 }
 
 impl Bvh {
@@ -79,8 +70,7 @@ impl Bvh {
     pub fn bytes_per_triangle(&self) -> f64 {
         let bytes = size_of_val(&self.nodes[..])
             + size_of_val(&self.slabs[..])
-            + size_of_val(&self.triangles[..])
-            + size_of_val(&self.origin[..]);
+            + size_of_val(&self.triangles[..]);
         bytes as f64 / self.count as f64
     }
 
@@ -111,7 +101,7 @@ impl Bvh {
 
     /// Whether the mesh is closed ([`Mesh::is_closed`]).
     pub fn is_closed(&self) -> bool {
-        self.closed
+        self.topology.closed
     }
 
     pub(crate) fn root(&self) -> u32 {
@@ -145,9 +135,8 @@ impl Bvh {
         &self.triangles[leaf.triangles as usize]
     }
 
-    /// Where a triangle is in its mesh.
-    pub(crate) fn origin(&self, face: u32) -> &Origin {
-        &self.origin[face as usize]
+    pub(crate) fn topology(&self) -> &Topology {
+        &self.topology
     }
 }
 
@@ -201,13 +190,6 @@ mod tests {
                 .sum::<usize>(),
             reached
         );
-        // Each edge and vertex has one owner.
-        let owned = |owns: fn(&Origin) -> [bool; 3]| {
-            let all = bvh.origin.iter().flat_map(owns);
-            all.filter(|&o| o).count()
-        };
-        assert_eq!(owned(|t| t.owned.edge), mesh.edges().len());
-        assert_eq!(owned(|t| t.owned.vertex), mesh.vertices().len());
         bvh
     }
 

@@ -180,26 +180,32 @@ impl Search<'_> {
     fn try_triangles(&mut self, (s_face, s): (u32, [Vec3; 3]), (t_face, t): (u32, [Vec3; 3])) {
         let first = s.map(|v| v.as_dvec3());
         let second = t.map(|v| v.as_dvec3() + self.offset);
-        let (s, t) = (self.first.origin(s_face), self.second.origin(t_face));
-        for i in (0..3).filter(|&i| t.owned.vertex[i]) {
+        let (s, t) = (self.first.topology(), self.second.topology());
+        let (s_owned, t_owned) = (s.owned[s_face as usize], t.owned[t_face as usize]);
+        let (s_vertices, t_vertices) = (s.triangles[s_face as usize], t.triangles[t_face as usize]);
+        let (s_edges, t_edges) = (
+            s.triangle_edges[s_face as usize],
+            t.triangle_edges[t_face as usize],
+        );
+        for i in (0..3).filter(|&i| t_owned.vertex[i]) {
             let feature = Feature::FaceVertex {
                 face: s_face,
-                vertex: t.vertices[i],
+                vertex: t_vertices[i],
             };
             self.vertex_face(second[i], first, self.motion, feature);
         }
-        for i in (0..3).filter(|&i| s.owned.vertex[i]) {
+        for i in (0..3).filter(|&i| s_owned.vertex[i]) {
             let feature = Feature::VertexFace {
-                vertex: s.vertices[i],
+                vertex: s_vertices[i],
                 face: t_face,
             };
             self.vertex_face(first[i], second, -self.motion, feature);
         }
-        for i in (0..3).filter(|&i| s.owned.edge[i]) {
-            for j in (0..3).filter(|&j| t.owned.edge[j]) {
+        for i in (0..3).filter(|&i| s_owned.edge[i]) {
+            for j in (0..3).filter(|&j| t_owned.edge[j]) {
                 let feature = Feature::EdgeEdge {
-                    first: s.edges[i],
-                    second: t.edges[j],
+                    first: s_edges[i],
+                    second: t_edges[j],
                 };
                 let ends = [first[i], first[(i + 1) % 3], second[j], second[(j + 1) % 3]];
                 self.edge_edge(ends, feature);

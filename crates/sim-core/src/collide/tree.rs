@@ -182,24 +182,43 @@ fn pair_hits(
 ) -> impl Iterator<Item = Hit> {
     let s_corners = s_corners.map(|v| v.as_dvec3());
     let t_corners = t_corners.map(|v| meshes.at.place(v));
-    let (s, t) = (meshes.first.origin(s_face), meshes.second.origin(t_face));
+    let (first, second) = (meshes.first.topology(), meshes.second.topology());
     let ways = [
-        (Side::First, s, s_corners, t_face, t_corners),
-        (Side::Second, t, t_corners, s_face, s_corners),
+        (
+            Side::First,
+            first,
+            s_face as usize,
+            s_corners,
+            t_face,
+            t_corners,
+        ),
+        (
+            Side::Second,
+            second,
+            t_face as usize,
+            t_corners,
+            s_face,
+            s_corners,
+        ),
     ];
     ways.into_iter()
-        .flat_map(|(side, edges_of, ends, face, corners)| {
+        .flat_map(|(side, edges_of, triangle, ends, face, corners)| {
             (0..3)
-                .filter(|&i| edges_of.owned.edge[i])
+                .filter(move |&i| edges_of.owned[triangle].edge[i])
                 .filter_map(move |i| {
                     // The ends in the mesh's order, so that the point is the naive one to the bit.
                     let (mut p, mut q) = (i, (i + 1) % 3);
-                    if edges_of.vertices[p] > edges_of.vertices[q] {
+                    let vertices = edges_of.triangles[triangle];
+                    if vertices[p] > vertices[q] {
                         core::mem::swap(&mut p, &mut q);
                     }
                     let edge = [ends[p], ends[q]];
-                    segment_meets_triangle(edge[0], edge[1], corners)
-                        .then(|| Hit::new((side, edges_of.edges[i], edge), (face, corners)))
+                    segment_meets_triangle(edge[0], edge[1], corners).then(|| {
+                        Hit::new(
+                            (side, edges_of.triangle_edges[triangle][i], edge),
+                            (face, corners),
+                        )
+                    })
                 })
         })
 }

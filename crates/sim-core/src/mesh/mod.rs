@@ -4,14 +4,13 @@ mod error;
 mod repair;
 mod topology;
 
-use alloc::vec::Vec;
+use alloc::{sync::Arc, vec::Vec};
 use glam::{DQuat, DVec3, Vec3};
 
 use crate::Aabb;
 pub use error::MeshError;
 pub use repair::Repairs;
-pub(crate) use topology::Owned;
-use topology::Topology;
+pub(crate) use topology::Topology;
 
 /// A triangle mesh in its own frame: open or closed, concave or convex, in any number of pieces.
 ///
@@ -20,9 +19,8 @@ use topology::Topology;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     vertices: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
     bounds: Aabb,
-    topology: Topology,
+    topology: Arc<Topology>,
 }
 
 impl Mesh {
@@ -35,9 +33,8 @@ impl Mesh {
         }
         Ok(Mesh {
             bounds: Aabb::around(vertices.iter().copied()),
-            topology: Topology::of(vertices.len(), &triangles),
+            topology: Arc::new(Topology::of(vertices.len(), triangles)),
             vertices,
-            triangles,
         })
     }
 
@@ -48,7 +45,7 @@ impl Mesh {
 
     /// Triangles as indices of [`Mesh::vertices`].
     pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
+        &self.topology.triangles
     }
 
     /// Each edge once, as two vertices, the lower index first, in lexicographic order.
@@ -61,14 +58,14 @@ impl Mesh {
         &self.topology.triangle_edges
     }
 
-    /// For each triangle which of its corners and edges it owns.
-    pub(crate) fn owned(&self) -> &[Owned] {
-        &self.topology.owned
+    /// Triangles and edges, to share.
+    pub(crate) fn topology(&self) -> &Arc<Topology> {
+        &self.topology
     }
 
     /// The corners of a triangle, m.
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
-        self.triangles[triangle].map(|v| self.vertices[v as usize])
+        self.topology.triangles[triangle].map(|v| self.vertices[v as usize])
     }
 
     /// The least box around the vertices.
@@ -93,7 +90,7 @@ impl Mesh {
         (self.is_closed() && self.is_oriented()).then(|| {
             // About the box's centre, so that a mesh far from its origin loses no digits.
             let origin = self.bounds.centre();
-            let six_volumes: f64 = (0..self.triangles.len())
+            let six_volumes: f64 = (0..self.triangles().len())
                 .map(|i| {
                     let [a, b, c] = self.corners(i).map(|v| v.as_dvec3() - origin);
                     a.dot(b.cross(c))
@@ -135,16 +132,7 @@ impl Mesh {
 
     /// Turns every triangle over.
     fn reverse_winding(&mut self) {
-        for [_, b, c] in &mut self.triangles {
-            core::mem::swap(b, c);
-        }
-        for [ab, _, ca] in &mut self.topology.triangle_edges {
-            core::mem::swap(ab, ca);
-        }
-        for Owned { vertex, edge } in &mut self.topology.owned {
-            vertex.swap(1, 2);
-            edge.swap(0, 2);
-        }
+        Arc::make_mut(&mut self.topology).reverse_winding();
     }
 }
 

@@ -10,19 +10,21 @@ pub(crate) struct Owned {
     pub(crate) edge: [bool; 3],
 }
 
-/// Edges of a mesh and what follows from counting their triangles.
+/// Triangles of a mesh, their edges, and what follows from counting the triangles at those: all
+/// but where the vertices are, so that a tree can share it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Topology {
-    pub(super) edges: Vec<[u32; 2]>,
-    pub(super) triangle_edges: Vec<[u32; 3]>,
-    pub(super) owned: Vec<Owned>,
-    pub(super) closed: bool,
-    pub(super) oriented: bool,
+pub(crate) struct Topology {
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) edges: Vec<[u32; 2]>,
+    pub(crate) triangle_edges: Vec<[u32; 3]>,
+    pub(crate) owned: Vec<Owned>,
+    pub(crate) closed: bool,
+    pub(crate) oriented: bool,
 }
 
 impl Topology {
     /// Of triangles over so many vertices.
-    pub(super) fn of(vertices: usize, triangles: &[[u32; 3]]) -> Topology {
+    pub(super) fn of(vertices: usize, triangles: Vec<[u32; 3]>) -> Topology {
         // Every side of every triangle, sorted so that the sides of one edge lie together.
         let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * triangles.len());
         for (triangle, &[a, b, c]) in triangles.iter().enumerate() {
@@ -35,9 +37,10 @@ impl Topology {
         let mut topology = Topology {
             edges: Vec::with_capacity(sides.len() / 2 + 1),
             triangle_edges: vec![[0; 3]; triangles.len()],
-            owned: vertex_owners(vertices, triangles),
+            owned: vertex_owners(vertices, &triangles),
             closed: true,
             oriented: true,
+            triangles: Vec::new(),
         };
         for run in sides.chunk_by(|x, y| x.0 == y.0) {
             let edge = topology.edges.len() as u32;
@@ -57,7 +60,22 @@ impl Topology {
             topology.closed &= run.len() == 2;
             topology.oriented &= upward <= 1 && run.len() - upward <= 1;
         }
+        topology.triangles = triangles;
         topology
+    }
+
+    /// Turns every triangle over.
+    pub(super) fn reverse_winding(&mut self) {
+        for [_, b, c] in &mut self.triangles {
+            core::mem::swap(b, c);
+        }
+        for [ab, _, ca] in &mut self.triangle_edges {
+            core::mem::swap(ab, ca);
+        }
+        for Owned { vertex, edge } in &mut self.owned {
+            vertex.swap(1, 2);
+            edge.swap(0, 2);
+        }
     }
 }
 
@@ -75,4 +93,31 @@ fn vertex_owners(vertices: usize, triangles: &[[u32; 3]]) -> Vec<Owned> {
         }
     }
     owned
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::{cube, sphere};
+
+    #[test]
+    fn each_edge_and_vertex_has_one_owner() {
+        for mesh in [cube(), sphere(20)] {
+            let mut turned = Topology::clone(mesh.topology());
+            turned.reverse_winding();
+            for topology in [mesh.topology(), &turned] {
+                let mut vertices = vec![0; mesh.vertices().len()];
+                let mut edges = vec![0; mesh.edges().len()];
+                for (triangle, owned) in topology.owned.iter().enumerate() {
+                    for side in 0..3 {
+                        let vertex = topology.triangles[triangle][side] as usize;
+                        vertices[vertex] += usize::from(owned.vertex[side]);
+                        let edge = topology.triangle_edges[triangle][side] as usize;
+                        edges[edge] += usize::from(owned.edge[side]);
+                    }
+                }
+                assert!(vertices.iter().chain(&edges).all(|&owners| owners == 1));
+            }
+        }
+    }
 }
