@@ -41,7 +41,7 @@ pub(super) trait Tiles {
 
 /// How many tiles are looked at one after the other, always the nearest pair next. Where meshes
 /// meet deeply, a hit is found by then as a rule.
-const GREEDY: usize = 16;
+const GREEDY: usize = 12;
 /// How many tiles are looked at side by side after that, in no order, as then the hope is gone and
 /// throughput counts.
 const ABREAST: usize = 4;
