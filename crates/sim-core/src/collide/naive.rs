@@ -4,7 +4,11 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 use glam::DVec3;
 
-use super::{Hit, Placement, Side, Work, plane::Plane, predicates::segment_meets_triangle};
+use super::{
+    Hit, Placement, Side, Work,
+    plane::Plane,
+    predicates::{line_passes, segment_meets_triangle},
+};
 use crate::Mesh;
 
 /// Whether the surfaces of two meshes meet, the second one placed: displaced by a `DVec3` (m), or
@@ -100,11 +104,17 @@ fn each_hit(
             sides.extend(edge_vertices.iter().map(|&p| plane.side(p) as i8));
             for (edge, ends) in edges_of.edges().iter().enumerate() {
                 let [p, q] = ends.map(|v| v as usize);
-                if sides[p] * sides[q] > 0 {
+                let across = sides[p] * sides[q];
+                if across > 0 {
                     continue;
                 }
                 let [p, q] = [edge_vertices[p], edge_vertices[q]];
-                if segment_meets_triangle(p, q, corners) {
+                let meets = if across < 0 {
+                    line_passes(p, q, corners)
+                } else {
+                    segment_meets_triangle(p, q, corners)
+                };
+                if meets {
                     found(Pair {
                         edge: (side, edge as u32, [p, q]),
                         face: (face as u32, corners),

@@ -34,9 +34,20 @@ pub fn segment_meets_triangle(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]) -> bool
     if sp == sq {
         return sp == Ordering::Equal && coplanar_segment_meets_triangle(p, q, [a, b, c]);
     }
-    // The segment reaches the plane; its line passes inside if it has all edges on one side.
-    let sides = [(a, b), (b, c), (c, a)].map(|(x, y)| side([p, q, x], y));
-    !(sides.contains(&Ordering::Greater) && sides.contains(&Ordering::Less))
+    // The segment reaches the plane.
+    line_passes(p, q, [a, b, c])
+}
+
+/// Whether the line through `pq`, which crosses the plane of a triangle, passes through it: all
+/// edges on one side of the line.
+pub(super) fn line_passes(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+    let opposite = |s: Ordering, t: Ordering| s != Ordering::Equal && s == t.reverse();
+    let (s, t) = (side([p, q, a], b), side([p, q, b], c));
+    if opposite(s, t) {
+        return false;
+    }
+    let u = side([p, q, c], a);
+    !opposite(s, u) && !opposite(t, u)
 }
 
 /// Whether two closed triangles share a point.
