@@ -70,6 +70,7 @@ impl Stack {
     }
 
     /// Adds the first `count` of sixteen pairs.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn push_tile(&mut self, first: [u32; TILE], second: [u32; TILE], count: usize) {
         assert!(count <= TILE);
