@@ -58,7 +58,8 @@ impl World {
             let potential = force.pair_potential(&self.pair_motion(i, j));
             potential.unwrap_or(0.0)
         };
-        let mut energy = constant;
+        // Without forces the sum is minus zero.
+        let mut energy = constant + 0.0;
         for force in &self.forces {
             energy += match force.reach() {
                 Reach::Weight | Reach::EachBody => {
