@@ -144,11 +144,17 @@ fn kepler(eccentricity: f64) -> Problem<4> {
         } else {
             "kepler 0.9"
         },
-        slope: kepler::slope,
+        slope: kepler_slope,
         start,
         time: 200.0 * std::f64::consts::PI,
         end: start.to_vec(),
     }
+}
+
+fn kepler_slope(y: &[f64; 4], dy: &mut [f64; 4]) {
+    let squared = y[0] * y[0] + y[1] * y[1];
+    let inverse = 1.0 / (squared * squared.sqrt());
+    *dy = [y[2], y[3], -y[0] * inverse, -y[1] * inverse];
 }
 
 fn pleiades() -> Problem<{ pleiades::N }> {

@@ -1,8 +1,5 @@
 //! Problems with known solutions, as first-order systems.
 
-// Each test takes some of them.
-#![allow(dead_code)]
-
 /// Pleiades: seven bodies of mass 1 to 7 in a plane under their own gravitation with `G = 1`
 /// (Hairer, Nørsett, Wanner 1993, Solving Ordinary Differential Equations I, sec. II.10, p. 245).
 pub(crate) mod pleiades {
@@ -60,11 +57,5 @@ pub(crate) mod kepler {
     pub(crate) fn start(eccentricity: f64) -> [f64; 4] {
         let e = eccentricity;
         [1.0 - e, 0.0, 0.0, ((1.0 + e) / (1.0 - e)).sqrt()]
-    }
-
-    pub(crate) fn slope(y: &[f64; 4], dy: &mut [f64; 4]) {
-        let squared = y[0] * y[0] + y[1] * y[1];
-        let inverse = 1.0 / (squared * squared.sqrt());
-        *dy = [y[2], y[3], -y[0] * inverse, -y[1] * inverse];
     }
 }

@@ -55,7 +55,7 @@ fn oscillate(method: &'static Method, dt: f64) -> Result<Finding, String> {
     let amplitude = (form(x, v) / form(1.0, 0.0)).abs().sqrt();
     let exact = (0.5 * steps * log_determinant).exp();
     let tolerance = match method.symplectic {
-        true => 1e-12,
+        true => 1e-13,
         false => 1e-10,
     };
     let why = format!("amplitude {amplitude:.5e} at dt = {dt:.4}: {formula}");

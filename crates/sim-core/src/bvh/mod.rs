@@ -58,15 +58,19 @@ impl Bvh {
         if root == 0.0 {
             return self.count as f64;
         }
-        let triangles = self
-            .triangles
-            .iter()
-            .flat_map(|leaf| (0..WIDTH).map(|lane| Aabb::around(leaf.corners(lane)).half_area()));
+        // Lanes that hold nothing repeat a triangle, which counts once.
+        let leaves = (0..)
+            .zip(&self.nodes)
+            .filter(|&(i, node)| node.child[0] == i | LEAF);
+        let triangles = leaves.flat_map(|(_, leaf)| {
+            let area = |lane| Aabb::around(self.triangles(leaf).corners(lane)).half_area();
+            leaf.lanes().map(area)
+        });
         let nodes = self.boxes().map(|(_, bounds)| bounds.half_area());
         nodes.chain(triangles).sum::<f64>() / root
     }
 
-    /// Memory per triangle, bytes.
+    /// Memory per triangle, bytes, beside what the tree shares with its mesh.
     pub fn bytes_per_triangle(&self) -> f64 {
         let bytes = size_of_val(&self.nodes[..])
             + size_of_val(&self.slabs[..])
@@ -291,14 +295,29 @@ mod tests {
             let [at, along, across] = [0; 3].map(|_| Vec3::new(random(), random(), random()));
             [at, at + 0.3 * (along - 0.5), at + 0.01 * (across - 0.5)]
         }));
-        for (mesh, factor) in [(sphere(60), 0.75), (needles, 0.75)] {
+        for (mesh, factor) in [(sphere(60), 0.68), (needles, 0.72)] {
             let boxes = (0..mesh.triangles().len()).map(|i| Aabb::around(mesh.corners(i)));
             let (ours, slow) = (
                 Bvh::build(&mesh).surface_area_cost(),
                 swept_cost(boxes.collect()),
             );
-            assert!(ours < factor * slow, "{ours} against {slow}");
+            assert!(
+                ours < factor * slow,
+                "{ours} against {slow}: {}",
+                ours / slow
+            );
         }
+    }
+
+    /// Three triangles in a leaf of four lanes: the areas of all boxes by hand.
+    #[test]
+    fn the_cost_counts_each_triangle_once() {
+        let t = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let bvh = Bvh::build(&soup(
+            (0..3).map(|i| t.map(|v| v + 10.0 * Vec3::X * i as f32)),
+        ));
+        // Root and only leaf 21 by 1, triangles 1 by 1.
+        assert!((bvh.surface_area_cost() - (21.0 + 3.0) / 21.0).abs() < 1e-12);
     }
 
     #[test]
