@@ -37,11 +37,12 @@ impl Scene {
             };
             baked.push(mesh.clone());
             let added = world.add(Body {
-                mesh: Some(mesh),
+                shape: Some(mesh.into()),
                 position: body.position,
                 velocity: body.velocity,
                 mass: body.mass,
                 force: body.force,
+                restitution: 1.0,
             });
             added.map_err(|error| self.world_error(Some(body), None, error))?;
         }

@@ -163,7 +163,7 @@ colour = "#c8553d"
         (
             "\"bvh\"",
             "\"BVH\"",
-            ":4: collision: must be naive or bvh, is `BVH`",
+            ":4: collision: must be naive, bvh or continuous, is `BVH`",
         ),
         (
             "title",

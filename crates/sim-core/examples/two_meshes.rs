@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The same meshes as bodies: one flies at the other, and they exchange an impulse.
     let mut world = World::new(Settings::default())?;
     let at_rest = Body {
-        mesh: Some(mesh),
+        shape: Some(mesh.into()),
         mass: 2.0,
         ..Body::default()
     };

@@ -1,35 +1,39 @@
 //! What is put into a world.
 
-use alloc::sync::Arc;
 use glam::DVec3;
 
-use crate::Mesh;
+use crate::Shape;
 
 /// A body at the start: where it is, how it moves, what drives it. It translates; a fixed
-/// orientation and scale are part of its mesh ([`Mesh::transformed`]).
-#[derive(Clone, Debug)]
+/// orientation and scale are part of its mesh ([`Mesh::transformed`](crate::Mesh::transformed)).
+#[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Surface that collides; `None` is a point, which meets nothing.
-    pub mesh: Option<Arc<Mesh>>,
-    /// Place of the mesh's origin, m.
+    /// What collides; `None` is a point, which meets nothing.
+    pub shape: Option<Shape>,
+    /// Place of the shape's origin, m.
     pub position: DVec3,
     /// Velocity, m/s.
     pub velocity: DVec3,
-    /// Mass, kg; positive.
+    /// Mass, kg; positive. Infinite for a body that nothing moves and that keeps its velocity:
+    /// static where that is zero, kinematic where it is not.
     pub mass: f64,
     /// Constant resultant of all forces, N.
     pub force: DVec3,
+    /// Part of the approaching speed with which it leaves an impact, 0 to 1. Of two bodies the
+    /// lesser one counts.
+    pub restitution: f64,
 }
 
 impl Default for Body {
-    /// A point of 1 kg at rest at the origin.
+    /// An elastic point of 1 kg at rest at the origin.
     fn default() -> Body {
         Body {
-            mesh: None,
+            shape: None,
             position: DVec3::ZERO,
             velocity: DVec3::ZERO,
             mass: 1.0,
             force: DVec3::ZERO,
+            restitution: 1.0,
         }
     }
 }

@@ -4,21 +4,28 @@
 //! to the second:
 //!
 //! ```text
-//! v1' = v1 - (j/m1) n        v2' = v2 + (j/m2) n        (v2' - v1')·n = -(v2 - v1)·n
+//! v1' = v1 - (j/m1) n        v2' = v2 + (j/m2) n        (v2' - v1')·n = -e (v2 - v1)·n
 //! ```
 //!
-//! so `j = -2 (v2 - v1)·n / ((1/m1 + 1/m2) n·n)` (Baraff 1997, "An introduction to physically
-//! based modeling: rigid body simulation II", eq. 8-18, without rotation and for e = 1).
+//! so `j = -(1 + e) (v2 - v1)·n / ((1/m1 + 1/m2) n·n)` (Baraff 1997, "An introduction to
+//! physically based modeling: rigid body simulation II", eq. 8-18, without rotation).
 
 use glam::DVec3;
 
-/// Impulse (N s) that reverses the relative normal velocity of two bodies of masses `m1`, `m2`
-/// (kg) and velocities `v1`, `v2` (m/s); `None` unless they approach along `normal`.
-pub fn elastic(m1: f64, v1: DVec3, m2: f64, v2: DVec3, normal: DVec3) -> Option<f64> {
-    let approach = (v2 - v1).dot(normal);
-    // Divided by n·n, the exchange conserves energy however `normal` was rounded.
+/// Impulse (N s) after which two bodies of masses `m1`, `m2` (kg; one may be infinite) and
+/// velocities `v1`, `v2` (m/s) part along `normal` with the part `restitution` (0 to 1) of the speed
+/// at which they approach; `None` unless they do.
+pub fn between(
+    (m1, v1): (f64, DVec3),
+    (m2, v2): (f64, DVec3),
+    normal: DVec3,
+    restitution: f64,
+) -> Option<f64> {
+    let parting = (v2 - v1).dot(normal);
+    // Divided by n·n, an elastic exchange conserves energy however `normal` was rounded.
     let reduced_mass = 1.0 / (1.0 / m1 + 1.0 / m2);
-    (approach < 0.0).then(|| -2.0 * approach * reduced_mass / normal.length_squared())
+    let change = -(1.0 + restitution) * parting;
+    (parting < 0.0).then(|| change * reduced_mass / normal.length_squared())
 }
 
 #[cfg(test)]
@@ -30,7 +37,7 @@ mod tests {
         for (m1, m2) in [(1.0, 1.0), (1.0, 3.0), (2.0, 1e3), (1.0, 1e12), (1e6, 1e-6)] {
             let (u1, u2) = (10.0, -4.0);
             let n = DVec3::X;
-            let j = elastic(m1, u1 * n, m2, u2 * n, n).unwrap();
+            let j = between((m1, u1 * n), (m2, u2 * n), n, 1.0).unwrap();
             let (w1, w2) = (u1 - j / m1, u2 + j / m2);
             let exact1 = ((m1 - m2) * u1 + 2.0 * m2 * u2) / (m1 + m2);
             let exact2 = ((m2 - m1) * u2 + 2.0 * m1 * u1) / (m1 + m2);
@@ -50,7 +57,7 @@ mod tests {
         let (m1, v1) = (2.0, DVec3::new(1.0, 2.0, -0.5));
         let (m2, v2) = (0.7, DVec3::new(-3.0, 0.25, 1.0));
         for n in [DVec3::new(1.0, 0.3, 0.1), DVec3::new(2e3, -1e2, 7.0)] {
-            let j = elastic(m1, v1, m2, v2, n).unwrap();
+            let j = between((m1, v1), (m2, v2), n, 1.0).unwrap();
             let (w1, w2) = (v1 - j / m1 * n, v2 + j / m2 * n);
             let energy = |a: DVec3, b: DVec3| m1 * a.length_squared() + m2 * b.length_squared();
             assert!((energy(w1, w2) / energy(v1, v2) - 1.0).abs() < 1e-15);
@@ -60,8 +67,21 @@ mod tests {
 
     #[test]
     fn parting_and_resting_pairs_are_left_alone() {
-        assert_eq!(elastic(1.0, DVec3::ZERO, 1.0, DVec3::X, DVec3::X), None);
-        assert_eq!(elastic(1.0, DVec3::X, 1.0, DVec3::X, DVec3::X), None);
-        assert_eq!(elastic(1.0, DVec3::X, 1.0, DVec3::X, DVec3::ZERO), None);
+        for (first, second, normal) in [
+            (DVec3::ZERO, DVec3::X, DVec3::X),
+            (DVec3::X, DVec3::X, DVec3::X),
+            (DVec3::X, DVec3::X, DVec3::ZERO),
+        ] {
+            assert_eq!(between((1.0, first), (1.0, second), normal, 1.0), None);
+        }
+    }
+
+    #[test]
+    fn walls_turn_bodies_back_by_their_restitution() {
+        let wall = (f64::INFINITY, DVec3::new(-3.0, 0.0, 0.0));
+        for e in [0.0, 0.25, 1.0] {
+            let j = between((2.0, DVec3::X), wall, DVec3::X, e).unwrap();
+            assert_eq!((1.0 - j / 2.0, j / wall.0), (-3.0 - e * 4.0, 0.0));
+        }
     }
 }

@@ -20,16 +20,16 @@
 //! ```
 //! use core::time::Duration;
 //! use std::sync::Arc;
-//! use sim_core::{Body, DVec3, FixedStep, Mesh, Settings, Vec3, World};
+//! use sim_core::{Body, DVec3, FixedStep, Mesh, Settings, Shape, Vec3, World};
 //!
 //! let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 //! let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-//! let mesh = Some(Arc::new(Mesh::new(corners, faces)?));
+//! let shape = Some(Shape::Mesh(Arc::new(Mesh::new(corners, faces)?)));
 //!
 //! let mut world = World::new(Settings::default())?;
 //! let position = DVec3::new(-3.0, 0.0, 0.0);
-//! world.add(Body { mesh: mesh.clone(), ..Body::default() })?;
-//! world.add(Body { mesh, position, velocity: -position, ..Body::default() })?;
+//! world.add(Body { shape: shape.clone(), ..Body::default() })?;
+//! world.add(Body { shape, position, velocity: -position, ..Body::default() })?;
 //!
 //! let mut clock = FixedStep::new(world.settings().dt, Duration::from_millis(250))?;
 //! for _frame in 0..100 {
@@ -73,6 +73,7 @@ mod integrate;
 mod measure;
 mod mesh;
 pub mod ode;
+mod shape;
 #[cfg(test)]
 mod test_meshes;
 mod world;
@@ -81,9 +82,11 @@ pub use aabb::Aabb;
 pub use body::Body;
 pub use bvh::{Bvh, RayHit};
 pub use clock::{ClockError, FixedStep};
+pub use collide::Feature;
 pub use force::{BodyLaw, BodyMotion, Force, ForceError, Law, PairLaw, PairMotion};
 pub use glam::{DMat3, DQuat, DVec3, Vec3};
 pub use integrate::{Failure, Jacobians, METHODS, Method, Scratch, Step, Stepper, System};
 pub use mesh::{Mesh, MeshError, Repairs};
 pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
+pub use shape::Shape;
 pub use world::{Collision, Impact, Settings, StepError, World, WorldError};

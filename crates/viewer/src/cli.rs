@@ -87,7 +87,7 @@ struct SettingArgs {
     /// Error that adaptive methods may make in a step, from 1e-15 to 1
     #[arg(long, value_name = "ERROR", value_parser = tolerance, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    /// How meshes are tested for contact
+    /// How collisions are found
     #[arg(long, value_name = "HOW")]
     collision: Option<CollisionArg>,
 }
@@ -127,6 +127,8 @@ enum CollisionArg {
     Naive,
     /// Through bounding volume hierarchies
     Bvh,
+    /// At the time of impact within the step
+    Continuous,
 }
 
 /// Does what the arguments of the process ask for.
@@ -185,6 +187,7 @@ fn load(name_or_path: &str, settings: &SettingArgs) -> Result<Scene, Failure> {
         None => {}
         Some(CollisionArg::Naive) => scene.collision = Collision::Naive,
         Some(CollisionArg::Bvh) => scene.collision = Collision::Bvh,
+        Some(CollisionArg::Continuous) => scene.collision = Collision::Continuous,
     }
     Ok(scene)
 }

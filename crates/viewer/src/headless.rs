@@ -258,6 +258,7 @@ fn collision_name(scene: &Scene) -> &'static str {
     match scene.collision {
         sim_core::Collision::Naive => "naive",
         sim_core::Collision::Bvh => "bvh",
+        sim_core::Collision::Continuous => "continuous",
     }
 }
 

@@ -20,7 +20,11 @@ use crate::error::SceneError;
 use crate::scene::{Scene, SceneBody};
 
 /// The ways to search for collisions, by the names in scene files.
-const COLLISIONS: [(&str, Collision); 2] = [("naive", Collision::Naive), ("bvh", Collision::Bvh)];
+const COLLISIONS: [(&str, Collision); 3] = [
+    ("naive", Collision::Naive),
+    ("bvh", Collision::Bvh),
+    ("continuous", Collision::Continuous),
+];
 
 /// The largest number of a body, as a [`World`](sim_core::World) has it.
 const LARGEST: f64 = 1e100;
@@ -281,7 +285,7 @@ fn collision(source: &Source, name: Option<Spanned<String>>) -> Result<Collision
     };
     let known = COLLISIONS.iter().find(|known| known.0 == name.get_ref());
     known.map(|known| known.1).ok_or_else(|| {
-        let what = format!("must be naive or bvh, is `{}`", name.get_ref());
+        let what = format!("must be naive, bvh or continuous, is `{}`", name.get_ref());
         Place::new(source, Subject::Scene).error(name.span(), "collision", what)
     })
 }

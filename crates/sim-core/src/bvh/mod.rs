@@ -7,6 +7,7 @@ mod ray;
 mod short;
 mod slabs;
 mod split;
+mod support;
 
 use alloc::{sync::Arc, vec::Vec};
 

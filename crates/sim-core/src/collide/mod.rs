@@ -4,6 +4,8 @@
 //! and every decision is exact for the placed vertices.
 
 mod apart;
+mod ball;
+mod form;
 mod hit;
 pub mod naive;
 mod pairs;
@@ -14,6 +16,7 @@ mod solid;
 pub mod touch;
 pub mod tree;
 
+pub(crate) use form::{Contact, Form, first_contact, meet};
 pub use hit::{Hit, Side};
 pub use pairs::Level;
 pub use placement::Placement;

@@ -11,7 +11,8 @@ use glam::DVec3;
 
 use super::{Collision, World};
 use crate::{
-    collide::{naive, snap, touch, tree},
+    Aabb, Feature, Shape,
+    collide::{self, Contact, naive, snap},
     impulse,
 };
 
@@ -24,20 +25,21 @@ pub struct Impact {
     pub time: f64,
     /// The bodies.
     pub bodies: (usize, usize),
-    /// Point of first contact in the world, m.
+    /// Point of contact in the world, m.
     pub point: DVec3,
     /// Unit normal, from the first body to the second.
     pub normal: DVec3,
     /// Impulse on the second body along the normal, and on the first against it, N s.
     pub impulse: f64,
+    /// Speeds along the normal at which they approached and at which they part, m/s.
+    pub speeds: (f64, f64),
+    /// What touched, where both are meshes and it is known.
+    pub feature: Option<Feature>,
 }
 
 impl World {
     /// Lets bodies that meet bounce, and puts them back to where the step began.
     pub(super) fn collide(&mut self) {
-        if self.solid.len() < 2 {
-            return;
-        }
         if self.any_pair(World::collides) {
             self.bounce_all();
         }
@@ -83,34 +85,41 @@ impl World {
 
     /// Whether two bodies meet that were apart.
     fn collides(&mut self, i: usize, j: usize) -> bool {
-        !self.overlapping.contains(&(i, j)) && self.meet(i, j)
+        self.may_collide(i, j) && self.meet(i, j)
     }
 
-    /// Whether the surfaces of two bodies meet where they are now.
+    /// Whether two bodies with shapes can have an impact: not if nothing moves either, nor if they
+    /// began in overlap and have not parted since.
+    pub(super) fn may_collide(&self, i: usize, j: usize) -> bool {
+        let is_movable = self.mass[i].is_finite() || self.mass[j].is_finite();
+        is_movable && !self.overlapping.contains(&(i, j))
+    }
+
+    /// Whether two bodies meet where they are now.
     pub(super) fn meet(&mut self, i: usize, j: usize) -> bool {
-        match self.settings.collision {
-            Collision::Naive => {
-                let offset = self.current.position[j] - self.current.position[i];
-                let meshes = self.mesh(i).zip(self.mesh(j));
-                meshes.is_some_and(|(first, second)| naive::intersect(first, second, offset))
-            }
-            Collision::Bvh => self.meet_by_trees(i, j),
+        let meshes = match self.settings.collision {
+            Collision::Naive => self.mesh(i).zip(self.mesh(j)),
+            Collision::Bvh | Collision::Continuous => None,
+        };
+        let offset = self.current.position[j] - self.current.position[i];
+        match meshes {
+            Some((first, second)) => naive::intersect(first, second, offset),
+            None => self.meet_at(i, j, offset),
         }
     }
 
-    /// The same through the trees.
-    fn meet_by_trees(&mut self, i: usize, j: usize) -> bool {
-        let offset = snap(self.current.position[j] - self.current.position[i]);
-        let Some((first, second)) = self.mesh(i).zip(self.mesh(j)) else {
-            return false;
-        };
-        if !first.bounds().meets(&second.bounds(), offset) {
+    /// Whether two bodies meet, through trees, with the second one at `offset` from the first.
+    pub(super) fn meet_at(&mut self, i: usize, j: usize, offset: DVec3) -> bool {
+        let offset = snap(offset);
+        if let Some((first, second)) = self.mesh(i).zip(self.mesh(j))
+            && !first.bounds().meets(&second.bounds(), offset)
+        {
             return false;
         }
         self.need_bvh(i);
         self.need_bvh(j);
-        let trees = self.bvh(i).zip(self.bvh(j));
-        trees.is_some_and(|(first, second)| tree::intersect(first, second, offset))
+        let forms = self.form(i).zip(self.form(j));
+        forms.is_some_and(|(first, second)| collide::meet(first, second, offset))
     }
 
     /// Exchanges an impulse along the normal of the feature that touched first.
@@ -120,44 +129,63 @@ impl World {
         let (start, end) = (&self.previous.position, &self.current.position);
         let offset = start[j] - start[i];
         let motion = (end[j] - end[i]) - offset;
-        let touch = self
-            .bvh(i)
-            .zip(self.bvh(j))
-            .and_then(|(first, second)| touch::first_touch(first, second, offset, motion))
-            .map(|touch| (touch.time, touch.point, touch.normal));
+        let contact = self
+            .form(i)
+            .zip(self.form(j))
+            .and_then(|(first, second)| collide::first_contact(first, second, offset, motion));
         // Bodies that meet after a motion have touched on the way. Should rounding hide where,
         // the motion itself is turned back.
-        let turned_back = || Some((1.0, offset + motion, -motion.try_normalize()?));
-        if let Some((time, point, normal)) = touch.or_else(turned_back) {
-            let point = start[i].lerp(end[i], time) + point;
-            let time = self.time() + time * self.settings.dt;
-            self.exchange((i, j), normal, point, time);
+        let turned_back = || {
+            Some(Contact {
+                time: 1.0,
+                point: offset + motion,
+                normal: -motion.try_normalize()?,
+                feature: None,
+            })
+        };
+        if let Some(contact) = contact.or_else(turned_back) {
+            let point = start[i].lerp(end[i], contact.time) + contact.point;
+            let time = self.time() + contact.time * self.settings.dt;
+            self.exchange((i, j), &Contact { point, ..contact }, time);
         }
     }
 
-    /// Reverses the relative normal velocity of two bodies, if they approach.
-    fn exchange(&mut self, (i, j): (usize, usize), normal: DVec3, point: DVec3, time: f64) {
+    /// Gives two bodies that approach the impulse of their restitution. The contact's point is in
+    /// the world.
+    pub(super) fn exchange(&mut self, (i, j): (usize, usize), contact: &Contact, time: f64) {
         let velocity = &mut self.current.velocity;
         let (m1, m2) = (self.mass[i], self.mass[j]);
-        let Some(impulse) = impulse::elastic(m1, velocity[i], m2, velocity[j], normal) else {
+        let (before, normal) = (velocity[j] - velocity[i], contact.normal);
+        let restitution = self.pair_restitution(i, j);
+        let velocity = &mut self.current.velocity;
+        let Some(impulse) =
+            impulse::between((m1, velocity[i]), (m2, velocity[j]), normal, restitution)
+        else {
             return;
         };
         velocity[i] -= impulse / m1 * normal;
         velocity[j] += impulse / m2 * normal;
+        let after = velocity[j] - velocity[i];
         self.impacts += 1;
         self.last_impact = Some(Impact {
             step: self.steps + 1,
             time,
             bodies: (i, j),
-            point,
+            point: contact.point,
             normal,
             impulse,
+            speeds: (-before.dot(normal), after.dot(normal)),
+            feature: contact.feature,
         });
+    }
+
+    pub(super) fn pair_restitution(&self, i: usize, j: usize) -> f64 {
+        self.restitution(i).min(self.restitution(j))
     }
 
     /// Forgets pairs that have parted since they began in overlap, and keeps the others from
     /// moving closer: an elastic impulse along the line of their centres, nothing put back.
-    fn part_overlapping(&mut self) {
+    pub(super) fn part_overlapping(&mut self) {
         let pairs = core::mem::take(&mut self.overlapping);
         let still: Vec<_> = pairs
             .into_iter()
@@ -165,18 +193,35 @@ impl World {
             .collect();
         for &(i, j) in &still {
             let (from, to) = (self.centre(i), self.centre(j));
-            let normal = (to - from).try_normalize().unwrap_or(DVec3::X);
-            let time = self.time() + self.settings.dt;
-            self.exchange((i, j), normal, 0.5 * (from + to), time);
+            let contact = Contact {
+                time: 1.0,
+                point: 0.5 * (from + to),
+                normal: self.apart_along(i, j),
+                feature: None,
+            };
+            self.exchange((i, j), &contact, self.time() + self.settings.dt);
         }
         self.overlapping = still;
+    }
+
+    /// Where two bodies in overlap should part to: out of a half-space, or along the line of their
+    /// centres.
+    fn apart_along(&self, i: usize, j: usize) -> DVec3 {
+        match (self.shape(i), self.shape(j)) {
+            (Some(&Shape::HalfSpace { normal }), _) => normal,
+            (_, Some(&Shape::HalfSpace { normal })) => -normal,
+            _ => {
+                let between = self.centre(j) - self.centre(i);
+                between.try_normalize().unwrap_or(DVec3::X)
+            }
+        }
     }
 
     /// Middle of a body's box, m.
     fn centre(&self, body: usize) -> DVec3 {
         let middle = self
             .mesh(body)
-            .map_or(DVec3::ZERO, |mesh| mesh.bounds().centre());
+            .map_or(DVec3::ZERO, |mesh| Aabb::centre(&mesh.bounds()));
         self.current.position[body] + middle
     }
 
@@ -186,7 +231,11 @@ impl World {
         for place in 0..self.solid.len() {
             let other = self.solid[place];
             let pair = (body.min(other), body.max(other));
-            if other != body && self.meet_by_trees(pair.0, pair.1) {
+            let offset = self.current.position[pair.1] - self.current.position[pair.0];
+            if other != body
+                && self.may_collide(pair.0, pair.1)
+                && self.meet_at(pair.0, pair.1, offset)
+            {
                 self.overlapping.push(pair);
             }
         }

@@ -3,7 +3,7 @@
 use alloc::{format, string::String};
 use glam::DVec3;
 
-use crate::{Force, force::ForceError};
+use crate::{Force, Shape, force::ForceError};
 
 /// A value that no body or setting can have.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -19,12 +19,36 @@ pub enum WorldError {
         value: DVec3,
     },
     /// A mass that is not positive.
-    #[error("mass of body {body} is {value} kg: it must be between 1e-100 and 1e100")]
+    #[error("mass of body {body} is {value} kg: it must be between 1e-100 and 1e100, or infinite")]
     Mass {
         /// Index of the body.
         body: usize,
         /// The value refused, kg.
         value: f64,
+    },
+    /// A restitution that is no part of a speed.
+    #[error("restitution of body {body} is {value}: it must be between 0 and 1")]
+    Restitution {
+        /// Index of the body.
+        body: usize,
+        /// The value refused.
+        value: f64,
+    },
+    /// A sphere of no possible size.
+    #[error("radius of body {body} is {value} m: it must be between 0 and 1e100")]
+    Radius {
+        /// Index of the body.
+        body: usize,
+        /// The value refused, m.
+        value: f64,
+    },
+    /// A half-space that faces nowhere.
+    #[error("normal of body {body} is {value}: it must have a direction")]
+    Normal {
+        /// Index of the body.
+        body: usize,
+        /// The value refused.
+        value: DVec3,
     },
     /// A body that does not exist.
     #[error("there is no body {body}: the world has {bodies}, counted from 0")]
@@ -170,10 +194,38 @@ pub(super) fn check_vector(
 }
 
 pub(super) fn check_mass(body: usize, value: f64) -> Result<(), WorldError> {
-    if POSITIVE.contains(&value) {
+    if POSITIVE.contains(&value) || value == f64::INFINITY {
         Ok(())
     } else {
         Err(WorldError::Mass { body, value })
+    }
+}
+
+pub(super) fn check_restitution(body: usize, value: f64) -> Result<(), WorldError> {
+    if (0.0..=1.0).contains(&value) {
+        Ok(())
+    } else {
+        Err(WorldError::Restitution { body, value })
+    }
+}
+
+/// The shape with its normal of unit length.
+pub(super) fn check_shape(body: usize, shape: Shape) -> Result<Shape, WorldError> {
+    match shape {
+        Shape::Mesh(_) => Ok(shape),
+        Shape::Sphere { radius } if (0.0..=LARGEST).contains(&radius) => Ok(shape),
+        Shape::Sphere { radius: value } => Err(WorldError::Radius { body, value }),
+        Shape::HalfSpace { normal } => {
+            check_vector(body, "normal", normal)?;
+            // Scaled first, so that no square overflows or vanishes.
+            let scaled = normal / normal.abs().max_element();
+            let unit = scaled.try_normalize();
+            let normal = unit.ok_or(WorldError::Normal {
+                body,
+                value: normal,
+            })?;
+            Ok(Shape::HalfSpace { normal })
+        }
     }
 }
 

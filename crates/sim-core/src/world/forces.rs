@@ -48,7 +48,7 @@ impl World {
     /// Potential energy of all forces that have one, J: 0 for a constant force or weight on a body
     /// at the origin, for a spring at rest, and for attraction from infinitely far away.
     pub fn potential_energy(&self) -> f64 {
-        let bodies = 0..self.len();
+        let bodies = self.movable();
         let constant: f64 = bodies
             .clone()
             .map(|i| -self.force(i).dot(self.position(i)))
@@ -65,11 +65,16 @@ impl World {
                 Reach::Weight | Reach::EachBody => {
                     bodies.clone().map(|i| of_body(force, i)).sum::<f64>()
                 }
+                Reach::Body(i) if self.mass(i).is_infinite() => 0.0,
                 Reach::Body(i) => of_body(force, i),
                 Reach::Pair([i, j]) => of_pair(force, i, j),
                 Reach::EachPair => bodies
                     .clone()
-                    .flat_map(|j| (0..j).map(move |i| (i, j)))
+                    .flat_map(|j| {
+                        self.movable()
+                            .take_while(move |&i| i < j)
+                            .map(move |i| (i, j))
+                    })
                     .map(|(i, j)| of_pair(force, i, j))
                     .sum(),
             };
@@ -77,8 +82,11 @@ impl World {
         energy
     }
 
-    /// What constant forces and weight do to a body, m/s².
+    /// What constant forces and weight do to a body, m/s²; nothing to an immovable one.
     pub(super) fn constant_acceleration(&self, body: usize) -> DVec3 {
+        if self.mass[body].is_infinite() {
+            return DVec3::ZERO;
+        }
         self.force[body] / self.mass[body] + self.weight
     }
 

@@ -1,6 +1,7 @@
 //! The running state of a scene.
 
 mod collision;
+mod continuous;
 mod error;
 mod forces;
 mod plan;
@@ -15,7 +16,8 @@ use core::ops::RangeInclusive;
 use glam::DVec3;
 
 use crate::{
-    Body, Bvh, Force, Mesh,
+    Body, Bvh, Force, Mesh, Shape,
+    collide::Form,
     integrate::{Method, Scratch},
 };
 pub use collision::Impact;
@@ -61,9 +63,11 @@ pub struct World {
     /// Greatest component of a velocity, m/s, from which growth is counted; `None` before the
     /// first step under a force that depends on the motion.
     speed_scale: Option<f64>,
-    /// The shape of each body, as an index of `shapes`; `None` is a point.
+    /// What bodies keep of an approaching speed; empty while all are elastic.
+    restitution: Vec<f64>,
+    /// The shape of each body, as an index of `solids`; `None` is a point.
     shape: Vec<Option<u32>>,
-    shapes: Vec<Shape>,
+    solids: Vec<Solid>,
     /// The bodies that have a shape.
     solid: Vec<usize>,
     /// Pairs that began in overlap, in order.
@@ -75,10 +79,10 @@ pub struct World {
     since: (f64, u64),
 }
 
-/// A mesh, shared by all bodies that have it, with its tree once one is needed.
+/// A shape, shared by all bodies that have it, and its tree once one is needed.
 #[derive(Clone, Debug)]
-struct Shape {
-    mesh: Arc<Mesh>,
+struct Solid {
+    shape: Shape,
     bvh: Option<Arc<Bvh>>,
 }
 
@@ -89,20 +93,23 @@ pub struct Settings {
     pub dt: f64,
     /// Time integration.
     pub method: &'static Method,
-    /// How overlap is detected.
+    /// How collisions are found.
     pub collision: Collision,
     /// Error that adaptive methods may make in a step, from 1e-15 to 1: relative and, in m and
     /// m/s, absolute.
     pub tolerance: f64,
 }
 
-/// How the overlap of two meshes is detected. Both give the same answer.
+/// How collisions are found, and what follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Collision {
-    /// Every edge of one against every triangle of the other.
+    /// At the end of each step, by every edge of one mesh against every triangle of the other.
+    /// Bodies that meet exchange an impulse and go back to where the step began.
     Naive,
-    /// Through bounding volume hierarchies.
+    /// The same through bounding volume hierarchies, with the same answers.
     Bvh,
+    /// At the time of impact, wherever it is within the step: bodies go on with the rest of it.
+    Continuous,
 }
 
 impl Settings {
@@ -111,12 +118,12 @@ impl Settings {
 }
 
 impl Default for Settings {
-    /// 60 Hz, symplectic Euler, through hierarchies; a tolerance of 1e-9.
+    /// 60 Hz, symplectic Euler, continuous collisions; a tolerance of 1e-9.
     fn default() -> Settings {
         Settings {
             dt: 1.0 / 60.0,
             method: Method::named("symplectic-euler").expect("it is in the table"),
-            collision: Collision::Bvh,
+            collision: Collision::Continuous,
             tolerance: 1e-9,
         }
     }
@@ -139,8 +146,9 @@ impl World {
             plan: None,
             scratch: Scratch::default(),
             speed_scale: None,
+            restitution: Vec::new(),
             shape: Vec::new(),
-            shapes: Vec::new(),
+            solids: Vec::new(),
             solid: Vec::new(),
             overlapping: Vec::new(),
             steps: 0,
@@ -157,6 +165,9 @@ impl World {
         error::check_vector(index, "velocity", body.velocity)?;
         error::check_vector(index, "force", body.force)?;
         error::check_mass(index, body.mass)?;
+        error::check_restitution(index, body.restitution)?;
+        let shape = body.shape.map(|shape| error::check_shape(index, shape));
+        let shape = shape.transpose()?.map(|shape| self.share(shape));
         self.current.push(body.position, body.velocity);
         self.previous.push(body.position, body.velocity);
         self.mass.push(body.mass);
@@ -164,7 +175,7 @@ impl World {
         self.acceleration.push(self.constant_acceleration(index));
         self.plan = None;
         self.speed_scale = None;
-        let shape = body.mesh.map(|mesh| self.share(mesh));
+        self.set_restitution_column(index, body.restitution);
         self.solid.extend(shape.map(|_| index));
         self.shape.push(shape);
         self.note_overlaps_of(index);
@@ -178,7 +189,12 @@ impl World {
     pub fn step(&mut self) -> Result<(), StepError> {
         core::mem::swap(&mut self.previous, &mut self.current);
         self.integrate()?;
-        self.collide();
+        if self.solid.len() > 1 {
+            match self.settings.collision {
+                Collision::Naive | Collision::Bvh => self.collide(),
+                Collision::Continuous => self.collide_continuously()?,
+            }
+        }
         self.steps += 1;
         Ok(())
     }
@@ -251,14 +267,24 @@ impl World {
         self.force[body]
     }
 
-    /// Mesh of a body, unless it is a point.
+    /// Part of the approaching speed with which a body leaves an impact; of two the lesser counts.
+    pub fn restitution(&self, body: usize) -> f64 {
+        self.restitution.get(body).copied().unwrap_or(1.0)
+    }
+
+    /// Shape of a body, unless it is a point that meets nothing.
+    pub fn shape(&self, body: usize) -> Option<&Shape> {
+        self.solid_of(body).map(|solid| &solid.shape)
+    }
+
+    /// Mesh of a body, if it has one.
     pub fn mesh(&self, body: usize) -> Option<&Arc<Mesh>> {
-        self.shape[body].map(|s| &self.shapes[s as usize].mesh)
+        self.shape(body).and_then(Shape::mesh)
     }
 
     /// Tree over a body's mesh, if one has been needed so far.
     pub fn bvh(&self, body: usize) -> Option<&Bvh> {
-        self.shape[body].and_then(|s| self.shapes[s as usize].bvh.as_deref())
+        self.solid_of(body).and_then(|solid| solid.bvh.as_deref())
     }
 
     /// Builds the trees that no step has needed yet, to look at them or to aim rays.
@@ -308,6 +334,14 @@ impl World {
         Ok(())
     }
 
+    /// Sets the restitution of a body, 0 to 1.
+    pub fn set_restitution(&mut self, body: usize, restitution: f64) -> Result<(), WorldError> {
+        self.check_body(body)?;
+        error::check_restitution(body, restitution)?;
+        self.set_restitution_column(body, restitution);
+        Ok(())
+    }
+
     /// How the world steps.
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -332,19 +366,47 @@ impl World {
             .ok_or(WorldError::NoBody { body, bodies })
     }
 
-    /// The index of a mesh among the shapes, which bodies with the same one share.
-    fn share(&mut self, mesh: Arc<Mesh>) -> u32 {
-        let known = self.shapes.iter().position(|s| Arc::ptr_eq(&s.mesh, &mesh));
+    fn set_restitution_column(&mut self, body: usize, restitution: f64) {
+        if !self.restitution.is_empty() || restitution != 1.0 {
+            self.restitution.resize(self.len(), 1.0);
+            self.restitution[body] = restitution;
+        }
+    }
+
+    fn solid_of(&self, body: usize) -> Option<&Solid> {
+        self.shape[body].map(|s| &self.solids[s as usize])
+    }
+
+    /// The index of a shape among the solids, which bodies with the same one share.
+    fn share(&mut self, shape: Shape) -> u32 {
+        let same = |known: &Shape| match (known, &shape) {
+            // By the place in memory: comparing the triangles of meshes takes too long.
+            (Shape::Mesh(known), Shape::Mesh(mesh)) => Arc::ptr_eq(known, mesh),
+            (known, shape) => known == shape,
+        };
+        let known = self.solids.iter().position(|solid| same(&solid.shape));
         known.unwrap_or_else(|| {
-            self.shapes.push(Shape { mesh, bvh: None });
-            self.shapes.len() - 1
+            self.solids.push(Solid { shape, bvh: None });
+            self.solids.len() - 1
         }) as u32
     }
 
     fn need_bvh(&mut self, body: usize) {
         if let Some(shape) = self.shape[body] {
-            let Shape { mesh, bvh } = &mut self.shapes[shape as usize];
-            bvh.get_or_insert_with(|| Arc::new(Bvh::build(mesh)));
+            let Solid { shape, bvh } = &mut self.solids[shape as usize];
+            if let (Shape::Mesh(mesh), None) = (shape, &bvh) {
+                *bvh = Some(Arc::new(Bvh::build(mesh)));
+            }
+        }
+    }
+
+    /// A body's shape for questions about pairs; a mesh has one once its tree is built.
+    fn form(&self, body: usize) -> Option<Form<'_>> {
+        let solid = self.solid_of(body)?;
+        match solid.shape {
+            Shape::Mesh(_) => solid.bvh.as_deref().map(Form::Mesh),
+            Shape::Sphere { radius } => Some(Form::Sphere(radius)),
+            Shape::HalfSpace { normal } => Some(Form::HalfSpace(normal)),
         }
     }
 }

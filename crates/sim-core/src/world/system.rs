@@ -49,19 +49,27 @@ impl Part<'_> {
         }
     }
 
-    /// Calls `act` for each force on a single body and that body's index in the part.
+    /// Calls `act` for each force on a single movable body and that body's index in the part.
     fn on_bodies(&self, mut act: impl FnMut(&Force, usize)) {
         for &force in &self.plan.each {
-            for i in 0..self.mass.len() {
+            for i in (0..self.mass.len()).filter(|&i| self.is_movable(i)) {
                 act(&self.forces[force], i);
             }
         }
         for &(body, force) in self.plan.single_in(&self.bodies) {
-            act(&self.forces[force], body - self.bodies.start);
+            let i = body - self.bodies.start;
+            if self.is_movable(i) {
+                act(&self.forces[force], i);
+            }
         }
     }
 
-    /// Calls `act` for each force between two bodies and their indices in the part.
+    fn is_movable(&self, i: usize) -> bool {
+        self.mass[i].is_finite()
+    }
+
+    /// Calls `act` for each force between two bodies and their indices in the part. What acts
+    /// between every two leaves out immovable ones: their attraction would be infinite.
     fn on_pairs(&self, mut act: impl FnMut(&Force, usize, usize)) {
         if !self.is_coupled {
             return;
@@ -71,8 +79,8 @@ impl Part<'_> {
             act(&self.forces[force], i - start, j - start);
         }
         for &force in &self.plan.each_pair {
-            for j in 1..self.mass.len() {
-                for i in 0..j {
+            for j in (1..self.mass.len()).filter(|&j| self.is_movable(j)) {
+                for i in (0..j).filter(|&i| self.is_movable(i)) {
                     act(&self.forces[force], i, j);
                 }
             }

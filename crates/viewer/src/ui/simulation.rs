@@ -53,8 +53,13 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         }
     });
     ui.horizontal(|ui| {
-        field::label(ui, "Collision", "How two meshes are tested for contact");
+        field::label(ui, "Collision", "How collisions are found");
         for (how, name, meaning) in [
+            (
+                Collision::Continuous,
+                "Continuous",
+                "At the time of impact, wherever it is within the step",
+            ),
             (
                 Collision::Bvh,
                 "BVH",

@@ -1,0 +1,158 @@
+//! Two shapes, whichever they are: do they meet, and where do they touch first?
+//!
+//! Meshes against meshes are exact ([`tree`], [`touch`]). Spheres and half-spaces have closed
+//! forms, whose times are rounded like any quotient. With the second shape at `r` and moving by
+//! `t d` from there:
+//!
+//! ```text
+//! half-space, unit normal n:   n·(r + t d) = reach,   reach the most that the shape extends along -n
+//! spheres of radii that sum R: |r + t d| = R,         t = (r² - R²) / (-r·d + √(R² d² - |r×d|²))
+//! ```
+
+use glam::DVec3;
+
+use super::{Feature, Touch, ball, touch, tree};
+use crate::bvh::Bvh;
+
+/// A shape about its origin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Form<'a> {
+    Mesh(&'a Bvh),
+    /// Of this radius, m.
+    Sphere(f64),
+    /// With this unit normal.
+    HalfSpace(DVec3),
+}
+
+/// The first contact of two shapes on a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Contact {
+    /// Part of the way done.
+    pub(crate) time: f64,
+    /// Where, as seen from the first shape's origin, m.
+    pub(crate) point: DVec3,
+    /// Unit normal, from the first shape to the second.
+    pub(crate) normal: DVec3,
+    /// What touches, where both are meshes.
+    pub(crate) feature: Option<Feature>,
+}
+
+impl From<Touch> for Contact {
+    fn from(touch: Touch) -> Contact {
+        Contact {
+            time: touch.time,
+            point: touch.point,
+            normal: touch.normal,
+            feature: Some(touch.feature),
+        }
+    }
+}
+
+/// Whether two shapes share a point, the second one displaced by `offset`, m.
+pub(crate) fn meet(first: Form<'_>, second: Form<'_>, offset: DVec3) -> bool {
+    match (first, second) {
+        (Form::Mesh(first), Form::Mesh(second)) => tree::intersect(first, second, offset),
+        (Form::Mesh(mesh), Form::Sphere(radius)) => ball::meets(mesh, offset, radius),
+        (Form::Sphere(first), Form::Sphere(second)) => {
+            dot(offset, offset) <= (first + second) * (first + second)
+        }
+        (Form::HalfSpace(_), Form::HalfSpace(_)) => false,
+        (Form::HalfSpace(normal), other) => dot(normal, offset) - reach(other, normal).0 <= 0.0,
+        (first, second) => meet(second, first, -offset),
+    }
+}
+
+/// The first contact of two shapes that are apart, the second one displaced by `offset` and then
+/// moving by `motion`, m. Motion along the surfaces is no contact.
+pub(crate) fn first_contact(
+    first: Form<'_>,
+    second: Form<'_>,
+    offset: DVec3,
+    motion: DVec3,
+) -> Option<Contact> {
+    match (first, second) {
+        (Form::Mesh(first), Form::Mesh(second)) => {
+            touch::first_touch(first, second, offset, motion).map(Contact::from)
+        }
+        (Form::Mesh(mesh), Form::Sphere(radius)) => ball::first_touch(mesh, offset, radius, motion),
+        (Form::Sphere(first), Form::Sphere(second)) => spheres(first, second, offset, motion),
+        (Form::HalfSpace(_), Form::HalfSpace(_)) => None,
+        (Form::HalfSpace(normal), other) => plane(normal, other, offset, motion),
+        (first, second) => {
+            let contact = first_contact(second, first, -offset, -motion)?;
+            Some(Contact {
+                point: contact.point + (offset + contact.time * motion),
+                normal: -contact.normal,
+                ..contact
+            })
+        }
+    }
+}
+
+/// How far a shape extends against `normal`, and where.
+fn reach(shape: Form<'_>, normal: DVec3) -> (f64, DVec3) {
+    match shape {
+        Form::Mesh(mesh) => {
+            let (least, corner) = mesh.least_along(normal);
+            (-least, corner)
+        }
+        Form::Sphere(radius) => (radius, -radius * normal),
+        Form::HalfSpace(_) => (0.0, DVec3::ZERO),
+    }
+}
+
+fn plane(normal: DVec3, other: Form<'_>, offset: DVec3, motion: DVec3) -> Option<Contact> {
+    let approach = -dot(normal, motion);
+    let height = dot(normal, offset);
+    // Most shapes at most times are farther than they move.
+    if approach <= 0.0 {
+        return None;
+    }
+    let (reach, corner) = reach(other, normal);
+    let gap = height - reach;
+    if gap > approach {
+        return None;
+    }
+    let time = (gap / approach).max(0.0);
+    let at = offset + time * motion + corner;
+    Some(Contact {
+        time,
+        point: at - dot(normal, at) * normal,
+        normal,
+        feature: None,
+    })
+}
+
+fn spheres(first: f64, second: f64, offset: DVec3, motion: DVec3) -> Option<Contact> {
+    let sum = first + second;
+    let (approach, way) = (-dot(offset, motion), dot(motion, motion));
+    if approach <= 0.0 {
+        return None;
+    }
+    let aside = offset.cross(motion);
+    let depth = sum * sum * way - dot(aside, aside);
+    if depth < 0.0 {
+        return None;
+    }
+    let distance = libm::sqrt(dot(offset, offset));
+    let gap = (distance - sum) * (distance + sum);
+    let time = (gap / (approach + libm::sqrt(depth))).max(0.0);
+    if time > 1.0 {
+        return None;
+    }
+    let at = offset + time * motion;
+    // Points have no surface to give a normal.
+    let normal = at.try_normalize().filter(|_| sum > 0.0);
+    let normal = normal.or_else(|| Some(-motion.try_normalize()?))?;
+    (dot(normal, motion) < 0.0).then(|| Contact {
+        time,
+        point: first * normal,
+        normal,
+        feature: None,
+    })
+}
+
+/// In an order of its own, whatever the vector instructions.
+fn dot(a: DVec3, b: DVec3) -> f64 {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
