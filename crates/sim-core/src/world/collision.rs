@@ -167,7 +167,7 @@ impl World {
         velocity[j] += impulse / m2 * normal;
         let after = velocity[j] - velocity[i];
         self.impacts += 1;
-        self.last_impact = Some(Impact {
+        let impact = Impact {
             step: self.steps + 1,
             time,
             bodies: (i, j),
@@ -176,7 +176,11 @@ impl World {
             impulse,
             speeds: (-before.dot(normal), after.dot(normal)),
             feature: contact.feature,
-        });
+        };
+        if let Some(report) = &mut self.report {
+            report.push(impact.clone());
+        }
+        self.last_impact = Some(impact);
     }
 
     pub(super) fn pair_restitution(&self, i: usize, j: usize) -> f64 {

@@ -75,6 +75,8 @@ pub struct World {
     steps: u64,
     impacts: u64,
     last_impact: Option<Impact>,
+    /// Where impacts are listed, while someone asks.
+    report: Option<Vec<Impact>>,
     /// Time and step at which `dt` was last set: time since is steps times `dt`, without drift.
     since: (f64, u64),
 }
@@ -154,6 +156,7 @@ impl World {
             steps: 0,
             impacts: 0,
             last_impact: None,
+            report: None,
             since: (0.0, 0),
         })
     }
@@ -197,6 +200,14 @@ impl World {
         }
         self.steps += 1;
         Ok(())
+    }
+
+    /// [`World::step`], adding each impact to a list, in the order in which they happen.
+    pub fn step_reporting(&mut self, impacts: &mut Vec<Impact>) -> Result<(), StepError> {
+        self.report = Some(core::mem::take(impacts));
+        let outcome = self.step();
+        *impacts = self.report.take().unwrap_or_default();
+        outcome
     }
 
     /// How many bodies there are.
