@@ -4,15 +4,19 @@
 //! and every decision is exact for the placed vertices.
 
 mod apart;
+mod expansion;
 mod hit;
+pub mod moving;
 pub mod naive;
 mod pairs;
 mod placement;
 mod plane;
 pub mod predicates;
 mod solid;
+mod sweep;
 pub mod touch;
 pub mod tree;
+mod triple;
 
 pub use hit::{Hit, Side};
 pub use pairs::Level;
