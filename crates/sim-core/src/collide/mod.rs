@@ -4,6 +4,7 @@
 //! and every decision is exact for the placed vertices.
 
 mod apart;
+mod ball;
 mod expansion;
 mod hit;
 pub mod moving;
@@ -18,6 +19,7 @@ pub mod touch;
 pub mod tree;
 mod triple;
 
+pub use ball::{BallTouch, ball_meets, ball_touch};
 pub use hit::{Hit, Side};
 pub use pairs::Level;
 pub use placement::Placement;
