@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::{
     moving::{edge_sides, line_passes, line_sides, point_slides_into_triangle},
-    pairs::{Portable, TILE, Tiles, descend},
+    pairs::{Lanes, Portable, Reach, TILE, Tiles, descend},
     plane::{Cross, Estimate},
     solid::each_in_box,
     touch::{Feature, Touch},
@@ -14,6 +14,85 @@ use super::{
 };
 use crate::bvh::{Boxes, Bvh, Slabs, WIDTH};
 use crate::mesh::Topology;
+
+/// Moving boxes in f32.
+struct Swift {
+    offset: [f32; 3],
+    /// One over the motion; zero where there is so little that it counts as width.
+    inverse: [f32; 3],
+    /// More than all roundings of distances, and than the motion that does not count.
+    margin: [f32; 3],
+}
+
+impl Swift {
+    /// `None` if f32 does not reach so far.
+    fn new(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> Option<Swift> {
+        let reach = Reach::new(first, second, &offset.into())?;
+        let margin = reach.margin();
+        if motion.abs().max_element() > 1e30 {
+            return None;
+        }
+        // Distances are below 2^127, so with a motion above 2^-100 quotients that are times from 0
+        // to 1 neither overflow nor underflow to what matters.
+        let counts = motion
+            .to_array()
+            .map(|m| m.abs() > f64::from(margin).max(1e-30));
+        let of = |axis: usize| (counts[axis], motion[axis]);
+        Some(Swift {
+            offset: reach.offset(),
+            inverse: [0, 1, 2].map(|axis| match of(axis) {
+                (true, m) => (1.0 / m) as f32,
+                (false, _) => 0.0,
+            }),
+            margin: [0, 1, 2].map(|axis| match of(axis) {
+                (true, _) => margin,
+                (false, m) => margin + (m.abs() * 1.001) as f32,
+            }),
+        })
+    }
+
+    /// A bit for each pair of boxes that meet before the horizon, and when they begin to.
+    ///
+    /// Distances are known to within the margin ([`Reach::new`]), whose roundings here are a small
+    /// part of it. Quotients are rounded three times, by `2^-24` each.
+    #[inline(always)]
+    fn meet(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, Portable) {
+        const DOWN: f32 = 1.0 - 4.0 * f32::EPSILON;
+        const UP: f32 = 1.0 + 4.0 * f32::EPSILON;
+        let (mut enter, mut leave) = (Portable::splat(0.0), Portable::splat(1.0));
+        let mut meet = u32::MAX;
+        for axis in 0..3 {
+            let (c, h) = (&first.centre[axis], &first.half[axis]);
+            let (d, k) = (&second.centre[axis], &second.half[axis]);
+            let moved = Portable::columns(d).add(Portable::splat(self.offset[axis]));
+            let between = Portable::rows(c).sub(moved);
+            let reach = Portable::rows(h).add(Portable::columns(k));
+            let reach = reach.add(Portable::splat(self.margin[axis]));
+            // Not so where a lane holds nothing.
+            meet &= Portable::splat(0.0).at_most(reach);
+            if self.inverse[axis] == 0.0 {
+                meet &= between.abs().at_most(reach);
+                continue;
+            }
+            let inverse = Portable::splat(self.inverse[axis]);
+            let middle = between.mul(inverse);
+            let around = reach.mul(inverse.abs());
+            // Both roundings are relative to the parts, not to what is left of them.
+            let slack = middle
+                .abs()
+                .add(around.abs())
+                .mul(Portable::splat(4.0 * f32::EPSILON));
+            enter = enter.max(middle.sub(around).sub(slack));
+            leave = leave.min(middle.add(around).add(slack));
+        }
+        let enter = enter.mul(Portable::splat(DOWN));
+        // More than what quotients lose below the normal numbers.
+        let least = Portable::splat(f32::MIN_POSITIVE);
+        let latest = leave.min(Portable::splat(horizon as f32));
+        let latest = latest.mul_add(Portable::splat(UP), least);
+        (meet & enter.at_most(latest) & 0xffff, enter)
+    }
+}
 
 /// Which contacts count.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -30,6 +109,8 @@ pub(super) struct Search<'a> {
     offset: DVec3,
     motion: DVec3,
     kind: Kind,
+    /// Where f32 is enough for boxes.
+    swift: Option<Swift>,
     /// What comes after this time is not the first contact.
     horizon: f64,
     best: Option<Candidate>,
@@ -180,16 +261,12 @@ impl Tiles for Search<'_> {
     type Lanes = Portable;
 
     /// Boxes that meet no later than the earliest contact so far.
+    #[inline]
     fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, Portable) {
-        let (mut bits, mut times) = (0, [f32::INFINITY; TILE]);
-        for (pair, place) in times.iter_mut().enumerate() {
-            let time = self.entry(first, pair / WIDTH, second, pair % WIDTH);
-            if let Some(time) = time.filter(|&t| t <= self.horizon) {
-                bits |= 1 << pair;
-                *place = time as f32;
-            }
+        match &self.swift {
+            Some(swift) => swift.meet(first, second, self.horizon),
+            None => self.meet_in_f64(first, second),
         }
-        (bits, Portable::new(times))
     }
 
     /// Slabs know nothing of motion.
@@ -227,6 +304,7 @@ impl<'a> Search<'a> {
             offset,
             motion,
             kind,
+            swift: Swift::new(first, second, offset, motion),
             horizon: 1.0,
             best: None,
             slide: None,
@@ -256,6 +334,20 @@ impl<'a> Search<'a> {
             .into_iter()
             .chain(self.slide)
             .min_by(f64::total_cmp)
+    }
+
+    /// For meshes so large that f32 is of no use. It need not be fast.
+    #[cold]
+    fn meet_in_f64(&self, first: &Boxes, second: &Boxes) -> (u32, Portable) {
+        let (mut bits, mut times) = (0, [f32::INFINITY; TILE]);
+        for (pair, place) in times.iter_mut().enumerate() {
+            let time = self.entry(first, pair / WIDTH, second, pair % WIDTH);
+            if let Some(time) = time.filter(|&t| t <= self.horizon) {
+                bits |= 1 << pair;
+                *place = time as f32;
+            }
+        }
+        (bits, Portable::new(times))
     }
 
     /// When two boxes begin to meet, rounded down; `None` if they do not within the motion.
