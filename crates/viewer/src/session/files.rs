@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use scene::{MeshRef, Scene, SceneBody};
-use sim_core::DVec3;
+use scene::{MeshRef, Scene, SceneBody, SceneShape};
 
 use super::Session;
 
@@ -36,17 +35,8 @@ impl Session {
             Ok(mesh) => {
                 self.reset();
                 let name = path.file_stem().unwrap_or_default().to_string_lossy();
-                self.add_body(SceneBody {
-                    name: name.into_owned(),
-                    mesh,
-                    position: DVec3::ZERO,
-                    rotation: DVec3::ZERO,
-                    scale: DVec3::ONE,
-                    velocity: DVec3::ZERO,
-                    force: DVec3::ZERO,
-                    mass: 1.0,
-                    colour: None,
-                });
+                let shape = SceneShape::Mesh(mesh);
+                self.add_body(SceneBody::new(name.into_owned(), shape));
                 self.frame();
             }
             Err(error) => self.notices.error("import", error.to_string()),

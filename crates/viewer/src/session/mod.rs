@@ -9,11 +9,14 @@
 //! Nothing here draws, opens windows or reads a clock: see `picture` for what is drawn, and
 //! [`Session::due`] for how time comes in and steps are taken.
 
+mod ball;
 mod compare;
 mod edit;
 mod figures;
 mod files;
 mod forces;
+mod framing;
+mod impacts;
 mod job;
 mod notice;
 mod pick;
@@ -22,14 +25,17 @@ mod picture;
 mod tests;
 mod ties;
 mod trails;
+mod walls;
 
 use std::time::Duration;
 
 use scene::{Scene, SceneBody};
 use sim_core::{Collision, FixedStep, Method, Settings, World};
 
+use ball::Balls;
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
 pub use figures::{Drift, Figures, Reference};
+use impacts::Impacts;
 pub use job::{Done, Job, STEP_BUDGET};
 pub use notice::{Notice, Notices};
 pub use picture::{BvhView, Display};
@@ -67,6 +73,8 @@ pub struct Session {
     figures: Figures,
     notices: Notices,
     trails: Trails,
+    impacts: Impacts,
+    balls: Balls,
     selection: Option<usize>,
     /// Steps are being taken on a copy of the world.
     under_way: bool,
@@ -98,6 +106,8 @@ impl Session {
             figures: Figures::default(),
             notices: Notices::default(),
             trails: Trails::default(),
+            impacts: Impacts::default(),
+            balls: Balls::default(),
             selection: None,
             under_way: false,
             steps_wanted: 0,
@@ -270,6 +280,7 @@ impl Session {
         self.reference = Reference::of(&self.world);
         self.figures = Figures::default();
         self.compare.forget();
+        self.impacts = Impacts::default();
         self.notices.dismiss("step");
         if self.display.trails {
             self.trails.begin(&self.world);
