@@ -125,7 +125,7 @@ impl Session {
         }
         let mut radius = (0.47 * size.length()).max(1e-3);
         if (0..self.world.len()).any(|i| self.is_half_space(i)) {
-            radius = radius.max(1.2 * self.room().1);
+            radius = radius.max(1.35 * self.room().1);
         }
         self.camera.frame(middle, radius);
     }
@@ -197,26 +197,28 @@ impl Session {
         (0.5 * (min + max), (0.5 * (max - min).length()).max(1e-3))
     }
 
-    /// A box grown to where its middle stands on the half-spaces near it.
+    /// A box grown to where its middle stands on the half-spaces near it, as they were set up.
     fn with_feet(&self, min: DVec3, max: DVec3) -> (DVec3, DVec3) {
         let middle = 0.5 * (min + max);
         let reach = OPENING_REACH * (max - min).length();
         (0..self.world.len())
             .filter(|&i| self.is_half_space(i))
-            .map(|i| self.foot(i, middle))
+            .map(|i| self.foot_at(i, self.scene.bodies[i].position, middle))
             .filter(|foot| foot.distance(middle) < reach)
             .fold((min, max), |(min, max), foot| {
                 (min.min(foot), max.max(foot))
             })
     }
 
-    /// The point of a half-space's plane nearest to another point.
+    /// The point of a half-space's plane, as drawn, nearest to another point.
     pub(super) fn foot(&self, half_space: usize, point: DVec3) -> DVec3 {
+        self.foot_at(half_space, self.shown_position(half_space), point)
+    }
+
+    fn foot_at(&self, half_space: usize, position: DVec3, point: DVec3) -> DVec3 {
         match self.world.shape(half_space) {
-            Some(&Shape::HalfSpace { normal }) => {
-                point - (point - self.shown_position(half_space)).dot(normal) * normal
-            }
-            _ => self.shown_position(half_space),
+            Some(&Shape::HalfSpace { normal }) => point - (point - position).dot(normal) * normal,
+            _ => position,
         }
     }
 }

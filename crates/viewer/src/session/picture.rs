@@ -71,7 +71,9 @@ impl Session {
         let mut picture = Picture {
             camera: self.camera,
             models: Vec::with_capacity(self.world.len()),
+            panes: Vec::new(),
             lines: Vec::new(),
+            marks: Vec::new(),
             arrows: Vec::new(),
             grid: self.display.grid,
         };
@@ -104,9 +106,9 @@ impl Session {
         if self.display.ties {
             self.add_ties(&mut picture.lines);
         }
-        self.add_walls(&mut picture.lines);
+        self.add_walls(&mut picture);
         if self.display.impacts {
-            self.add_impacts(&mut picture);
+            self.add_impacts(&mut picture.marks);
         }
         picture
     }

@@ -1,13 +1,15 @@
-//! Half-spaces: the part of each plane near the bodies, as a grid on its front. From behind only
+//! Half-spaces: the part of each plane near the bodies, as glass with a grid. From behind only
 //! the outline is drawn, so that the near walls of a box do not hide its inside.
 
 use sim_core::{DVec3, Shape};
 
 use super::Session;
-use crate::picture::Line;
+use crate::picture::{Line, Pane, Picture};
 
 /// Cells of a grid across the half of a wall, at least.
 const CELLS: f64 = 4.0;
+/// Opacity of a wall, seen from its front.
+const GLASS: f32 = 0.14;
 const SELECTED: [f32; 3] = [0.10, 0.35, 1.0];
 
 /// A half-space as it is drawn.
@@ -21,7 +23,7 @@ struct Wall {
 }
 
 impl Session {
-    pub(super) fn add_walls(&self, lines: &mut Vec<Line>) {
+    pub(super) fn add_walls(&self, picture: &mut Picture) {
         let (centre, half) = self.room();
         let wall = |body: usize| match self.world.shape(body) {
             Some(&Shape::HalfSpace { normal }) => {
@@ -40,11 +42,11 @@ impl Session {
         for wall in &walls {
             // What is inside another half-space is not seen.
             let others: Vec<&Wall> = walls.iter().filter(|w| w.body != wall.body).collect();
-            self.add_wall(wall, half, &others, lines);
+            self.add_wall(wall, half, &others, picture);
         }
     }
 
-    fn add_wall(&self, wall: &Wall, half: f64, others: &[&Wall], lines: &mut Vec<Line>) {
+    fn add_wall(&self, wall: &Wall, half: f64, others: &[&Wall], picture: &mut Picture) {
         let is_selected = self.selection == Some(wall.body);
         let is_front = (self.camera.eye() - wall.centre).dot(wall.normal) > 0.0;
         let [red, green, blue] = match is_selected {
@@ -65,13 +67,21 @@ impl Session {
             (false, false) => (0.7, 1.0),
         };
         let edges = outline.iter().copied().zip(ends.copied());
-        lines.extend(edges.map(|edge| line(edge, opacity, width)));
+        let edges = edges.map(|edge| line(edge, opacity, width));
+        picture.lines.extend(edges);
+        if !is_front {
+            return;
+        }
         // The ground has a grid of its own.
         let is_ground = wall.normal == DVec3::Y && wall.centre.y == 0.0 && self.display.grid;
-        if is_front && !is_ground {
+        if !is_ground {
             let grid = grid(wall, half, others);
-            lines.extend(grid.map(|edge| line(edge, 0.4, 1.0)));
+            picture.lines.extend(grid.map(|edge| line(edge, 0.4, 1.0)));
         }
+        picture.panes.push(Pane {
+            corners: outline,
+            colour: [red, green, blue, GLASS],
+        });
     }
 }
 

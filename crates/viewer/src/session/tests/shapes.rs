@@ -130,12 +130,12 @@ fn impacts_are_listed_while_they_are_shown() {
     let picture = session.picture();
     let impact = session.world().last_impact().expect("one").clone();
     assert_eq!(impact.speeds, (2.0, 1.0));
-    assert_eq!(picture.arrows.len(), 1);
-    assert_eq!(picture.arrows[0].from, impact.point);
+    assert!(!picture.marks.is_empty());
+    assert_eq!(picture.marks[0].from, impact.point);
     for _ in 0..60 {
         advance(&mut session, FRAME, free());
     }
-    assert!(session.picture().arrows.is_empty(), "it has faded");
+    assert!(session.picture().marks.is_empty(), "it has faded");
     session.reset();
     session.display.impacts = false;
     session.start();
@@ -143,7 +143,7 @@ fn impacts_are_listed_while_they_are_shown() {
         advance(&mut session, FRAME, free());
     }
     assert_eq!(session.world().impacts(), 1);
-    assert!(session.picture().arrows.is_empty());
+    assert!(session.picture().marks.is_empty());
 }
 
 #[test]
