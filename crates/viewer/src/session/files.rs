@@ -33,14 +33,18 @@ impl Session {
     pub fn import(&mut self, path: &Path) {
         match MeshRef::load(path) {
             Ok(mesh) => {
-                self.reset();
                 let name = path.file_stem().unwrap_or_default().to_string_lossy();
-                let shape = SceneShape::Mesh(mesh);
-                self.add_body(SceneBody::new(name.into_owned(), shape));
+                self.add(&name, SceneShape::Mesh(mesh));
                 self.frame();
             }
             Err(error) => self.notices.error("import", error.to_string()),
         }
+    }
+
+    /// Adds a body of a shape beside all others, at rest. Returns to the layout state first.
+    pub fn add(&mut self, name: &str, shape: SceneShape) {
+        self.reset();
+        self.add_body(SceneBody::new(name.to_owned(), shape));
     }
 
     /// Opens a scene or adds a mesh, by the name's ending.

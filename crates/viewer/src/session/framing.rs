@@ -130,16 +130,32 @@ impl Session {
         self.camera.frame(middle, radius);
     }
 
-    /// A place for `body` that touches nothing: beside all others along x, at their height.
+    /// A place for `body` that touches nothing: beside all others along x, at their height, or for
+    /// a half-space through the origin or else behind them all.
     pub(super) fn free_place(&self, body: &SceneBody) -> DVec3 {
-        let reach = reach(body);
-        match self.world_box() {
-            None => DVec3::ZERO,
-            Some((min, max)) => {
-                let middle = (min + max) / 2.0;
-                DVec3::new(max.x + 1.1 * reach + 0.1, middle.y, middle.z)
+        let Some((min, max)) = self.world_box() else {
+            return DVec3::ZERO;
+        };
+        let middle = (min + max) / 2.0;
+        let reach = match &body.shape {
+            SceneShape::HalfSpace { normal } => {
+                let normal = normal.normalize_or_zero();
+                let lowest = (middle - 0.5 * normal.signum() * (max - min)).dot(normal);
+                return if lowest > 0.0 {
+                    DVec3::ZERO
+                } else {
+                    (lowest - 0.1) * normal
+                };
             }
-        }
+            SceneShape::Sphere { radius } => *radius,
+            // However it is turned.
+            SceneShape::Mesh(mesh) => {
+                let Aabb { min, max } = mesh.mesh().bounds();
+                let corner = min.as_dvec3().abs().max(max.as_dvec3().abs());
+                (corner * body.scale.abs()).length()
+            }
+        };
+        DVec3::new(max.x + 1.1 * reach + 0.1, middle.y, middle.z)
     }
 
     /// Box of all bodies as drawn, but for half-spaces.
@@ -220,18 +236,5 @@ impl Session {
             Some(&Shape::HalfSpace { normal }) => point - (point - position).dot(normal) * normal,
             _ => position,
         }
-    }
-}
-
-/// Radius, m, of the ball about its own origin that holds a body however it is turned.
-fn reach(body: &SceneBody) -> f64 {
-    match &body.shape {
-        SceneShape::Mesh(mesh) => {
-            let Aabb { min, max } = mesh.mesh().bounds();
-            let corner = min.as_dvec3().abs().max(max.as_dvec3().abs());
-            (corner * body.scale.abs()).length()
-        }
-        SceneShape::Sphere { radius } => *radius,
-        SceneShape::HalfSpace { .. } => 0.0,
     }
 }

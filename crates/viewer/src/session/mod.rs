@@ -52,6 +52,9 @@ pub const MAX_RATE: f64 = 240.0;
 /// window that was held still for ten seconds does not have to simulate ten seconds at once.
 const CATCH_UP: Duration = Duration::from_millis(250);
 
+/// Bodies up to which their trails are shown at first.
+const MOST_TRAILS: usize = 20;
+
 /// What the session is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
@@ -117,8 +120,9 @@ impl Session {
             display: Display::default(),
             compare: Compare::default(),
         };
-        // Where paths are curved, they show what a method does.
-        session.show_trails(!session.scene.forces.is_empty());
+        // Where paths are curved, they show what a method does; those of a crowd hide it.
+        let few = session.world.len() <= MOST_TRAILS;
+        session.show_trails(few && !session.scene.forces.is_empty());
         session.frame_opening();
         Ok(session)
     }

@@ -188,3 +188,19 @@ fn immovable_bodies_are_made_and_unmade() {
     assert_eq!(complaint(&mut session, "shape"), None);
     assert_eq!(session.contest(), Contest::NoPair, "no meshes to compare");
 }
+
+#[test]
+fn shapes_are_added_where_nothing_is() {
+    let mut session = balls();
+    session.start();
+    session.add("sphere", scene::SceneShape::Sphere { radius: 2.0 });
+    assert_eq!(session.state(), State::Layout);
+    for normal in [DVec3::Y, DVec3::NEG_X, DVec3::new(1.0, 2.0, 3.0)] {
+        session.add("floor", scene::SceneShape::HalfSpace { normal });
+    }
+    assert_eq!(session.world().len(), 7);
+    assert_eq!(session.selected().map(|b| b.name.as_str()), Some("floor 4"));
+    let pairs = session.world().overlapping();
+    // The sphere is larger than the old floor is deep.
+    assert_eq!(pairs, [(0, 3)]);
+}
