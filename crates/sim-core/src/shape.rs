@@ -33,6 +33,13 @@ impl Shape {
     }
 }
 
+impl Shape {
+    /// Whether a box can hold it.
+    pub(crate) fn is_bounded(&self) -> bool {
+        !matches!(self, Shape::HalfSpace { .. })
+    }
+}
+
 impl From<Arc<Mesh>> for Shape {
     fn from(mesh: Arc<Mesh>) -> Shape {
         Shape::Mesh(mesh)

@@ -12,3 +12,7 @@ pub(super) fn meets(_: &Bvh, _: DVec3, _: f64) -> bool {
 pub(super) fn first_touch(_: &Bvh, _: DVec3, _: f64, _: DVec3) -> Option<Contact> {
     None
 }
+
+pub(super) fn parting_normal(_: &Bvh, _: DVec3, _: f64) -> alloc::vec::Vec<DVec3> {
+    alloc::vec![]
+}

@@ -9,6 +9,8 @@
 //! spheres of radii that sum R: |r + t d| = R,         t = (r² - R²) / (-r·d + √(R² d² - |r×d|²))
 //! ```
 
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
 use glam::DVec3;
 
 use super::{Feature, Touch, ball, touch, tree};
@@ -88,6 +90,40 @@ pub(crate) fn first_contact(
         }
     }
 }
+
+/// Directions in which the second of two shapes that touch might move out of the first.
+pub(crate) fn parting_normals(first: Form<'_>, second: Form<'_>, offset: DVec3) -> Vec<DVec3> {
+    match (first, second) {
+        (Form::Mesh(first), Form::Mesh(second)) => {
+            let mut normals: Vec<DVec3> = Vec::new();
+            let _ = tree::each_hit(first, second, offset, |hit| {
+                for normal in [hit.normal, -hit.normal] {
+                    if normal != DVec3::ZERO && !normals.contains(&normal) {
+                        normals.push(normal);
+                    }
+                }
+                match normals.len() < MOST_NORMALS {
+                    true => ControlFlow::Continue(()),
+                    false => ControlFlow::Break(()),
+                }
+            });
+            normals
+        }
+        (Form::Mesh(mesh), Form::Sphere(radius)) => ball::parting_normal(mesh, offset, radius),
+        (Form::HalfSpace(normal), _) => alloc::vec![normal],
+        (Form::Sphere(_), Form::Sphere(_)) => offset.try_normalize().into_iter().collect(),
+        (first, second) => {
+            let mut normals = parting_normals(second, first, -offset);
+            for normal in &mut normals {
+                *normal = -*normal;
+            }
+            normals
+        }
+    }
+}
+
+/// Normals looked at where meshes touch, at most.
+const MOST_NORMALS: usize = 32;
 
 /// How far a shape extends against `normal`, and where.
 fn reach(shape: Form<'_>, normal: DVec3) -> (f64, DVec3) {

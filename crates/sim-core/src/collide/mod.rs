@@ -5,6 +5,7 @@
 
 mod apart;
 mod ball;
+mod broad;
 mod form;
 mod hit;
 pub mod naive;
@@ -16,7 +17,8 @@ mod solid;
 pub mod touch;
 pub mod tree;
 
-pub(crate) use form::{Contact, Form, first_contact, meet};
+pub(crate) use broad::{Broad, Swept};
+pub(crate) use form::{Contact, Form, first_contact, meet, parting_normals};
 pub use hit::{Hit, Side};
 pub use pairs::Level;
 pub use placement::Placement;

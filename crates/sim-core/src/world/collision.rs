@@ -146,35 +146,55 @@ impl World {
         if let Some(contact) = contact.or_else(turned_back) {
             let point = start[i].lerp(end[i], contact.time) + contact.point;
             let time = self.time() + contact.time * self.settings.dt;
-            self.exchange((i, j), &Contact { point, ..contact }, time);
+            self.exchange_now((i, j), &Contact { point, ..contact }, time);
         }
     }
 
-    /// Gives two bodies that approach the impulse of their restitution. The contact's point is in
-    /// the world.
-    pub(super) fn exchange(&mut self, (i, j): (usize, usize), contact: &Contact, time: f64) {
-        let velocity = &mut self.current.velocity;
-        let (m1, m2) = (self.mass[i], self.mass[j]);
-        let (before, normal) = (velocity[j] - velocity[i], contact.normal);
+    /// Lets two bodies that approach part by their restitution, now.
+    fn exchange_now(&mut self, (i, j): (usize, usize), contact: &Contact, time: f64) {
+        let before = (self.current.velocity[i], self.current.velocity[j]);
         let restitution = self.pair_restitution(i, j);
-        let velocity = &mut self.current.velocity;
-        let Some(impulse) =
-            impulse::between((m1, velocity[i]), (m2, velocity[j]), normal, restitution)
-        else {
-            return;
+        let after = self.exchange((i, j), contact, before, restitution, time);
+        (self.current.velocity[i], self.current.velocity[j]) = after;
+    }
+
+    /// The velocities of two bodies after they have parted by a restitution, if they approach. The
+    /// contact's point is in the world.
+    pub(super) fn exchange(
+        &mut self,
+        (i, j): (usize, usize),
+        contact: &Contact,
+        (v1, v2): (DVec3, DVec3),
+        restitution: f64,
+        time: f64,
+    ) -> (DVec3, DVec3) {
+        let ((m1, m2), normal) = ((self.mass[i], self.mass[j]), contact.normal);
+        let Some(given) = impulse::between((m1, v1), (m2, v2), normal, restitution) else {
+            return (v1, v2);
         };
-        velocity[i] -= impulse / m1 * normal;
-        velocity[j] += impulse / m2 * normal;
-        let after = velocity[j] - velocity[i];
+        let after = (v1 + given.change.0 * normal, v2 + given.change.1 * normal);
+        let speeds = ((v1 - v2).dot(normal), (after.1 - after.0).dot(normal));
+        self.note_impact((i, j), contact, given.impulse, speeds, time);
+        after
+    }
+
+    pub(super) fn note_impact(
+        &mut self,
+        bodies: (usize, usize),
+        contact: &Contact,
+        impulse: f64,
+        speeds: (f64, f64),
+        time: f64,
+    ) {
         self.impacts += 1;
         let impact = Impact {
             step: self.steps + 1,
             time,
-            bodies: (i, j),
+            bodies,
             point: contact.point,
-            normal,
+            normal: contact.normal,
             impulse,
-            speeds: (-before.dot(normal), after.dot(normal)),
+            speeds,
             feature: contact.feature,
         };
         if let Some(report) = &mut self.report {
@@ -203,14 +223,14 @@ impl World {
                 normal: self.apart_along(i, j),
                 feature: None,
             };
-            self.exchange((i, j), &contact, self.time() + self.settings.dt);
+            self.exchange_now((i, j), &contact, self.time() + self.settings.dt);
         }
         self.overlapping = still;
     }
 
     /// Where two bodies in overlap should part to: out of a half-space, or along the line of their
     /// centres.
-    fn apart_along(&self, i: usize, j: usize) -> DVec3 {
+    pub(super) fn apart_along(&self, i: usize, j: usize) -> DVec3 {
         match (self.shape(i), self.shape(j)) {
             (Some(&Shape::HalfSpace { normal }), _) => normal,
             (_, Some(&Shape::HalfSpace { normal })) => -normal,
@@ -232,6 +252,7 @@ impl World {
     /// Notes the pairs that a newly placed body is in overlap with. Always through the trees:
     /// placing bodies is not what naive steps are measured for.
     pub(super) fn note_overlaps_of(&mut self, body: usize) {
+        self.continuous.placed = true;
         for place in 0..self.solid.len() {
             let other = self.solid[place];
             let pair = (body.min(other), body.max(other));

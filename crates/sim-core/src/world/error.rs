@@ -154,6 +154,21 @@ pub enum StepError {
         /// Steps taken.
         steps: u32,
     },
+    /// Impacts without end, as of a body between two walls that close on it.
+    #[error(
+        "step {step}: body {body} has an impact after {impacts} others in the step; lower dt, or \
+         part what it is caught between"
+    )]
+    TooManyImpacts {
+        /// Index of a body in the last impact.
+        body: usize,
+        /// The step that failed, from 1.
+        step: u64,
+        /// Title of the method.
+        method: &'static str,
+        /// Impacts answered.
+        impacts: u64,
+    },
 }
 
 impl StepError {
@@ -163,7 +178,8 @@ impl StepError {
             StepError::OutOfRange { body, .. }
             | StepError::Unstable { body, .. }
             | StepError::NotConverged { body, .. }
-            | StepError::TooManySteps { body, .. } => body,
+            | StepError::TooManySteps { body, .. }
+            | StepError::TooManyImpacts { body, .. } => body,
         }
     }
 }

@@ -21,6 +21,7 @@ use crate::{
     integrate::{Method, Scratch},
 };
 pub use collision::Impact;
+use continuous::Continuous;
 pub use error::{StepError, WorldError};
 use plan::Plan;
 use state::State;
@@ -77,6 +78,7 @@ pub struct World {
     last_impact: Option<Impact>,
     /// Where impacts are listed, while someone asks.
     report: Option<Vec<Impact>>,
+    continuous: Continuous,
     /// Time and step at which `dt` was last set: time since is steps times `dt`, without drift.
     since: (f64, u64),
 }
@@ -157,6 +159,7 @@ impl World {
             impacts: 0,
             last_impact: None,
             report: None,
+            continuous: Continuous::default(),
             since: (0.0, 0),
         })
     }

@@ -4,11 +4,12 @@
 //! checks the range. The others are stepped by the method, in blocks small enough for the
 //! processor's first cache where nothing couples them.
 
-use core::ops::Range;
+use core::{mem, ops::Range};
 
 use super::{
     Settings, StepError, World, error,
     plan::{Plan, Section},
+    state::State,
     system::Part,
 };
 use crate::integrate::{Failure, Step, ballistic, stability};
@@ -130,7 +131,17 @@ impl World {
         let mut start = all.start;
         while start < all.end {
             let bodies = start..all.end.min(start + length);
-            self.block(plan, bodies.clone(), section.is_coupled)?;
+            let (from, mut to) = (mem::take(&mut self.previous), mem::take(&mut self.current));
+            let span = (0.0, self.settings.dt);
+            let moved = self.block(
+                plan,
+                bodies.clone(),
+                section.is_coupled,
+                (&from, &mut to),
+                span,
+            );
+            (self.previous, self.current) = (from, to);
+            moved?;
             if let Some(body) = self.beyond(bodies.clone()) {
                 return Err((body, Cause::Range));
             }
@@ -145,28 +156,27 @@ impl World {
         Ok(())
     }
 
-    /// One call of the method.
-    fn block(
+    /// One call of the method, from some time after the start of the step and over some length.
+    pub(super) fn block(
         &mut self,
         plan: &Plan,
         bodies: Range<usize>,
         is_coupled: bool,
+        (from, to): (&State, &mut State),
+        (since, length): (f64, f64),
     ) -> Result<(), (usize, Cause)> {
         let Settings {
-            dt,
-            method,
-            tolerance,
-            ..
+            method, tolerance, ..
         } = self.settings;
         let start = bodies.start;
         let step = Step {
-            time: self.time(),
-            dt,
+            time: self.time() + since,
+            dt: length,
             tolerance,
-            position: &self.previous.position[bodies.clone()],
-            velocity: &self.previous.velocity[bodies.clone()],
-            new_position: &mut self.current.position[bodies.clone()],
-            new_velocity: &mut self.current.velocity[bodies.clone()],
+            position: &from.position[bodies.clone()],
+            velocity: &from.velocity[bodies.clone()],
+            new_position: &mut to.position[bodies.clone()],
+            new_velocity: &mut to.velocity[bodies.clone()],
             scratch: &mut self.scratch,
         };
         let part = Part {
@@ -236,7 +246,7 @@ impl World {
 
     /// Puts every body back, and says why.
     #[cold]
-    fn failed(&mut self, body: usize, cause: Cause) -> StepError {
+    pub(super) fn failed(&mut self, body: usize, cause: Cause) -> StepError {
         self.current.copy_from(&self.previous);
         let (step, method) = (self.steps + 1, self.settings.method.title);
         let stable_dt = self.plan.take().and_then(|plan| {
@@ -250,6 +260,12 @@ impl World {
                 step,
                 method,
                 stable_dt,
+            },
+            Cause::Impacts => StepError::TooManyImpacts {
+                body,
+                step,
+                method,
+                impacts: World::MOST_IMPACTS,
             },
             Cause::Growth => StepError::Unstable {
                 body,
@@ -274,8 +290,10 @@ impl World {
 }
 
 /// Why a step failed at a body.
-enum Cause {
+pub(super) enum Cause {
     Range,
+    /// More impacts than [`World::MOST_IMPACTS`].
+    Impacts,
     Growth,
     Failure(Failure),
 }

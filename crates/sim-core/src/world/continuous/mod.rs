@@ -1,10 +1,287 @@
 //! Impacts at the time at which they happen.
+//!
+//! Each body has a *way* through the step ([`way`]). For each pair whose swept boxes meet, the next
+//! impact on their ways is sought ([`seek`]) and waits in a queue. The earliest one is answered
+//! ([`respond`]): the bodies' ways end there, an impulse is exchanged, and new ways start, with new
+//! impacts to be sought. What happens at the same instant is answered together. At the end of the
+//! step an exact test makes sure that no two bodies meet, and moves apart by a rounding those that
+//! do ([`part`]).
+//!
+//! A step costs a box test for each pair that comes near, a search for each whose swept boxes
+//! meet, and two searches or so for each impact. Nothing but the motion goes from step to step.
 
-use super::{StepError, World};
+mod part;
+mod respond;
+mod seek;
+mod way;
+
+use alloc::{collections::BinaryHeap, vec::Vec};
+use core::{cmp::Ordering, mem};
+use glam::DVec3;
+
+use super::{StepError, World, state::State, stepping::Cause};
+use crate::{
+    Shape,
+    collide::{Broad, Contact, Swept},
+};
+use respond::{Answer, Rest};
+
+/// What a step with continuous collision needs beside the state; empty while there is none.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Continuous {
+    /// Motion of each body where its way starts, and when that is, s from the step's start.
+    start: State,
+    since: Vec<f64>,
+    /// How often a body's way has changed in this step; an impact of an older way is void.
+    version: Vec<u32>,
+    /// What resting contacts add to the acceleration of each body, m/s².
+    reaction: Vec<DVec3>,
+    /// Contacts whose bodies stay together for the rest of the step.
+    resting: Vec<Rest>,
+    events: BinaryHeap<Event>,
+    /// Pairs that have come near in this step.
+    near: Vec<(usize, usize)>,
+    broad: Broad,
+    /// Half-spaces, which no box holds.
+    walls: Vec<usize>,
+    probe: State,
+    /// Bodies whose ways are new, and bodies that may come near one of them.
+    renewed: Vec<usize>,
+    partners: Vec<usize>,
+    /// What happens at one instant.
+    group: Vec<Event>,
+    /// Whether every way is a parabola.
+    is_free: bool,
+    /// Whether overlapping pairs have been placed since it was seen whether they just touch.
+    pub(super) placed: bool,
+}
+
+/// An impact to come.
+#[derive(Clone, Debug)]
+struct Event {
+    /// From the start of the step, s.
+    time: f64,
+    bodies: (usize, usize),
+    versions: (u32, u32),
+    /// Its point is in the world.
+    contact: Contact,
+    /// What becomes of it, once its time has come.
+    answer: Answer,
+}
+
+impl Ord for Event {
+    /// The earliest is the greatest; at the same time the one of the lowest bodies.
+    fn cmp(&self, other: &Event) -> Ordering {
+        let time = other.time.total_cmp(&self.time);
+        time.then(other.bodies.cmp(&self.bodies))
+    }
+}
+
+impl PartialOrd for Event {
+    fn partial_cmp(&self, other: &Event) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Event {
+    fn eq(&self, other: &Event) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Event {}
+
+/// Pairs that are listed before they are sorted, and named once each.
+const MOST_NEAR: usize = 1 << 16;
 
 impl World {
+    /// Impacts in one step after which it is given up, as without end.
+    pub const MOST_IMPACTS: u64 = 10_000_000;
+
+    /// Lets bodies have their impacts on the way from the previous state to the current one.
     pub(super) fn collide_continuously(&mut self) -> Result<(), StepError> {
-        self.collide();
+        let before = (self.impacts, self.last_impact.clone());
+        self.part_touching();
+        self.start_ways();
+        let done = self.seek_all().and_then(|()| self.answer_all());
+        if let Err((body, cause)) = done {
+            (self.impacts, self.last_impact) = before;
+            return Err(self.failed(body, cause));
+        }
+        self.part_near();
+        self.part_overlapping();
         Ok(())
+    }
+
+    /// Seeks the first impact of every pair that may have one.
+    fn seek_all(&mut self) -> Result<(), (usize, Cause)> {
+        let mut broad = mem::take(&mut self.continuous.broad);
+        let mut walls = mem::take(&mut self.continuous.walls);
+        let mut near = mem::take(&mut self.continuous.near);
+        let is_wall = |&body: &usize| matches!(self.shape(body), Some(Shape::HalfSpace { .. }));
+        walls.clear();
+        walls.extend(self.solid.iter().copied().filter(is_wall));
+        broad.fill(
+            self.solid
+                .iter()
+                .filter(|&body| !is_wall(body))
+                .map(|&body| self.swept(body)),
+        );
+        near.clear();
+        broad.each_pair(|i, j| near.push((i, j)));
+        for &wall in &walls {
+            let front = self.front(wall);
+            let reaching = broad.boxes().iter().filter(|swept| front.may_meet(swept));
+            near.extend(reaching.map(|&Swept { body, .. }| (wall.min(body), wall.max(body))));
+        }
+        near.retain(|&(i, j)| self.may_collide(i, j));
+        let count = near.len();
+        self.continuous.broad = broad;
+        self.continuous.walls = walls;
+        self.continuous.near = near;
+        self.continuous.events.clear();
+        for place in 0..count {
+            let (i, j) = self.continuous.near[place];
+            if let Some(event) = self.seek(i, j)? {
+                self.continuous.events.push(event);
+            }
+        }
+        Ok(())
+    }
+
+    /// Answers impacts in the order of time until none is left.
+    fn answer_all(&mut self) -> Result<(), (usize, Cause)> {
+        self.continuous.resting.clear();
+        let mut answered = 0;
+        let mut group = mem::take(&mut self.continuous.group);
+        while let Some(first) = self.next_event(f64::INFINITY) {
+            let time = first.time;
+            // The same instant, but for rounding.
+            let until = time + 4.0 * f64::EPSILON * time;
+            group.clear();
+            group.push(first);
+            while let Some(event) = self.next_event(until) {
+                group.push(event);
+            }
+            answered += group.len() as u64;
+            if answered > World::MOST_IMPACTS {
+                return Err((group[0].bodies.1, Cause::Impacts));
+            }
+            self.answer(&mut group, time)?;
+            if self.continuous.near.len() > MOST_NEAR {
+                self.continuous.near.sort_unstable();
+                self.continuous.near.dedup();
+            }
+        }
+        self.continuous.group = group;
+        Ok(())
+    }
+
+    /// The next impact no later than a time, of bodies that are still on the ways that led to it.
+    fn next_event(&mut self, until: f64) -> Option<Event> {
+        let ways = &mut self.continuous;
+        while let Some(event) = ways.events.peek() {
+            if event.time > until {
+                return None;
+            }
+            let event = ways.events.pop()?;
+            let (i, j) = event.bodies;
+            if event.versions == (ways.version[i], ways.version[j]) {
+                return Some(event);
+            }
+        }
+        None
+    }
+
+    /// Seeks the next impacts of a body whose way is new. Of two such, the pair is sought once.
+    fn seek_from(&mut self, body: usize, renewed: &[usize]) -> Result<(), (usize, Cause)> {
+        let Some(is_bounded) = self.shape(body).map(Shape::is_bounded) else {
+            return Ok(());
+        };
+        let mut partners = mem::take(&mut self.continuous.partners);
+        partners.clear();
+        if is_bounded {
+            let swept = self.swept(body);
+            let ways = &self.continuous;
+            ways.broad
+                .each_partner(&swept, |other| partners.push(other));
+            let walls = ways.walls.iter().copied();
+            partners.extend(walls.filter(|&wall| self.front(wall).may_meet(&swept)));
+        } else {
+            partners.extend(self.solid.iter().filter(|&&other| other != body));
+        }
+        for &other in &partners {
+            if !self.may_collide(body, other) || (other < body && renewed.contains(&other)) {
+                continue;
+            }
+            let pair = (body.min(other), body.max(other));
+            self.continuous.near.push(pair);
+            if let Some(event) = self.seek(pair.0, pair.1)? {
+                self.continuous.events.push(event);
+            }
+        }
+        self.continuous.partners = partners;
+        Ok(())
+    }
+
+    /// A box around a body all along its way.
+    fn swept(&self, body: usize) -> Swept {
+        let (from, to) = (
+            self.continuous.start.position[body],
+            self.current.position[body],
+        );
+        let (low, high) = match self.shape(body) {
+            Some(Shape::Mesh(mesh)) => {
+                let bounds = mesh.bounds();
+                (bounds.min.as_dvec3(), bounds.max.as_dvec3())
+            }
+            Some(&Shape::Sphere { radius }) => (DVec3::splat(-radius), DVec3::splat(radius)),
+            Some(Shape::HalfSpace { .. }) | None => (DVec3::ZERO, DVec3::ZERO),
+        };
+        let bulge = self.bulge(body);
+        let (min, max) = (from.min(to) + low - bulge, from.max(to) + high + bulge);
+        // More than is lost in rounding, here and where vertices are placed.
+        let slack = 8.0 * f64::EPSILON * (from.abs() + to.abs() + low.abs() + high.abs());
+        Swept {
+            min: min - slack,
+            max: max + slack,
+            body,
+        }
+    }
+
+    /// The farthest that the plane of a half-space comes on its way.
+    fn front(&self, wall: usize) -> Front {
+        let normal = match self.shape(wall) {
+            Some(&Shape::HalfSpace { normal }) => normal,
+            _ => DVec3::ZERO,
+        };
+        let (from, to) = (
+            self.continuous.start.position[wall],
+            self.current.position[wall],
+        );
+        let bulge = self.bulge(wall).dot(normal.abs());
+        // More than is lost in rounding.
+        let slack = 16.0 * f64::EPSILON * (from.length() + to.length());
+        Front {
+            normal,
+            level: normal.dot(from).max(normal.dot(to)) + bulge + slack,
+        }
+    }
+}
+
+/// A plane, in front of which a half-space stays.
+#[derive(Clone, Copy)]
+struct Front {
+    normal: DVec3,
+    level: f64,
+}
+
+impl Front {
+    /// Whether a box may come to it; a "no" is a proof.
+    fn may_meet(&self, swept: &Swept) -> bool {
+        let (low, high) = (self.normal * swept.min, self.normal * swept.max);
+        let nearest = low.min(high).element_sum();
+        let size = low.abs().max(high.abs()).element_sum();
+        nearest - 16.0 * f64::EPSILON * size <= self.level
     }
 }

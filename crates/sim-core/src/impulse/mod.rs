@@ -10,22 +10,51 @@
 //! so `j = -(1 + e) (v2 - v1)·n / ((1/m1 + 1/m2) n·n)` (Baraff 1997, "An introduction to
 //! physically based modeling: rigid body simulation II", eq. 8-18, without rotation).
 
+mod together;
+
 use glam::DVec3;
 
-/// Impulse (N s) after which two bodies of masses `m1`, `m2` (kg; one may be infinite) and
-/// velocities `v1`, `v2` (m/s) part along `normal` with the part `restitution` (0 to 1) of the speed
-/// at which they approach; `None` unless they do.
+pub use together::{Joined, project, reflect};
+
+/// What two bodies exchange.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchange {
+    /// On the second body along the normal, and on the first against it, N s per length of the
+    /// normal.
+    pub impulse: f64,
+    /// What that changes of the first body's velocity and of the second's, in normals.
+    pub change: (f64, f64),
+}
+
+/// The impulse after which two bodies of masses `m1`, `m2` (kg; one may be infinite) and velocities
+/// `v1`, `v2` (m/s) part along `normal` with the part `restitution` (0 to 1) of the speed at which
+/// they approach; `None` unless they do.
 pub fn between(
     (m1, v1): (f64, DVec3),
     (m2, v2): (f64, DVec3),
     normal: DVec3,
     restitution: f64,
-) -> Option<f64> {
+) -> Option<Exchange> {
     let parting = (v2 - v1).dot(normal);
+    if parting >= 0.0 || parting.is_nan() {
+        return None;
+    }
     // Divided by n·n, an elastic exchange conserves energy however `normal` was rounded.
-    let reduced_mass = 1.0 / (1.0 / m1 + 1.0 / m2);
-    let change = -(1.0 + restitution) * parting;
-    (parting < 0.0).then(|| change * reduced_mass / normal.length_squared())
+    let both = -(1.0 + restitution) * parting / normal.length_squared();
+    // The heavier one's small share first, and the rest to the other: where masses differ by orders
+    // of magnitude and meet again and again, no rounding of a share near one adds up.
+    let (light, heavy) = (m1.min(m2), m1.max(m2));
+    let of_heavy = both * (light / (light + heavy));
+    let of_light = both - of_heavy;
+    let (first, second) = if m1 <= m2 {
+        (of_light, of_heavy)
+    } else {
+        (of_heavy, of_light)
+    };
+    Some(Exchange {
+        impulse: light * of_light,
+        change: (-first, second),
+    })
 }
 
 #[cfg(test)]
@@ -37,8 +66,8 @@ mod tests {
         for (m1, m2) in [(1.0, 1.0), (1.0, 3.0), (2.0, 1e3), (1.0, 1e12), (1e6, 1e-6)] {
             let (u1, u2) = (10.0, -4.0);
             let n = DVec3::X;
-            let j = between((m1, u1 * n), (m2, u2 * n), n, 1.0).unwrap();
-            let (w1, w2) = (u1 - j / m1, u2 + j / m2);
+            let change = between((m1, u1 * n), (m2, u2 * n), n, 1.0).unwrap().change;
+            let (w1, w2) = (u1 + change.0, u2 + change.1);
             let exact1 = ((m1 - m2) * u1 + 2.0 * m2 * u2) / (m1 + m2);
             let exact2 = ((m2 - m1) * u2 + 2.0 * m1 * u1) / (m1 + m2);
             assert!(
@@ -57,8 +86,8 @@ mod tests {
         let (m1, v1) = (2.0, DVec3::new(1.0, 2.0, -0.5));
         let (m2, v2) = (0.7, DVec3::new(-3.0, 0.25, 1.0));
         for n in [DVec3::new(1.0, 0.3, 0.1), DVec3::new(2e3, -1e2, 7.0)] {
-            let j = between((m1, v1), (m2, v2), n, 1.0).unwrap();
-            let (w1, w2) = (v1 - j / m1 * n, v2 + j / m2 * n);
+            let change = between((m1, v1), (m2, v2), n, 1.0).unwrap().change;
+            let (w1, w2) = (v1 + change.0 * n, v2 + change.1 * n);
             let energy = |a: DVec3, b: DVec3| m1 * a.length_squared() + m2 * b.length_squared();
             assert!((energy(w1, w2) / energy(v1, v2) - 1.0).abs() < 1e-15);
             assert!((m1 * w1 + m2 * w2 - m1 * v1 - m2 * v2).length() < 1e-14);
@@ -80,8 +109,9 @@ mod tests {
     fn walls_turn_bodies_back_by_their_restitution() {
         let wall = (f64::INFINITY, DVec3::new(-3.0, 0.0, 0.0));
         for e in [0.0, 0.25, 1.0] {
-            let j = between((2.0, DVec3::X), wall, DVec3::X, e).unwrap();
-            assert_eq!((1.0 - j / 2.0, j / wall.0), (-3.0 - e * 4.0, 0.0));
+            let given = between((2.0, DVec3::X), wall, DVec3::X, e).unwrap();
+            assert_eq!(given.change, (-4.0 - e * 4.0, 0.0));
+            assert_eq!(given.impulse, 8.0 + e * 8.0);
         }
     }
 }

@@ -1,0 +1,419 @@
+//! Several contacts at the same instant.
+//!
+//! Velocities are allowed if no contact closes: `N v >= 0`, with a row for each contact that takes
+//! the speed at which it opens. Of allowed velocities, those nearest to the given ones, in the norm
+//! of kinetic energy, are the *projection*: Gauss' principle, contacts that give and take nothing.
+//! Elastic contacts *reflect*: they go as far beyond the projection as it is away, which keeps the
+//! energy and treats equal contacts equally; contacts that close after that are reflected again
+//! (Smith, Kaufman, Vouga, Tamstorf, Grinspun 2012, "Reflections on simultaneous impact", sec. 5,
+//! generalized reflections).
+//!
+//! The projection is `v + M⁻¹ Nᵀ λ` with `0 <= λ`, `0 <= N (v + M⁻¹ Nᵀ λ)`, each `λ` times its
+//! speed zero. Sums are taken in an order that depends on their terms alone, so that bodies in
+//! another order, and mirror images, give the same bits.
+
+use alloc::{vec, vec::Vec};
+use glam::DVec3;
+
+/// Two bodies in contact, and the unit normal from the first to the second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joined {
+    /// The bodies, as places in the list of velocities.
+    pub bodies: (usize, usize),
+    /// From the first to the second.
+    pub normal: DVec3,
+}
+
+impl Joined {
+    /// Speed at which the contact opens, m/s.
+    pub(crate) fn opening(&self, velocity: &[DVec3]) -> f64 {
+        (velocity[self.bodies.1] - velocity[self.bodies.0]).dot(self.normal)
+    }
+
+    /// Whether it closes, by more than rounding.
+    pub(crate) fn closes(&self, velocity: &[DVec3]) -> bool {
+        self.opening(velocity) < -self.rounding(velocity)
+    }
+
+    /// Whether it opens, by more than rounding.
+    pub(crate) fn opens(&self, velocity: &[DVec3]) -> bool {
+        self.opening(velocity) > self.rounding(velocity)
+    }
+
+    fn rounding(&self, velocity: &[DVec3]) -> f64 {
+        let (first, second) = (velocity[self.bodies.0], velocity[self.bodies.1]);
+        4.0 * f64::EPSILON * (first.length() + second.length())
+    }
+
+    /// Part of an impulse of another contact that arrives here, by inverse mass.
+    fn shared(&self, other: &Joined, inverse_mass: &[f64]) -> f64 {
+        let signs = |contact: &Joined| [(contact.bodies.0, -1.0), (contact.bodies.1, 1.0)];
+        let mut sum = 0.0;
+        for (body, sign) in signs(self) {
+            for (of_other, other_sign) in signs(other) {
+                if body == of_other {
+                    sum += sign * other_sign * inverse_mass[body];
+                }
+            }
+        }
+        sum * self.normal.dot(other.normal)
+    }
+}
+
+/// Most rounds of reflection; a few are enough, by far.
+const ROUNDS: usize = 10_000;
+
+/// Velocities (m/s) after an impact of all contacts at once, with inverse masses (1/kg, 0 for an
+/// immovable body), and the impulse of each contact (N s).
+pub fn reflect(
+    contacts: &[Joined],
+    inverse_mass: &[f64],
+    velocity: &mut [DVec3],
+    restitution: f64,
+) -> Vec<f64> {
+    let mut impulse = vec![0.0; contacts.len()];
+    for _ in 0..ROUNDS {
+        let closing: Vec<usize> = (0..contacts.len())
+            .filter(|&k| contacts[k].closes(velocity))
+            .collect();
+        if closing.is_empty() {
+            break;
+        }
+        let part: Vec<Joined> = closing.iter().map(|&k| contacts[k]).collect();
+        let mut given = multipliers(&part, inverse_mass, velocity);
+        // Of an exact projection the contacts give up all that they give; the ratio makes up for
+        // rounding, so that energy is kept where the equations are solved badly.
+        let mut change = vec![DVec3::ZERO; velocity.len()];
+        push(&part, inverse_mass, &mut change, &given);
+        let pairs = || part.iter().zip(&given);
+        let given_up = sum(pairs().map(|(contact, given)| -given * contact.opening(velocity)));
+        let opened = sum(pairs().map(|(contact, given)| given * contact.opening(&change)));
+        let factor = (1.0 + restitution) * given_up / opened;
+        for given in &mut given {
+            *given *= factor;
+        }
+        push(&part, inverse_mass, velocity, &given);
+        for (k, given) in closing.into_iter().zip(given) {
+            impulse[k] += given;
+        }
+    }
+    impulse
+}
+
+/// The nearest velocities, or accelerations, with which no contact closes, and the impulse (or
+/// force) of each contact.
+pub fn project(contacts: &[Joined], inverse_mass: &[f64], velocity: &mut [DVec3]) -> Vec<f64> {
+    let given = multipliers(contacts, inverse_mass, velocity);
+    push(contacts, inverse_mass, velocity, &given);
+    given
+}
+
+/// Adds the impulses of contacts to the velocities.
+fn push(contacts: &[Joined], inverse_mass: &[f64], velocity: &mut [DVec3], impulse: &[f64]) {
+    let mut terms: Vec<(usize, DVec3)> = Vec::with_capacity(2 * contacts.len());
+    for (contact, &impulse) in contacts.iter().zip(impulse) {
+        let (i, j) = contact.bodies;
+        terms.push((i, -impulse * inverse_mass[i] * contact.normal));
+        terms.push((j, impulse * inverse_mass[j] * contact.normal));
+    }
+    terms.sort_by_key(|&(body, _)| body);
+    for same in terms.chunk_by(|a, b| a.0 == b.0) {
+        let along = |axis: usize| sum(same.iter().map(|(_, term)| term[axis]));
+        velocity[same[0].0] += DVec3::new(along(0), along(1), along(2));
+    }
+}
+
+/// The impulses of a projection.
+fn multipliers(contacts: &[Joined], inverse_mass: &[f64], velocity: &[DVec3]) -> Vec<f64> {
+    let wanted: Vec<f64> = contacts.iter().map(|c| -c.opening(velocity)).collect();
+    let own = |k: usize| contacts[k].shared(&contacts[k], inverse_mass);
+    match contacts.len() {
+        1 => vec![wanted[0].max(0.0) / own(0)],
+        2 => {
+            let shared = contacts[0].shared(&contacts[1], inverse_mass);
+            two(&wanted, [own(0), own(1)], shared)
+        }
+        _ => many(contacts, inverse_mass, &wanted),
+    }
+}
+
+/// Both at once if both push, otherwise the one that does.
+fn two(wanted: &[f64], [a, b]: [f64; 2], shared: f64) -> Vec<f64> {
+    let det = a * b - shared * shared;
+    let first = (wanted[0] * b - wanted[1] * shared) / det;
+    let second = (wanted[1] * a - wanted[0] * shared) / det;
+    // Parallel contacts of the same bodies share what there is to give.
+    if det <= 4.0 * f64::EPSILON * a * b {
+        let half = 0.5 * (wanted[0].max(wanted[1])).max(0.0);
+        return vec![half / a, half / b];
+    }
+    if first >= 0.0 && second >= 0.0 {
+        return vec![first, second];
+    }
+    let alone = [wanted[0].max(0.0) / a, wanted[1].max(0.0) / b];
+    if first < 0.0 && shared * alone[1] >= wanted[0] {
+        vec![0.0, alone[1]]
+    } else {
+        vec![alone[0], 0.0]
+    }
+}
+
+/// Contacts are taken to push or not to push by guess, the equations of those that push solved, and
+/// the guess mended where one would pull or one that does not push closes (Júdice, Pires 1994, "A
+/// block principal pivoting algorithm for large-scale strictly monotone linear complementarity
+/// problems").
+fn many(contacts: &[Joined], inverse_mass: &[f64], wanted: &[f64]) -> Vec<f64> {
+    let rows = Rows::of(contacts, inverse_mass);
+    let scale = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
+    let mut pushes: Vec<bool> = wanted.iter().map(|&w| w > 0.0).collect();
+    let mut given = vec![0.0; contacts.len()];
+    for guess in 0..GUESSES {
+        given = rows.solve(wanted, &pushes);
+        let missing = rows.missing(wanted, &given);
+        let is_wrong = |k: usize| match pushes[k] {
+            true => given[k] < 0.0,
+            false => missing[k] > 8.0 * f64::EPSILON * scale,
+        };
+        let wrong: Vec<usize> = (0..contacts.len()).filter(|&k| is_wrong(k)).collect();
+        if wrong.is_empty() {
+            break;
+        }
+        // All at once is fast; one at a time does not go in circles.
+        let mended = if guess < GUESSES / 2 { wrong.len() } else { 1 };
+        for &k in wrong.iter().rev().take(mended) {
+            pushes[k] = !pushes[k];
+        }
+    }
+    for given in &mut given {
+        *given = given.max(0.0);
+    }
+    given
+}
+
+/// Guesses at which contacts push; a few are enough, by far.
+const GUESSES: usize = 200;
+
+/// The matrix `N M⁻¹ Nᵀ` by rows, of which most is zero.
+struct Rows(Vec<Vec<(usize, f64)>>);
+
+impl Rows {
+    fn of(contacts: &[Joined], inverse_mass: &[f64]) -> Rows {
+        let row = |contact: &Joined| {
+            let shared = contacts
+                .iter()
+                .map(|other| contact.shared(other, inverse_mass));
+            shared
+                .enumerate()
+                .filter(|&(_, shared)| shared != 0.0)
+                .collect()
+        };
+        Rows(contacts.iter().map(row).collect())
+    }
+
+    /// What is left of the wanted change after some impulses.
+    fn missing(&self, wanted: &[f64], given: &[f64]) -> Vec<f64> {
+        let done = |row: &Vec<(usize, f64)>| sum(row.iter().map(|&(l, x)| x * given[l]));
+        wanted
+            .iter()
+            .zip(&self.0)
+            .map(|(w, row)| w - done(row))
+            .collect()
+    }
+
+    /// The impulses of those that push by conjugate gradients (Hestenes, Stiefel 1952), which know no
+    /// order among contacts, and where there are many solutions find the one that shares best.
+    fn solve(&self, wanted: &[f64], pushes: &[bool]) -> Vec<f64> {
+        let only = |values: Vec<f64>| -> Vec<f64> {
+            let values = values.into_iter().zip(pushes);
+            values
+                .map(|(value, &pushes)| if pushes { value } else { 0.0 })
+                .collect()
+        };
+        let dot = |a: &[f64], b: &[f64]| sum(a.iter().zip(b).map(|(a, b)| a * b));
+        let mut given = vec![0.0; wanted.len()];
+        let mut best = (f64::INFINITY, given.clone());
+        // Rounding leaves a part of the last bits in each run, so that one more is worth it.
+        for _ in 0..3 {
+            let mut residual = only(self.missing(wanted, &given));
+            let mut size = dot(&residual, &residual);
+            if size < best.0 {
+                best = (size, given.clone());
+            }
+            let mut direction = residual.clone();
+            for _ in 0..wanted.len() {
+                let none = vec![0.0; wanted.len()];
+                let image: Vec<f64> = only(self.missing(&none, &direction));
+                let curvature = -dot(&direction, &image);
+                if size == 0.0 || curvature <= 0.0 {
+                    break;
+                }
+                let length = size / curvature;
+                for k in 0..given.len() {
+                    given[k] += length * direction[k];
+                    residual[k] += length * image[k];
+                }
+                let next = dot(&residual, &residual);
+                for k in 0..given.len() {
+                    direction[k] = residual[k] + next / size * direction[k];
+                }
+                size = next;
+                if size < best.0 {
+                    best = (size, given.clone());
+                }
+            }
+        }
+        best.1
+    }
+}
+
+/// A sum that does not depend on the order of its terms, and that only changes its sign with theirs.
+fn sum(terms: impl Iterator<Item = f64>) -> f64 {
+    let (mut up, mut down) = (Vec::new(), Vec::new());
+    for term in terms {
+        if term > 0.0 {
+            up.push(term);
+        } else if term < 0.0 {
+            down.push(-term);
+        }
+    }
+    let total = |mut terms: Vec<f64>| {
+        terms.sort_unstable_by(f64::total_cmp);
+        terms.into_iter().sum::<f64>()
+    };
+    total(up) - total(down)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn random(state: &mut u64) -> f64 {
+        *state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// Random bodies, most of them near the first few, so that contacts share bodies.
+    fn scene(seed: u64, bodies: usize, count: usize) -> (Vec<Joined>, Vec<f64>, Vec<DVec3>) {
+        let mut state = seed;
+        let vector = |state: &mut u64| DVec3::new(random(state), random(state), random(state));
+        let mut contacts = Vec::new();
+        while contacts.len() < count {
+            let pick = |state: &mut u64| ((random(state) + 1.0) * 0.5 * bodies as f64) as usize;
+            let (i, j) = (pick(&mut state), pick(&mut state));
+            if i != j {
+                let normal = vector(&mut state).normalize();
+                contacts.push(Joined {
+                    bodies: (i, j),
+                    normal,
+                });
+            }
+        }
+        let inverse: Vec<f64> = (0..bodies)
+            .map(|i| {
+                if i == 0 {
+                    0.0
+                } else {
+                    libm::exp(random(&mut state))
+                }
+            })
+            .collect();
+        let velocity = (0..bodies)
+            .map(|i| {
+                if i == 0 {
+                    DVec3::ZERO
+                } else {
+                    vector(&mut state)
+                }
+            })
+            .collect();
+        (contacts, inverse, velocity)
+    }
+
+    fn energy(inverse: &[f64], velocity: &[DVec3]) -> f64 {
+        let movable = inverse.iter().zip(velocity).filter(|&(&w, _)| w > 0.0);
+        movable.map(|(w, v)| 0.5 * v.length_squared() / w).sum()
+    }
+
+    #[test]
+    fn projections_close_nothing_and_only_push_what_stays_together() {
+        for seed in 0..300 {
+            let count = 1 + seed as usize % 9;
+            let (contacts, inverse, start) = scene(seed, 5, count);
+            let mut velocity = start.clone();
+            let given = project(&contacts, &inverse, &mut velocity);
+            for (contact, &given) in contacts.iter().zip(&given) {
+                let opening = contact.opening(&velocity);
+                assert!(given >= 0.0 && opening > -1e-12, "{seed}: {opening:e}");
+                assert!(
+                    given * opening < 1e-11 * (1.0 + given),
+                    "{seed}: {given:e} {opening:e}"
+                );
+            }
+            assert!(energy(&inverse, &velocity) <= energy(&inverse, &start) * (1.0 + 1e-14));
+        }
+    }
+
+    #[test]
+    fn reflections_keep_energy_and_momentum_and_end() {
+        for seed in 0..300 {
+            let count = 1 + seed as usize % 9;
+            let (contacts, mut inverse, start) = scene(seed, 6, count);
+            inverse[0] = 0.5;
+            let mut velocity = start.clone();
+            let given = reflect(&contacts, &inverse, &mut velocity, 1.0);
+            let change = energy(&inverse, &velocity) / energy(&inverse, &start) - 1.0;
+            assert!(change.abs() < 1e-13, "{seed}: {change:e}");
+            let momentum =
+                |v: &[DVec3]| v.iter().zip(&inverse).map(|(v, w)| *v / *w).sum::<DVec3>();
+            assert!((momentum(&velocity) - momentum(&start)).length() < 1e-12);
+            for (contact, given) in contacts.iter().zip(given) {
+                assert!(given >= 0.0 && !contact.closes(&velocity), "{seed}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_order_of_contacts_and_a_mirror_change_no_bit() {
+        for seed in 0..100 {
+            let (contacts, inverse, start) = scene(seed, 5, 2 + seed as usize % 7);
+            let mut velocity = start.clone();
+            reflect(&contacts, &inverse, &mut velocity, 1.0);
+            let mut reversed = contacts.clone();
+            reversed.reverse();
+            for contact in &mut reversed {
+                contact.bodies = (contact.bodies.1, contact.bodies.0);
+                contact.normal = -contact.normal;
+            }
+            let mut other = start.clone();
+            reflect(&reversed, &inverse, &mut other, 1.0);
+            assert_eq!(velocity, other, "{seed}: order");
+            let mirror = DVec3::new(-1.0, 1.0, 1.0);
+            for contact in &mut reversed {
+                contact.normal *= mirror;
+            }
+            let mut image: Vec<DVec3> = start.iter().map(|v| *v * mirror).collect();
+            reflect(&reversed, &inverse, &mut image, 1.0);
+            let back: Vec<DVec3> = image.iter().map(|v| *v * mirror).collect();
+            assert_eq!(velocity, back, "{seed}: mirror");
+        }
+    }
+
+    #[test]
+    fn a_ball_that_hits_two_sends_them_off_alike() {
+        let along = |y: f64| DVec3::new(libm::sqrt(0.75), y, 0.0);
+        let contacts = [0.5, -0.5].map(along).into_iter().zip(1..);
+        let contacts: Vec<Joined> = contacts
+            .map(|(normal, ball)| Joined {
+                bodies: (0, ball),
+                normal,
+            })
+            .collect();
+        let mut velocity = vec![DVec3::X, DVec3::ZERO, DVec3::ZERO];
+        reflect(&contacts, &[1.0; 3], &mut velocity, 1.0);
+        assert_eq!(velocity[1] * DVec3::new(1.0, -1.0, 1.0), velocity[2]);
+        assert!((velocity[0].x + 0.2).abs() < 1e-15 && velocity[0].y == 0.0);
+        assert!((velocity[1].x - 0.6).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,278 @@
+//! What becomes of bodies at an impact.
+//!
+//! They part with their restitution. Where forces press them together and they would be back
+//! within a small part of a step, they stay together instead: the contact *rests* for what is left
+//! of the step, and forces do not move one into the other. So a ball comes to rest after finitely
+//! many bounces, and a body on a floor stays where it is; the limit follows from the step and the
+//! forces. In the next step contact is found anew, or it is not.
+
+use alloc::{vec, vec::Vec};
+use core::mem;
+use glam::DVec3;
+
+use super::super::{World, stepping::Cause};
+use super::Event;
+use crate::impulse::{Joined, project, reflect};
+
+/// A flight of less than this part of a step is none.
+const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
+
+/// Two bodies that stay together, and the normal between them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rest {
+    pub(super) bodies: (usize, usize),
+    pub(super) normal: DVec3,
+}
+
+/// What a contact does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Answer {
+    Bounce,
+    Rest,
+    /// It neither closes nor is pressed: rounding has found it.
+    Part,
+}
+
+impl World {
+    /// Answers impacts that happen at the same time.
+    pub(super) fn answer(&mut self, group: &mut [Event], time: f64) -> Result<(), (usize, Cause)> {
+        let mut renewed = mem::take(&mut self.continuous.renewed);
+        renewed.clear();
+        for event in group.iter() {
+            self.renew(event.bodies, time, &mut renewed)?;
+        }
+        for event in group.iter_mut() {
+            event.answer = self.choose(event);
+        }
+        let chosen = |answer| group.iter().filter(move |event| event.answer == answer);
+        self.bounce_together(chosen(Answer::Bounce), time);
+        for event in chosen(Answer::Part) {
+            let grain = self.grain(event.bodies.0, event.bodies.1);
+            self.move_apart(event.bodies, 2.0 * grain * event.contact.normal);
+        }
+        let rests = chosen(Answer::Rest).map(|event| Rest {
+            bodies: event.bodies,
+            normal: event.contact.normal,
+        });
+        self.continuous.resting.extend(rests);
+        if !self.continuous.resting.is_empty() {
+            self.rest(group, time, &mut renewed)?;
+        }
+        renewed.sort_unstable();
+        renewed.dedup();
+        for &body in &renewed {
+            if let Some((bodies, _)) = self.unit(body)
+                && bodies.start != body
+            {
+                continue;
+            }
+            let bodies = self.unit(body).map_or(body..body + 1, |(bodies, _)| bodies);
+            self.finish_way(bodies)?;
+        }
+        for &body in &renewed {
+            if self.shape(body).is_some_and(|shape| shape.is_bounded()) {
+                let swept = self.swept(body);
+                self.continuous.broad.replace(swept);
+            }
+        }
+        for &body in &renewed {
+            self.seek_from(body, &renewed)?;
+        }
+        self.continuous.renewed = renewed;
+        Ok(())
+    }
+
+    /// Lets new ways start for two bodies and those coupled to them. Immovable ones stay on theirs.
+    fn renew(
+        &mut self,
+        (i, j): (usize, usize),
+        time: f64,
+        renewed: &mut Vec<usize>,
+    ) -> Result<(), (usize, Cause)> {
+        for body in [i, j] {
+            if self.mass[body].is_finite() {
+                renewed.extend(self.restart_at(body, time)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Velocity of a body at the time of an impact.
+    fn velocity_there(&self, body: usize) -> DVec3 {
+        self.continuous.start.velocity[body]
+    }
+
+    fn choose(&self, event: &Event) -> Answer {
+        let ((i, j), normal) = (event.bodies, event.contact.normal);
+        let closing = (self.velocity_there(i) - self.velocity_there(j)).dot(normal);
+        let pressed = (self.acceleration_there(i) - self.acceleration_there(j)).dot(normal);
+        let leaving = self.pair_restitution(i, j) * closing.max(0.0);
+        // Back after the time 2 v / a.
+        if pressed > 0.0 && 2.0 * leaving <= SHORTEST_FLIGHT * self.settings.dt * pressed {
+            Answer::Rest
+        } else if closing > 0.0 {
+            Answer::Bounce
+        } else {
+            Answer::Part
+        }
+    }
+
+    fn bounce_together<'a>(&mut self, events: impl Iterator<Item = &'a Event> + Clone, time: f64) {
+        let count = events.clone().count();
+        if count == 0 {
+            return;
+        }
+        if let (1, Some(event)) = (count, events.clone().next()) {
+            let restitution = self.pair_restitution(event.bodies.0, event.bodies.1);
+            self.exchange_there(event, restitution, time);
+            return;
+        }
+        let restitution = events
+            .clone()
+            .map(|event| self.pair_restitution(event.bodies.0, event.bodies.1))
+            .fold(1.0, f64::min);
+        let contacts = events.clone().map(|event| Rest {
+            bodies: event.bodies,
+            normal: event.contact.normal,
+        });
+        let (places, joined) = Places::of(contacts);
+        let mut velocity = places.take(&self.continuous.start.velocity);
+        let before = velocity.clone();
+        let given = reflect(
+            &joined,
+            &places.inverse_mass(self),
+            &mut velocity,
+            restitution,
+        );
+        places.put(&velocity, &mut self.continuous.start.velocity);
+        for ((event, joined), given) in events.zip(&joined).zip(given) {
+            let speeds = (-joined.opening(&before), joined.opening(&velocity));
+            let time = self.time() + time;
+            self.note_impact(event.bodies, &event.contact, given, speeds, time);
+        }
+    }
+
+    /// Exchanges the impulse of one impact.
+    fn exchange_there(&mut self, event: &Event, restitution: f64, time: f64) {
+        let (i, j) = event.bodies;
+        let before = (self.velocity_there(i), self.velocity_there(j));
+        let time = self.time() + time;
+        let after = self.exchange((i, j), &event.contact, before, restitution, time);
+        let velocity = &mut self.continuous.start.velocity;
+        (velocity[i], velocity[j]) = after;
+    }
+
+    /// Lets bodies in resting contact move on together: those of some impacts, and all that rest on
+    /// them or that they rest on.
+    fn rest(
+        &mut self,
+        group: &[Event],
+        time: f64,
+        renewed: &mut Vec<usize>,
+    ) -> Result<(), (usize, Cause)> {
+        let all = mem::take(&mut self.continuous.resting);
+        let reached = self.reached(group.iter().map(|event| event.bodies), &all);
+        let touched = |rest: &Rest| reached[rest.bodies.0] || reached[rest.bodies.1];
+        let (mut here, elsewhere): (Vec<Rest>, Vec<Rest>) = all.into_iter().partition(touched);
+        let bodies = (0..self.len()).filter(|&body| reached[body]);
+        for body in bodies.clone() {
+            self.renew((body, body), time, renewed)?;
+        }
+
+        // No contact closes any more; those that open are contacts no longer.
+        let (places, joined) = Places::of(here.iter().copied());
+        let inverse_mass = places.inverse_mass(self);
+        let mut velocity = places.take(&self.continuous.start.velocity);
+        let before = velocity.clone();
+        let given = project(&joined, &inverse_mass, &mut velocity);
+        places.put(&velocity, &mut self.continuous.start.velocity);
+        for ((rest, joined), given) in here.iter().zip(&joined).zip(given) {
+            let event = group.iter().find(|event| event.bodies == rest.bodies);
+            if let Some(event) = event.filter(|_| joined.closes(&before)) {
+                let speeds = (-joined.opening(&before), joined.opening(&velocity));
+                let time = self.time() + time;
+                self.note_impact(event.bodies, &event.contact, given, speeds, time);
+            }
+        }
+        let mut joined = joined.into_iter();
+        here.retain(|_| joined.next().is_some_and(|joined| !joined.opens(&velocity)));
+
+        // Nor do forces close them.
+        for body in bodies {
+            self.continuous.reaction[body] = DVec3::ZERO;
+        }
+        let (places, joined) = Places::of(here.iter().copied());
+        let mut acceleration: Vec<DVec3> = Vec::with_capacity(places.bodies.len());
+        for &body in &places.bodies {
+            acceleration.push(self.acceleration_there(body));
+        }
+        let free = acceleration.clone();
+        project(&joined, &places.inverse_mass(self), &mut acceleration);
+        for (&body, (pushed, free)) in places.bodies.iter().zip(acceleration.iter().zip(free)) {
+            self.continuous.reaction[body] = pushed - free;
+        }
+        here.extend(elsewhere);
+        self.continuous.resting = here;
+        Ok(())
+    }
+
+    /// The movable bodies of some pairs, and all that resting contacts tie to them.
+    fn reached(&self, pairs: impl Iterator<Item = (usize, usize)>, resting: &[Rest]) -> Vec<bool> {
+        let is_movable = |body: usize| self.mass[body].is_finite();
+        let mut reached = vec![false; self.len()];
+        for body in pairs.flat_map(|(i, j)| [i, j]) {
+            reached[body] = is_movable(body);
+        }
+        let mut grows = true;
+        while grows {
+            grows = false;
+            for &Rest { bodies: (i, j), .. } in resting {
+                if (reached[i] || reached[j]) && is_movable(i) && is_movable(j) {
+                    grows |= !(reached[i] && reached[j]);
+                    (reached[i], reached[j]) = (true, true);
+                }
+            }
+        }
+        reached
+    }
+}
+
+/// The bodies of some contacts, once each, in order.
+struct Places {
+    bodies: Vec<usize>,
+}
+
+impl Places {
+    fn of(contacts: impl Iterator<Item = Rest> + Clone) -> (Places, Vec<Joined>) {
+        let mut bodies: Vec<usize> = contacts
+            .clone()
+            .flat_map(|contact| [contact.bodies.0, contact.bodies.1])
+            .collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let place = |body: usize| bodies.partition_point(|&other| other < body);
+        let joined = contacts.map(|contact| Joined {
+            bodies: (place(contact.bodies.0), place(contact.bodies.1)),
+            normal: contact.normal,
+        });
+        let joined = joined.collect();
+        (Places { bodies }, joined)
+    }
+
+    fn inverse_mass(&self, world: &World) -> Vec<f64> {
+        self.bodies
+            .iter()
+            .map(|&body| 1.0 / world.mass[body])
+            .collect()
+    }
+
+    fn take(&self, column: &[DVec3]) -> Vec<DVec3> {
+        self.bodies.iter().map(|&body| column[body]).collect()
+    }
+
+    fn put(&self, values: &[DVec3], column: &mut [DVec3]) {
+        for (&body, &value) in self.bodies.iter().zip(values) {
+            column[body] = value;
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! When two bodies on their ways have their next impact.
+//!
+//! Geometry knows straight ways. A way that bends is cut where its chord would depart from it by
+//! more than [`FLATNESS`] of the smaller body; what is shallower may be missed for the rest of the
+//! step, and only that. Where a chord has an impact, the way is cut closely before and after it and
+//! searched again: the departure falls with the square of the length, so that after a few rounds it
+//! is lost in the rounding, and the impact is one of the way itself.
+
+use glam::DVec3;
+
+use super::super::{World, stepping::Cause};
+use super::{Event, respond::Answer};
+use crate::{
+    collide::{Contact, first_contact, snap},
+    shape::Shape,
+};
+
+/// Departure of a chord from its way that is looked past, in largest half extents of the smaller
+/// body.
+const FLATNESS: f64 = 1e-3;
+/// Chords in a way at most. A point has no extent, and is given so many.
+const MOST_CHORDS: f64 = 64.0;
+/// Halvings after which a time is as good as it gets.
+const DEEPEST: u32 = 64;
+/// Rounding of placed vertices, in units in the last place of the largest coordinate about, that
+/// two bodies are kept apart by at an impact.
+const ULPS: f64 = 4.0;
+
+/// A pair of bodies in search of its next impact.
+#[derive(Clone, Copy)]
+struct Pair {
+    i: usize,
+    j: usize,
+    /// Departure of a chord from the way, m, per square of its length, s².
+    bend: f64,
+    /// What rounding may be, m.
+    grain: f64,
+}
+
+impl World {
+    /// The next impact of two bodies within the step, and where they are just before they touch.
+    pub(super) fn seek(&mut self, i: usize, j: usize) -> Result<Option<Event>, (usize, Cause)> {
+        self.need_bvh(i);
+        self.need_bvh(j);
+        let since = &self.continuous.since;
+        let (start, end) = (since[i].max(since[j]), self.settings.dt);
+        let pair = Pair {
+            i,
+            j,
+            bend: self.bend(i, j),
+            grain: self.grain(i, j),
+        };
+        let size = self.half_extent(i).min(self.half_extent(j));
+        let length = end - start;
+        let ratio = pair.bend * length * length / (FLATNESS * size);
+        // 0/0 for points on straight ways.
+        let chords = libm::ceil(libm::sqrt(ratio)).clamp(1.0, MOST_CHORDS);
+        let chords = if pair.bend > 0.0 { chords } else { 1.0 };
+        let mut from = (start, self.offset_at(pair, start)?);
+        let mut chord = 1.0;
+        while chord <= chords {
+            let time = if chord == chords {
+                end
+            } else {
+                start + length * (chord / chords)
+            };
+            let to = (time, self.offset_at(pair, time)?);
+            if let Some(event) = self.seek_on_chord(pair, from, to, 0)? {
+                return Ok(Some(event));
+            }
+            (from, chord) = (to, chord + 1.0);
+        }
+        Ok(None)
+    }
+
+    /// The first impact on a part of the way, given as times and offsets of its ends.
+    fn seek_on_chord(
+        &mut self,
+        pair: Pair,
+        from: (f64, DVec3),
+        to: (f64, DVec3),
+        depth: u32,
+    ) -> Result<Option<Event>, (usize, Cause)> {
+        let motion = to.1 - from.1;
+        let forms = self.form(pair.i).zip(self.form(pair.j));
+        let found = forms
+            .and_then(|(first, second)| first_contact(first, second, snap(from.1), snap(motion)));
+        let Some(contact) = found else {
+            return Ok(None);
+        };
+        let length = to.0 - from.0;
+        let fall = -contact.normal.dot(motion);
+        let departure = pair.bend * length * length;
+        let is_straight = departure <= pair.grain || depth == DEEPEST;
+        let is_there = contact.time * fall <= 4.0 * pair.grain
+            && from.0 == self.start_of(pair)
+            && self.is_closing(pair, contact.normal);
+        if is_straight || is_there {
+            let time = if is_there { 0.0 } else { contact.time };
+            return self.settle(pair, from, (length, fall), Contact { time, ..contact });
+        }
+        // Within this of the chord's impact lies the way's, unless it slips past.
+        let time = from.0 + contact.time * length;
+        let about = 2.0 * departure * length / fall;
+        let (mut before, mut after) = (time - about, time + about);
+        if about >= 0.25 * length {
+            (before, after) = (from.0, from.0 + 0.5 * length);
+        }
+        let mut from = from;
+        for end in [before.max(from.0), after.min(to.0), to.0] {
+            if end <= from.0 {
+                continue;
+            }
+            let part = match end == to.0 {
+                true => to,
+                false => (end, self.offset_at(pair, end)?),
+            };
+            if let Some(event) = self.seek_on_chord(pair, from, part, depth + 1)? {
+                return Ok(Some(event));
+            }
+            from = part;
+        }
+        Ok(None)
+    }
+
+    /// The last time before a contact, but for rounding, at which two bodies are apart.
+    fn settle(
+        &mut self,
+        pair: Pair,
+        from: (f64, DVec3),
+        (length, fall): (f64, f64),
+        contact: Contact,
+    ) -> Result<Option<Event>, (usize, Cause)> {
+        let Pair { i, j, grain, .. } = pair;
+        let touching = from.0 + contact.time * length;
+        let mut back = grain * length / fall;
+        let mut time = touching;
+        while time > from.0 {
+            time = (touching - back).max(from.0);
+            back *= 2.0;
+            let offset = self.offset_at(pair, time)?;
+            if !self.meet_at(i, j, offset) {
+                break;
+            }
+        }
+        let (place, _) = self.motion_at(i, time)?;
+        let ways = &self.continuous;
+        Ok(Some(Event {
+            time,
+            bodies: (i, j),
+            versions: (ways.version[i], ways.version[j]),
+            answer: Answer::Bounce,
+            contact: Contact {
+                point: place + contact.point,
+                ..contact
+            },
+        }))
+    }
+
+    fn offset_at(&mut self, pair: Pair, time: f64) -> Result<DVec3, (usize, Cause)> {
+        let (first, second) = (self.motion_at(pair.i, time)?, self.motion_at(pair.j, time)?);
+        Ok(second.0 - first.0)
+    }
+
+    fn start_of(&self, pair: Pair) -> f64 {
+        self.continuous.since[pair.i].max(self.continuous.since[pair.j])
+    }
+
+    /// Whether two bodies at the start of their common way do not part along a normal.
+    fn is_closing(&mut self, pair: Pair, normal: DVec3) -> bool {
+        let start = self.start_of(pair);
+        let velocities = self
+            .motion_at(pair.i, start)
+            .ok()
+            .zip(self.motion_at(pair.j, start).ok());
+        velocities.is_some_and(|((_, v1), (_, v2))| {
+            (v2 - v1).dot(normal) <= 8.0 * f64::EPSILON * (v1.length() + v2.length())
+        })
+    }
+
+    /// What the rounding of positions and placed vertices may be, m.
+    pub(super) fn grain(&self, i: usize, j: usize) -> f64 {
+        let at = &self.current.position;
+        let far = |body: usize| at[body].abs().max_element() + self.farthest(body);
+        ULPS * f64::EPSILON * (far(i) + far(j))
+    }
+
+    /// Largest coordinate of a body's shape about its origin, m.
+    fn farthest(&self, body: usize) -> f64 {
+        match self.shape(body) {
+            Some(Shape::Mesh(mesh)) => {
+                let bounds = mesh.bounds();
+                f64::from(bounds.min.abs().max(bounds.max.abs()).max_element())
+            }
+            Some(&Shape::Sphere { radius }) => radius,
+            Some(Shape::HalfSpace { .. }) | None => 0.0,
+        }
+    }
+
+    /// Largest half extent of a body's shape, m.
+    fn half_extent(&self, body: usize) -> f64 {
+        match self.shape(body) {
+            Some(Shape::Mesh(mesh)) => mesh.bounds().half_extent().max_element(),
+            Some(&Shape::Sphere { radius }) => radius,
+            Some(Shape::HalfSpace { .. }) => f64::INFINITY,
+            None => 0.0,
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! Where bodies are at any time within a step.
+//!
+//! A *way* is the motion of a body from its last impact in the step, or from the step's start, to
+//! the step's end, as its method makes it: the state at any time in between is that after a step of
+//! the method of just that length. For a body under a constant acceleration that is a parabola, and
+//! free; for others each question is a step of the method, of all bodies that are coupled.
+
+use alloc::vec;
+use core::{mem, ops::Range};
+use glam::DVec3;
+
+use super::super::{World, error, stepping::Cause, system::Part};
+use crate::System;
+
+impl World {
+    /// Lets every way start where the step does. The ends are in the current state already.
+    pub(super) fn start_ways(&mut self) {
+        let n = self.len();
+        let sections = self.plan.as_ref().map_or(0, |plan| plan.sections.len());
+        self.continuous.is_free = sections == 0 && self.settings.method.fall.is_some();
+        let ways = &mut self.continuous;
+        ways.start.clone_from(&self.previous);
+        ways.since.clear();
+        ways.since.resize(n, 0.0);
+        ways.version.clear();
+        ways.version.resize(n, 0);
+        ways.reaction.clear();
+        ways.reaction.resize(n, DVec3::ZERO);
+    }
+
+    /// The bodies that must be stepped with one, and whether they are coupled; `None` where its
+    /// way is a parabola.
+    pub(super) fn unit(&self, body: usize) -> Option<(Range<usize>, bool)> {
+        if self.continuous.is_free {
+            return None;
+        }
+        let sections = self.plan.as_ref().map_or(&[][..], |plan| &plan.sections);
+        let section = sections.get(sections.partition_point(|s| s.bodies.end <= body));
+        match section.filter(|section| section.bodies.contains(&body)) {
+            Some(section) if section.is_coupled => Some((section.bodies.clone(), true)),
+            None if self.settings.method.fall.is_some() => None,
+            _ => Some((body..body + 1, false)),
+        }
+    }
+
+    /// Position and velocity of a body at a time from the start of its way to the end of the step,
+    /// s from the step's start.
+    pub(super) fn motion_at(
+        &mut self,
+        body: usize,
+        time: f64,
+    ) -> Result<(DVec3, DVec3), (usize, Cause)> {
+        let ways = &self.continuous;
+        let (x, v) = (ways.start.position[body], ways.start.velocity[body]);
+        let h = time - ways.since[body];
+        if h == 0.0 {
+            return Ok((x, v));
+        }
+        if time == self.settings.dt {
+            return Ok((self.current.position[body], self.current.velocity[body]));
+        }
+        let Some((bodies, is_coupled)) = self.unit(body) else {
+            let fall = self.settings.method.fall.unwrap_or(0.0);
+            let a = self.way_acceleration(body);
+            return Ok((x + h * (v + fall * h * a), v + h * a));
+        };
+        let mut probe = mem::take(&mut self.continuous.probe);
+        let moved = self.step_unit(bodies, is_coupled, time, &mut probe);
+        let motion = moved.map(|()| (probe.position[body], probe.velocity[body]));
+        self.continuous.probe = probe;
+        motion
+    }
+
+    /// Steps coupled bodies, or one, from the start of their way to a time.
+    fn step_unit(
+        &mut self,
+        bodies: Range<usize>,
+        is_coupled: bool,
+        time: f64,
+        to: &mut super::State,
+    ) -> Result<(), (usize, Cause)> {
+        to.position.resize(self.len(), DVec3::ZERO);
+        to.velocity.resize(self.len(), DVec3::ZERO);
+        let since = self.continuous.since[bodies.start];
+        let plan = self.plan.take().unwrap_or_default();
+        let start = mem::take(&mut self.continuous.start);
+        let reaction = mem::take(&mut self.continuous.reaction);
+        // The method sees the reactions of resting contacts as part of the constant forces.
+        for body in bodies.clone() {
+            self.acceleration[body] += reaction[body];
+        }
+        let span = (since, time - since);
+        let moved = self.block(&plan, bodies.clone(), is_coupled, (&start, to), span);
+        for body in bodies {
+            self.acceleration[body] = self.constant_acceleration(body);
+        }
+        self.continuous.start = start;
+        self.continuous.reaction = reaction;
+        self.plan = Some(plan);
+        moved
+    }
+
+    /// Lets the way of a body, and of those coupled to it, start anew at a time, where they are
+    /// then, and tells which bodies those are.
+    pub(super) fn restart_at(
+        &mut self,
+        body: usize,
+        time: f64,
+    ) -> Result<Range<usize>, (usize, Cause)> {
+        let unit = self.unit(body);
+        if self.continuous.since[body] == time {
+            return Ok(unit.map_or(body..body + 1, |(bodies, _)| bodies));
+        }
+        let Some((bodies, is_coupled)) = unit else {
+            let (x, v) = self.motion_at(body, time)?;
+            let ways = &mut self.continuous;
+            (ways.start.position[body], ways.start.velocity[body]) = (x, v);
+            ways.since[body] = time;
+            return Ok(body..body + 1);
+        };
+        let mut there = mem::take(&mut self.continuous.probe);
+        let moved = self.step_unit(bodies.clone(), is_coupled, time, &mut there);
+        let ways = &mut self.continuous;
+        if moved.is_ok() {
+            ways.start.position[bodies.clone()].copy_from_slice(&there.position[bodies.clone()]);
+            ways.start.velocity[bodies.clone()].copy_from_slice(&there.velocity[bodies.clone()]);
+            ways.since[bodies.clone()].fill(time);
+        }
+        ways.probe = there;
+        moved.map(|()| bodies)
+    }
+
+    /// Moves bodies that are stepped together from the start of their way to the end of the step.
+    pub(super) fn finish_way(&mut self, bodies: Range<usize>) -> Result<(), (usize, Cause)> {
+        let dt = self.settings.dt;
+        match self.unit(bodies.start) {
+            None => {
+                let body = bodies.start;
+                let fall = self.settings.method.fall.unwrap_or(0.0);
+                let ways = &self.continuous;
+                let (x, v) = (ways.start.position[body], ways.start.velocity[body]);
+                let (h, a) = (dt - ways.since[body], self.way_acceleration(body));
+                self.current.position[body] = x + h * (v + fall * h * a);
+                self.current.velocity[body] = v + h * a;
+            }
+            Some((bodies, is_coupled)) => {
+                let mut current = mem::take(&mut self.current);
+                let moved = self.step_unit(bodies, is_coupled, dt, &mut current);
+                self.current = current;
+                moved?;
+            }
+        }
+        for body in bodies.clone() {
+            self.continuous.version[body] += 1;
+        }
+        match self.current.beyond(bodies.clone(), error::LARGEST) {
+            Some(first) => Err((bodies.start + first, Cause::Range)),
+            None => Ok(()),
+        }
+    }
+
+    /// What forces and resting contacts do to a body on a parabola, m/s².
+    fn way_acceleration(&self, body: usize) -> DVec3 {
+        self.acceleration[body] + self.continuous.reaction[body]
+    }
+
+    /// What forces and resting contacts do to a body where its way starts, m/s².
+    pub(super) fn acceleration_there(&self, body: usize) -> DVec3 {
+        let Some((bodies, is_coupled)) = self.unit(body) else {
+            return self.way_acceleration(body);
+        };
+        let Some(plan) = &self.plan else {
+            return self.way_acceleration(body);
+        };
+        let ways = &self.continuous;
+        let part = Part {
+            forces: &self.forces,
+            plan,
+            is_coupled,
+            mass: &self.mass[bodies.clone()],
+            acceleration: &self.acceleration[bodies.clone()],
+            bodies: bodies.clone(),
+        };
+        let time = self.time() + ways.since[body];
+        let mut all = vec![DVec3::ZERO; bodies.len()];
+        let (x, v) = (&ways.start.position, &ways.start.velocity);
+        part.accelerations(time, &x[bodies.clone()], &v[bodies.clone()], &mut all);
+        all[body - bodies.start] + ways.reaction[body]
+    }
+
+    /// How far a body's way departs from its chord, at most, m, by component.
+    pub(super) fn bulge(&self, body: usize) -> DVec3 {
+        let ways = &self.continuous;
+        let h = self.settings.dt - ways.since[body];
+        if self.unit(body).is_none() {
+            let fall = self.settings.method.fall.unwrap_or(0.0);
+            return (0.25 * fall * h * h) * self.way_acceleration(body).abs();
+        }
+        // Of a parabola the sum is four times the bulge.
+        let chord = self.current.position[body] - ways.start.position[body];
+        let before = chord - h * ways.start.velocity[body];
+        let after = chord - h * self.current.velocity[body];
+        0.25 * (before.abs() + after.abs())
+    }
+
+    /// How far the relative way of two bodies departs from a chord, m, per square of its length, s².
+    pub(super) fn bend(&self, i: usize, j: usize) -> f64 {
+        if self.unit(i).is_none() && self.unit(j).is_none() {
+            let fall = self.settings.method.fall.unwrap_or(0.0);
+            let relative = self.way_acceleration(j) - self.way_acceleration(i);
+            return 0.25 * fall * relative.length();
+        }
+        let of = |body: usize| {
+            let h = self.settings.dt - self.continuous.since[body];
+            let bulge = self.bulge(body).length();
+            if bulge == 0.0 { 0.0 } else { bulge / (h * h) }
+        };
+        of(i) + of(j)
+    }
+}
