@@ -13,7 +13,11 @@ use alloc::vec::Vec;
 use core::ops::ControlFlow;
 use glam::DVec3;
 
-use super::{Feature, Touch, ball, touch, tree};
+use super::{
+    Feature, Touch,
+    ball::{BallTouch, ball_meets, ball_touch},
+    touch, tree,
+};
 use crate::bvh::Bvh;
 
 /// A shape about its origin.
@@ -50,11 +54,22 @@ impl From<Touch> for Contact {
     }
 }
 
+impl From<BallTouch> for Contact {
+    fn from(touch: BallTouch) -> Contact {
+        Contact {
+            time: touch.time,
+            point: touch.point,
+            normal: touch.normal,
+            feature: None,
+        }
+    }
+}
+
 /// Whether two shapes share a point, the second one displaced by `offset`, m.
 pub(crate) fn meet(first: Form<'_>, second: Form<'_>, offset: DVec3) -> bool {
     match (first, second) {
         (Form::Mesh(first), Form::Mesh(second)) => tree::intersect(first, second, offset),
-        (Form::Mesh(mesh), Form::Sphere(radius)) => ball::meets(mesh, offset, radius),
+        (Form::Mesh(mesh), Form::Sphere(radius)) => ball_meets(mesh, offset, radius),
         (Form::Sphere(first), Form::Sphere(second)) => {
             dot(offset, offset) <= (first + second) * (first + second)
         }
@@ -76,7 +91,9 @@ pub(crate) fn first_contact(
         (Form::Mesh(first), Form::Mesh(second)) => {
             touch::first_touch(first, second, offset, motion).map(Contact::from)
         }
-        (Form::Mesh(mesh), Form::Sphere(radius)) => ball::first_touch(mesh, offset, radius, motion),
+        (Form::Mesh(mesh), Form::Sphere(radius)) => {
+            ball_touch(mesh, offset, radius, motion).map(Contact::from)
+        }
         (Form::Sphere(first), Form::Sphere(second)) => spheres(first, second, offset, motion),
         (Form::HalfSpace(_), Form::HalfSpace(_)) => None,
         (Form::HalfSpace(normal), other) => plane(normal, other, offset, motion),
@@ -109,8 +126,18 @@ pub(crate) fn parting_normals(first: Form<'_>, second: Form<'_>, offset: DVec3) 
             });
             normals
         }
-        (Form::Mesh(mesh), Form::Sphere(radius)) => ball::parting_normal(mesh, offset, radius),
         (Form::HalfSpace(normal), _) => alloc::vec![normal],
+        (Form::Mesh(mesh), Form::Sphere(radius)) => {
+            // Out of the face that it is nearest to: towards where it came from.
+            let contact = DVec3::AXES
+                .iter()
+                .flat_map(|&axis| [axis, -axis])
+                .filter_map(|way| {
+                    let touch = ball_touch(mesh, offset, radius, 1e-9 * radius * way)?;
+                    Some(touch.normal)
+                });
+            contact.collect()
+        }
         (Form::Sphere(_), Form::Sphere(_)) => offset.try_normalize().into_iter().collect(),
         (first, second) => {
             let mut normals = parting_normals(second, first, -offset);

@@ -6,17 +6,22 @@
 mod apart;
 mod ball;
 mod broad;
+mod expansion;
 mod form;
 mod hit;
+pub mod moving;
 pub mod naive;
 mod pairs;
 mod placement;
 mod plane;
 pub mod predicates;
 mod solid;
+mod sweep;
 pub mod touch;
 pub mod tree;
+mod triple;
 
+pub use ball::{BallTouch, ball_meets, ball_touch};
 pub(crate) use broad::{Broad, Swept};
 pub(crate) use form::{Contact, Form, first_contact, meet, parting_normals};
 pub use hit::{Hit, Side};

@@ -95,8 +95,13 @@ impl Placement {
     /// Whether it is a place at all: offsets that are no numbers, or beyond 1e100 m, farther than
     /// any mesh reaches, leave meshes apart.
     pub(super) fn is_in_range(&self) -> bool {
-        self.offset.abs().cmple(DVec3::splat(FARTHEST)).all()
+        is_in_range(self.offset)
     }
+}
+
+/// Whether a point or vector is where exact decisions neither overflow nor fail; no number is not.
+pub(super) fn is_in_range(v: DVec3) -> bool {
+    v.abs().cmple(DVec3::splat(FARTHEST)).all()
 }
 
 /// Beyond this, m, exact decisions would overflow.

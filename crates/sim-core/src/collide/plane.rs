@@ -1,45 +1,103 @@
-//! A quick look at which side of a triangle's plane points are.
+//! Cross and triple products in f64 with bounds of their errors, and a quick look at which side of
+//! a triangle's plane points are.
 
 use core::cmp::Ordering;
 use glam::DVec3;
 
-/// The plane of a triangle, with what bounds the rounding errors of heights above it.
+/// A number and how far it may be off.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Estimate {
+    pub(super) value: f64,
+    pub(super) error: f64,
+}
+
+impl Estimate {
+    /// The sign, where the error leaves no doubt. Without products there is no error.
+    #[inline(always)]
+    pub(super) fn sign(self) -> Option<Ordering> {
+        if self.value > self.error {
+            Some(Ordering::Greater)
+        } else if self.value < -self.error {
+            Some(Ordering::Less)
+        } else if self.error == 0.0 {
+            Some(Ordering::Equal)
+        } else {
+            None
+        }
+    }
+
+    /// Which of two has the greater magnitude, where the errors leave no doubt.
+    #[inline(always)]
+    pub(super) fn magnitude_cmp(self, other: Estimate) -> Option<Ordering> {
+        let between = self.value.abs() - other.value.abs();
+        // Doubled for the rounding of the difference and of the sum.
+        if between.abs() > 2.0 * (self.error + other.error) {
+            between.partial_cmp(&0.0)
+        } else {
+            None
+        }
+    }
+}
+
+/// A cross product, with what bounds the rounding errors of products with it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cross {
+    value: DVec3,
+    /// The same with all products taken as positive.
+    size: DVec3,
+}
+
+impl Cross {
+    /// Of two vectors, each a rounded difference or exact.
+    #[inline(always)]
+    pub(super) fn of(u: DVec3, v: DVec3) -> Cross {
+        let products = DVec3::new(u.y * v.z, u.z * v.x, u.x * v.y);
+        let others = DVec3::new(u.z * v.y, u.x * v.z, u.y * v.x);
+        Cross {
+            value: products - others,
+            size: products.abs() + others.abs(),
+        }
+    }
+
+    /// Its product with a third such vector: the determinant of the three without their rounding.
+    ///
+    /// The bound is that of the first stage of Shewchuk's orient3d (1997, sec. 4.3),
+    /// `(7 + 56 u) u` times the permanent with `u = 2^-53`; the determinant's rows are rounded
+    /// differences.
+    #[inline(always)]
+    pub(super) fn dot(&self, w: DVec3) -> Estimate {
+        const U: f64 = f64::EPSILON / 2.0;
+        const BOUND: f64 = (7.0 + 56.0 * U) * U;
+        Estimate {
+            value: self.value.dot(w),
+            error: BOUND * self.size.dot(w.abs()),
+        }
+    }
+}
+
+/// The plane of a triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Plane {
     corner: DVec3,
-    normal: DVec3,
-    /// The normal with all products taken as positive.
-    size: DVec3,
+    normal: Cross,
 }
 
 impl Plane {
     #[inline(always)]
     pub(super) fn of([a, b, c]: [DVec3; 3]) -> Plane {
-        let (u, v) = (b - a, c - a);
-        let products = DVec3::new(u.y * v.z, u.z * v.x, u.x * v.y);
-        let others = DVec3::new(u.z * v.y, u.x * v.z, u.y * v.x);
         Plane {
             corner: a,
-            normal: products - others,
-            size: products.abs() + others.abs(),
+            normal: Cross::of(b - a, c - a),
         }
     }
 
     /// The side of a point, `Equal` if rounding leaves it open.
-    ///
-    /// The bound is that of the first stage of Shewchuk's orient3d (1997, sec. 4.3),
-    /// `(7 + 56 u) u` times the permanent with `u = 2^-53`; the determinant's rows are the
-    /// differences from a corner.
     #[inline(always)]
     pub(super) fn side(&self, p: DVec3) -> Ordering {
-        const U: f64 = f64::EPSILON / 2.0;
-        const BOUND: f64 = (7.0 + 56.0 * U) * U;
-        let w = p - self.corner;
-        let height = self.normal.dot(w);
-        let error = BOUND * self.size.dot(w.abs());
-        if height > error {
+        let Estimate { value, error } = self.normal.dot(p - self.corner);
+        if value > error {
             Ordering::Greater
-        } else if height < -error {
+        } else if value < -error {
             Ordering::Less
         } else {
             Ordering::Equal

@@ -21,8 +21,13 @@ fn body(mesh: &Arc<Mesh>, mass: f64, position: DVec3, velocity: DVec3) -> Body {
     }
 }
 
+/// The discrete mode of the course.
 fn world(bodies: impl IntoIterator<Item = Body>) -> World {
-    let mut world = World::new(Settings::default()).unwrap();
+    let settings = Settings {
+        collision: Collision::Bvh,
+        ..Settings::default()
+    };
+    let mut world = World::new(settings).unwrap();
     for body in bodies {
         world.add(body).unwrap();
     }

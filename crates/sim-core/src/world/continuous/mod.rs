@@ -67,6 +67,8 @@ struct Event {
     contact: Contact,
     /// What becomes of it, once its time has come.
     answer: Answer,
+    /// Speed at which forces would close it in a step, m/s.
+    pressure: f64,
 }
 
 impl Ord for Event {

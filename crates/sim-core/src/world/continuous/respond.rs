@@ -17,6 +17,10 @@ use crate::impulse::{Joined, project, reflect};
 /// A flight of less than this part of a step is none.
 const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
 
+/// Part of the speed that forces give in a step below which bodies that come to rest on each other
+/// have rested before, and it is no impact.
+const SLIGHTEST: f64 = 1e-6;
+
 /// Two bodies that stay together, and the normal between them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rest {
@@ -42,7 +46,7 @@ impl World {
             self.renew(event.bodies, time, &mut renewed)?;
         }
         for event in group.iter_mut() {
-            event.answer = self.choose(event);
+            self.choose(event);
         }
         let chosen = |answer| group.iter().filter(move |event| event.answer == answer);
         self.bounce_together(chosen(Answer::Bounce), time);
@@ -102,19 +106,20 @@ impl World {
         self.continuous.start.velocity[body]
     }
 
-    fn choose(&self, event: &Event) -> Answer {
+    fn choose(&self, event: &mut Event) {
         let ((i, j), normal) = (event.bodies, event.contact.normal);
         let closing = (self.velocity_there(i) - self.velocity_there(j)).dot(normal);
         let pressed = (self.acceleration_there(i) - self.acceleration_there(j)).dot(normal);
         let leaving = self.pair_restitution(i, j) * closing.max(0.0);
+        event.pressure = self.settings.dt * pressed;
         // Back after the time 2 v / a.
-        if pressed > 0.0 && 2.0 * leaving <= SHORTEST_FLIGHT * self.settings.dt * pressed {
+        event.answer = if pressed > 0.0 && 2.0 * leaving <= SHORTEST_FLIGHT * event.pressure {
             Answer::Rest
         } else if closing > 0.0 {
             Answer::Bounce
         } else {
             Answer::Part
-        }
+        };
     }
 
     fn bounce_together<'a>(&mut self, events: impl Iterator<Item = &'a Event> + Clone, time: f64) {
@@ -187,9 +192,9 @@ impl World {
         let given = project(&joined, &inverse_mass, &mut velocity);
         places.put(&velocity, &mut self.continuous.start.velocity);
         for ((rest, joined), given) in here.iter().zip(&joined).zip(given) {
+            let speeds = (-joined.opening(&before), joined.opening(&velocity));
             let event = group.iter().find(|event| event.bodies == rest.bodies);
-            if let Some(event) = event.filter(|_| joined.closes(&before)) {
-                let speeds = (-joined.opening(&before), joined.opening(&velocity));
+            if let Some(event) = event.filter(|event| speeds.0 > SLIGHTEST * event.pressure) {
                 let time = self.time() + time;
                 self.note_impact(event.bodies, &event.contact, given, speeds, time);
             }

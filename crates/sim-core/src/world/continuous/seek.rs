@@ -150,6 +150,7 @@ impl World {
             bodies: (i, j),
             versions: (ways.version[i], ways.version[j]),
             answer: Answer::Bounce,
+            pressure: 0.0,
             contact: Contact {
                 point: place + contact.point,
                 ..contact

@@ -1,0 +1,158 @@
+//! When moving points and edges meet triangles and edges: exact decisions, times rounded down.
+//!
+//! The motion is a translation from time 0 to time 1, so every time of contact is a quotient of two
+//! determinants of differences of points (see [`super::touch`]), and whether features meet is
+//! decided by signs of such determinants: in f64 where a bound of the error allows it, else in exact
+//! arithmetic (Shewchuk 1997). Sets are closed, so touching is meeting, and features that touch at
+//! the start meet at time 0. Every time is the greatest f64 that is not above the exact one, but for
+//! coordinates so large or small that exact products leave the range of f64, where it is at most
+//! eight units in the last place less.
+//!
+//! Coordinates must lie within ±1e100 and be multiples of 2^-340, as in [`super::predicates`].
+//! Components of the motion below 2^-250 count as zero.
+
+use core::cmp::Ordering;
+use glam::DVec3;
+
+use super::{
+    predicates::{orient3d, segment_meets_triangle, segments_meet},
+    snap,
+    triple::{Difference, Time, sign},
+};
+
+/// When a point that moves by `motion` first meets a closed triangle at rest, which may be a segment
+/// or a point; `None` if it does not from time 0 to 1.
+///
+/// A point that slides in the triangle's plane meets it at once if it is inside, else where it
+/// first meets an edge.
+pub fn point_meets_triangle(p: DVec3, motion: DVec3, triangle: [DVec3; 3]) -> Option<f64> {
+    let (motion, [a, b, c]) = (snap(motion), triangle);
+    let time = Time {
+        u: Difference(b, a),
+        v: Difference(c, a),
+        gap: Difference(a, p),
+        motion,
+    };
+    match time.course() {
+        Ordering::Equal => point_slides_into_triangle(p, motion, triangle),
+        course => (time.is_within(course) && line_passes(line_sides(p, motion, triangle)))
+            .then(|| time.rounded_down()),
+    }
+}
+
+/// When an edge `cd` that moves by `motion` first meets an edge `ab` at rest, both closed; either
+/// may be a point. `None` if it does not from time 0 to 1.
+pub fn edge_meets_edge([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DVec3) -> Option<f64> {
+    let motion = snap(motion);
+    let (u, w) = (Difference(b, a), Difference(d, c));
+    let time = Time {
+        u,
+        v: w,
+        gap: Difference(a, c),
+        motion,
+    };
+    match time.course() {
+        // In one plane, or along one line, an end comes first.
+        Ordering::Equal if segments_meet(a, b, c, d) => Some(0.0),
+        Ordering::Equal => least([
+            point_meets_edge(c, motion, [a, b]),
+            point_meets_edge(d, motion, [a, b]),
+            point_meets_edge(a, -motion, [c, d]),
+            point_meets_edge(b, -motion, [c, d]),
+        ]),
+        course => {
+            let sides = edge_sides([a, b], [c, d], motion);
+            let meet = !sides.contains(&course.reverse()) && time.is_within(course);
+            meet.then(|| time.rounded_down())
+        }
+    }
+}
+
+/// When a point that moves by `motion` first meets a closed edge at rest, which may be a point;
+/// `None` if it does not from time 0 to 1.
+pub fn point_meets_edge(p: DVec3, motion: DVec3, [a, b]: [DVec3; 2]) -> Option<f64> {
+    if segments_meet(p, p, a, b) {
+        return Some(0.0);
+    }
+    let motion = snap(motion);
+    let (along, from, to) = (Difference(b, a), Difference(a, p), Difference(b, p));
+    let way = Difference::from(motion);
+    // Seen along an axis along which motion and edge are not parallel.
+    for axis in AXES.map(Difference::from) {
+        let time = Time {
+            u: along,
+            v: axis,
+            gap: from,
+            motion,
+        };
+        let course = time.course();
+        if course == Ordering::Equal {
+            continue;
+        }
+        let ends = [from, to].map(|end| sign([end, way, axis]));
+        let meets = sign([along, from, way]) == Ordering::Equal
+            && (ends[0] == Ordering::Equal || ends[0] != ends[1])
+            && time.is_within(course);
+        return meets.then(|| time.rounded_down());
+    }
+    let is_ahead = AXES
+        .iter()
+        .all(|&axis| sign([from, way, axis.into()]) == Ordering::Equal);
+    let along = (0..3).find(|&axis| is_ahead && motion[axis] != 0.0)?;
+    // Along the edge, or onto a point.
+    least([from, to].map(|gap| {
+        let time = Time {
+            u: AXES[(along + 1) % 3].into(),
+            v: AXES[(along + 2) % 3].into(),
+            gap,
+            motion,
+        };
+        time.is_within(time.course()).then(|| time.rounded_down())
+    }))
+}
+
+const AXES: [DVec3; 3] = [DVec3::X, DVec3::Y, DVec3::Z];
+
+/// The first of some times.
+fn least<const N: usize>(times: [Option<f64>; N]) -> Option<f64> {
+    times.into_iter().flatten().min_by(f64::total_cmp)
+}
+
+/// [`point_meets_triangle`] where the motion is in the triangle's plane, or the triangle in a line.
+#[cold]
+pub(super) fn point_slides_into_triangle(
+    p: DVec3,
+    motion: DVec3,
+    [a, b, c]: [DVec3; 3],
+) -> Option<f64> {
+    if orient3d(a, b, c, p) != 0.0 {
+        return None;
+    }
+    if segment_meets_triangle(p, p, [a, b, c]) {
+        return Some(0.0);
+    }
+    least([[a, b], [b, c], [c, a]].map(|edge| point_meets_edge(p, motion, edge)))
+}
+
+/// Whether a line crosses a triangle, given the sides on which it has its edges: all on one.
+pub(super) fn line_passes(sides: [Ordering; 3]) -> bool {
+    !(sides.contains(&Ordering::Less) && sides.contains(&Ordering::Greater))
+}
+
+/// On which sides a line through `p` along `motion` has the edges of a triangle.
+pub(super) fn line_sides(p: DVec3, motion: DVec3, [a, b, c]: [DVec3; 3]) -> [Ordering; 3] {
+    [(a, b), (b, c), (c, a)].map(|(a, b)| sign([Difference(b, a), motion.into(), Difference(a, p)]))
+}
+
+/// With `a + s (b - a) = c + q (d - c) + t motion`, the signs of `s`, `1 - s`, `q` and `1 - q`, times
+/// that of `det(b - a, d - c, motion)`.
+pub(super) fn edge_sides([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DVec3) -> [Ordering; 4] {
+    let (u, w) = (Difference(b, a), Difference(d, c));
+    [
+        (w, Difference(a, c)),
+        (w, Difference(c, b)),
+        (u, Difference(a, c)),
+        (u, Difference(d, a)),
+    ]
+    .map(|(along, apart)| sign([along, apart, motion.into()]))
+}
