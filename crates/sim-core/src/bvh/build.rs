@@ -26,6 +26,8 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
     let mut tree = Tree::with_capacity(count);
     let mut depth = 0;
     let bounds = mesh.bounds();
+    // Nodes whose descendants are under way, and how many runs waited before these.
+    let mut open: Vec<(u32, usize)> = Vec::new();
     // Those that wait to become children, the next one last.
     let mut runs = vec![Run {
         start: 0,
@@ -57,10 +59,8 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
         }
         if leaf {
             tree.push_leaf(mesh, &vertices, items.of(&run));
-            continue;
-        }
-        tree.push_node();
-        if !run.of_cells && run.count as usize <= SHORT {
+        } else if !run.of_cells && run.count as usize <= SHORT {
+            tree.push_node();
             let mut lane = 0;
             items.leaves(&run, |items| {
                 let code = tree.nodes.len() as u32 | LEAF;
@@ -68,28 +68,28 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
                 tree.adopt(index, lane, code, &bounds);
                 lane += 1;
             });
+            tree.close(index);
             depth = depth.max(level + 2);
-            continue;
-        }
-        let first = runs.len();
-        runs.push(run);
-        if run.of_cells {
-            grid.divide(&mut runs);
         } else {
-            items.divide(&mut runs, |_| 1);
+            tree.push_node();
+            let first = runs.len();
+            open.push((index, first));
+            runs.push(run);
+            if run.of_cells {
+                grid.divide(&mut runs);
+            } else {
+                items.divide(&mut runs, |_| 1);
+            }
+            for (lane, child) in runs[first..].iter_mut().enumerate() {
+                child.parent = index;
+                child.lane = lane as u8;
+                child.level = run.level + 1;
+            }
         }
-        for (lane, child) in runs[first..].iter_mut().enumerate() {
-            child.parent = index;
-            child.lane = lane as u8;
-            child.level = run.level + 1;
+        while let Some((index, _)) = open.pop_if(|&mut (_, waiting)| waiting == runs.len()) {
+            tree.close(index);
         }
     }
-    slabs::fill(
-        &tree.nodes,
-        &tree.triangles,
-        &mut tree.below,
-        &mut tree.slabs,
-    );
     debug_assert!(depth <= MAX_DEPTH);
     Bvh {
         bounds: mesh.bounds(),
@@ -140,6 +140,15 @@ impl Tree {
         self.below.push(Below::NONE);
     }
 
+    /// Gives a node its slabs, when all below it are there: they are still in the cache.
+    #[inline]
+    fn close(&mut self, index: u32) {
+        let index = index as usize;
+        let (slabs, below) = slabs::of_node(&self.nodes[index], &self.below, &self.triangles);
+        self.slabs[index] = slabs;
+        self.below[index] = below;
+    }
+
     #[inline]
     fn push_leaf(&mut self, mesh: &Mesh, vertices: &[Vec4], items: &[Bounds]) -> Bounds {
         // Lanes that hold nothing repeat the last one, so that they widen nothing.
@@ -152,7 +161,7 @@ impl Tree {
             count: items.len() as u32,
             triangles: place,
         });
-        let (slabs, below) = leaf.slabs(items.len(), place + 1);
+        let (slabs, below) = leaf.slabs(items.len(), place);
         self.slabs.push(slabs);
         self.below.push(below);
         self.triangles.push(leaf);

@@ -21,8 +21,10 @@ pub(crate) struct Slabs {
     pub(crate) half: [f32; WIDTH],
 }
 
-/// What a node tells its parent: where its triangles end, and the sum of their area vectors.
+/// What a node tells its parent: where its triangles are, and the sum of their area vectors.
+#[derive(Clone, Copy)]
 pub(super) struct Below {
+    start: u32,
     end: u32,
     area: [f32; 3],
 }
@@ -48,6 +50,7 @@ impl Slabs {
 
 impl Below {
     pub(super) const NONE: Below = Below {
+        start: 0,
         end: 0,
         area: [0.0; 3],
     };
@@ -81,43 +84,33 @@ fn dot(a: [Vec4; 3], b: [Vec4; 3]) -> Vec4 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Fills in the slabs of nodes where those of leaves are known. The triangles below a node lie side
-/// by side.
-pub(super) fn fill(
-    nodes: &[Node],
-    triangles: &[Triangles],
-    below: &mut [Below],
-    slabs: &mut [Slabs],
-) {
-    // Children come after their parents.
-    for index in (0..nodes.len()).rev() {
-        let node = &nodes[index];
-        if node.child[0] & !LEAF == index as u32 {
-            continue;
+/// The slabs of a node, where those of its children are known, and what it tells its parent. The
+/// triangles below a node lie side by side.
+#[inline]
+pub(super) fn of_node(node: &Node, below: &[Below], triangles: &[Triangles]) -> (Slabs, Below) {
+    let mut area = [[0.0; WIDTH]; 3];
+    let mut all = Below {
+        start: node.triangles,
+        ..Below::NONE
+    };
+    for lane in node.lanes() {
+        let of_lane = &below[(node.child[lane] & !LEAF) as usize];
+        all.end = all.end.max(of_lane.end);
+        for (axis, area) in area.iter_mut().enumerate() {
+            area[lane] = of_lane.area[axis];
+            all.area[axis] += of_lane.area[axis];
         }
-        let mut area = [[0.0; WIDTH]; 3];
-        let mut all = Below::NONE;
-        for lane in node.lanes() {
-            let of_lane = &below[(node.child[lane] & !LEAF) as usize];
-            all.end = all.end.max(of_lane.end);
-            for (axis, area) in area.iter_mut().enumerate() {
-                area[lane] = of_lane.area[axis];
-                all.area[axis] += of_lane.area[axis];
-            }
-        }
-        below[index] = all;
-        let normal = normals(area.map(Vec4::from_array));
-        let normals = normal.map(|axis| axis.to_array());
-        let (mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH]);
-        for lane in node.lanes() {
-            let child = (node.child[lane] & !LEAF) as usize;
-            let from = nodes[child].triangles as usize;
-            let corners = &triangles[from..below[child].end as usize];
-            let normal = normals.map(|axis| Vec4::splat(axis[lane]));
-            (low[lane], high[lane]) = heights(corners, normal);
-        }
-        slabs[index] = Slabs::between(normal, low.into(), high.into());
     }
+    let normal = normals(area.map(Vec4::from_array));
+    let normals = normal.map(|axis| axis.to_array());
+    let (mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH]);
+    for lane in node.lanes() {
+        let of_lane = &below[(node.child[lane] & !LEAF) as usize];
+        let corners = &triangles[of_lane.start as usize..of_lane.end as usize];
+        let normal = normals.map(|axis| Vec4::splat(axis[lane]));
+        (low[lane], high[lane]) = heights(corners, normal);
+    }
+    (Slabs::between(normal, low.into(), high.into()), all)
 }
 
 impl Triangles {
@@ -128,10 +121,9 @@ impl Triangles {
         [0, 3, 6].map(|k| [0, 1, 2].map(|axis| Vec4::from_array(c[k + axis])))
     }
 
-    /// A slab for each triangle of a leaf, `count` of them; and what the leaf, the last one so
-    /// far, tells its parent.
+    /// A slab for each triangle of a leaf, `count` of them; and what the leaf tells its parent.
     #[inline]
-    pub(super) fn slabs(&self, count: usize, end: u32) -> (Slabs, Below) {
+    pub(super) fn slabs(&self, count: usize, place: u32) -> (Slabs, Below) {
         let [a, b, c] = self.rows();
         let u = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let v = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
@@ -145,7 +137,12 @@ impl Triangles {
         let slabs = Slabs::between(normal, p.min(q).min(r), p.max(q).max(r));
         let used = Vec4::from_array([0, 1, 2, 3].map(|lane| f32::from(u8::from(lane < count))));
         let area = area.map(|axis| axis.dot(used));
-        (slabs, Below { end, area })
+        let below = Below {
+            start: place,
+            end: place + 1,
+            area,
+        };
+        (slabs, below)
     }
 }
 

@@ -64,8 +64,11 @@ pub fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
     if s_sides[0] != Ordering::Equal && s_sides == [s_sides[0]; 3] {
         return false;
     }
-    match (lone(s, s_sides), lone(t, t_sides)) {
-        (Some((s, s_above)), Some((t, t_above))) => crossing_meet(s, s_above, t, t_above),
+    match (lone(s_sides), lone(t_sides)) {
+        (Some((i, s_above)), Some((j, t_above))) => {
+            // Wound so that each first corner lies above the other's plane.
+            crossing_meet(from(s, i, t_above), from(t, j, s_above))
+        }
         _ => {
             let edge_of_one_meets = |s: [DVec3; 3], t: [DVec3; 3]| {
                 (0..3).any(|i| segment_meets_triangle(s[i], s[(i + 1) % 3], t))
@@ -75,38 +78,54 @@ pub fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
     }
 }
 
-/// Whether two triangles meet that cross each other's planes, each with its first corner alone on
-/// its side and none in the plane: whether the parts overlap in which they cut the line that the
-/// planes share (Guigue, Devillers 2003, "Fast and robust triangle-triangle overlap test using
-/// orientation predicates", sec. 3).
+/// Whether two triangles meet that cross each other's planes, each with its first corner alone
+/// above the other's plane and none in the plane: whether the parts overlap in which they cut the
+/// line that the planes share (Guigue, Devillers 2003, "Fast and robust triangle-triangle overlap
+/// test using orientation predicates", sec. 3).
 #[inline]
-fn crossing_meet(s: [DVec3; 3], s_above: bool, t: [DVec3; 3], t_above: bool) -> bool {
-    // Wound so that each first corner lies above the other's plane.
-    let wound =
-        |c: [DVec3; 3], above: bool| [c[0], c[2 - usize::from(above)], c[1 + usize::from(above)]];
-    let ([p1, q1, r1], [p2, q2, r2]) = (wound(s, t_above), wound(t, s_above));
+fn crossing_meet([p1, q1, r1]: [DVec3; 3], [p2, q2, r2]: [DVec3; 3]) -> bool {
     side([p1, q1, p2], q2) != Ordering::Greater && side([p1, r1, r2], p2) != Ordering::Greater
 }
 
-/// The triangle turned so that its first corner is alone on its side of a plane, and whether it is
-/// above; none if a corner lies in the plane. Which one it is, is anyone's guess, so it is looked
-/// up and not branched on.
+/// Which corner of a triangle is alone on its side of a plane, and whether it is above; none if a
+/// corner lies in the plane. Which one it is, is anyone's guess, so it is looked up and not
+/// branched on.
 #[inline]
-fn lone(corners: [DVec3; 3], sides: [Ordering; 3]) -> Option<([DVec3; 3], bool)> {
-    if sides.contains(&Ordering::Equal) {
+fn lone([p, q, r]: [Ordering; 3]) -> Option<(usize, bool)> {
+    if [p, q, r].contains(&Ordering::Equal) {
         return None;
     }
-    let above = sides.map(|side| usize::from(side == Ordering::Greater));
-    let alone = [0, 0, 1, 2, 2, 1, 0, 0][above[0] | above[1] << 1 | above[2] << 2];
-    let corner = |i: usize| corners[[0, 1, 2, 0, 1][alone + i]];
-    Some(([corner(0), corner(1), corner(2)], above[alone] == 1))
+    let above = |side| usize::from(side == Ordering::Greater);
+    let which = above(p) | above(q) << 1 | above(r) << 2;
+    // Of one above it is that one, of two the other.
+    Some(([0, 0, 1, 2, 2, 1, 0, 0][which], which.is_power_of_two()))
+}
+
+/// A triangle from its corner `i` on, wound as it is or the other way.
+#[inline]
+fn from(corners: [DVec3; 3], i: usize, same_way: bool) -> [DVec3; 3] {
+    const NEXT: [usize; 3] = [1, 2, 0];
+    // Two steps on is one step back.
+    let next = NEXT[i];
+    let [q, r] = if same_way {
+        [next, NEXT[next]]
+    } else {
+        [NEXT[next], next]
+    };
+    [corners[i], corners[q], corners[r]]
 }
 
 /// On which side of the plane of `abc` some points lie: above is where it is counter-clockwise.
 #[inline]
 fn sides(abc: [DVec3; 3], points: [DVec3; 3]) -> [Ordering; 3] {
     let plane = Plane::of(abc);
-    points.map(|p| exact_side(plane, abc, p))
+    // Written out, as a closure would be called.
+    let [p, q, r] = points;
+    [
+        exact_side(plane, abc, p),
+        exact_side(plane, abc, q),
+        exact_side(plane, abc, r),
+    ]
 }
 
 /// Whether a point lies above the plane of `abc`, on the side where it is counter-clockwise.

@@ -30,16 +30,6 @@ impl Joined {
         (velocity[self.bodies.1] - velocity[self.bodies.0]).dot(self.normal)
     }
 
-    /// Whether it opens, by more than rounding.
-    pub(crate) fn opens(&self, velocity: &[DVec3]) -> bool {
-        self.opening(velocity) > self.rounding(velocity)
-    }
-
-    fn rounding(&self, velocity: &[DVec3]) -> f64 {
-        let (first, second) = (velocity[self.bodies.0], velocity[self.bodies.1]);
-        4.0 * f64::EPSILON * (first.length() + second.length())
-    }
-
     /// Part of an impulse of another contact that arrives here, by inverse mass.
     fn shared(&self, other: &Joined, inverse_mass: &[f64]) -> f64 {
         let signs = |contact: &Joined| [(contact.bodies.0, -1.0), (contact.bodies.1, 1.0)];

@@ -26,6 +26,18 @@ const SLIGHTEST: f64 = 1e-6;
 pub(super) struct Rest {
     pub(super) bodies: (usize, usize),
     pub(super) normal: DVec3,
+    /// Speed at which forces would close it in a step, m/s.
+    pressure: f64,
+}
+
+impl From<&Event> for Rest {
+    fn from(event: &Event) -> Rest {
+        Rest {
+            bodies: event.bodies,
+            normal: event.contact.normal,
+            pressure: event.pressure,
+        }
+    }
 }
 
 /// What a contact does.
@@ -54,11 +66,9 @@ impl World {
             let grain = self.grain(event.bodies.0, event.bodies.1);
             self.move_apart(event.bodies, 2.0 * grain * event.contact.normal);
         }
-        let rests = chosen(Answer::Rest).map(|event| Rest {
-            bodies: event.bodies,
-            normal: event.contact.normal,
-        });
-        self.continuous.resting.extend(rests);
+        self.continuous
+            .resting
+            .extend(chosen(Answer::Rest).map(Rest::from));
         if !self.continuous.resting.is_empty() {
             self.rest(group, time, &mut renewed)?;
         }
@@ -136,11 +146,7 @@ impl World {
             .clone()
             .map(|event| self.pair_restitution(event.bodies.0, event.bodies.1))
             .fold(1.0, f64::min);
-        let contacts = events.clone().map(|event| Rest {
-            bodies: event.bodies,
-            normal: event.contact.normal,
-        });
-        let (places, joined) = Places::of(contacts);
+        let (places, joined) = Places::of(events.clone().map(Rest::from));
         let mut velocity = places.take(&self.continuous.start.velocity);
         let before = velocity.clone();
         let given = reflect(
@@ -199,8 +205,14 @@ impl World {
                 self.note_impact(event.bodies, &event.contact, given, speeds, time);
             }
         }
+        let fastest = before.iter().fold(0.0_f64, |most, v| most.max(v.length()));
         let mut joined = joined.into_iter();
-        here.retain(|_| joined.next().is_some_and(|joined| !joined.opens(&velocity)));
+        here.retain(|rest| {
+            let slow = SLIGHTEST * rest.pressure + 16.0 * f64::EPSILON * fastest;
+            joined
+                .next()
+                .is_some_and(|joined| joined.opening(&velocity) <= slow)
+        });
 
         // Nor do forces close them.
         for body in bodies {
