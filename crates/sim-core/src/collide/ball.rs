@@ -10,7 +10,10 @@ use core::ops::ControlFlow;
 use glam::DVec3;
 
 use super::{placement::is_in_range, snap, solid::each_in_box};
-use crate::bvh::Bvh;
+use crate::{
+    Aabb,
+    bvh::{Bvh, LEAF, MAX_DEPTH},
+};
 
 /// The first contact of a moving ball with a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,18 +47,41 @@ pub fn ball_touch(mesh: &Bvh, centre: DVec3, radius: f64, motion: DVec3) -> Opti
         radius,
         motion,
     };
-    let end = centre + motion;
-    let reach = DVec3::splat(radius + ball.error(DVec3::ZERO));
-    let (min, max) = (centre.min(end) - reach, centre.max(end) + reach);
     let mut best: Option<BallTouch> = None;
-    let _ = each_in_box(mesh, min, max, |face, corners| {
+    // The nearest on top.
+    let mut stack = [(0.0, mesh.root()); 3 * MAX_DEPTH + 1];
+    let mut top = 1;
+    while top > 0 {
+        top -= 1;
+        let (entry, code) = stack[top];
         let horizon = best.map_or(1.0, |best| best.time);
-        let touch = ball.touch(face, corners.map(|v| v.as_dvec3()), horizon);
-        if let Some(touch) = touch.filter(|new| best.is_none_or(|old| ball.is_before(new, &old))) {
-            best = Some(touch);
+        if entry > horizon {
+            continue;
         }
-        ControlFlow::Continue(())
-    });
+        let node = mesh.node(code);
+        let first = top;
+        for lane in node.lanes() {
+            let Some(entry) = ball.entry(&node.boxes.bounds(lane), horizon) else {
+                continue;
+            };
+            if code & LEAF == 0 {
+                let farther = |&(other, _): &(f64, u32)| other >= entry;
+                let place = first + stack[first..top].iter().take_while(|x| farther(x)).count();
+                stack.copy_within(place..top, place + 1);
+                stack[place] = (entry, node.child[lane]);
+                top += 1;
+                continue;
+            }
+            let triangles = mesh.triangles(node);
+            let corners = triangles.corners(lane).map(|v| v.as_dvec3());
+            let horizon = best.map_or(1.0, |best| best.time);
+            let touch = ball.touch(triangles.face[lane], corners, horizon);
+            best = match (best, touch) {
+                (Some(old), Some(new)) if !ball.is_before(&new, &old) => Some(old),
+                (old, new) => new.or(old),
+            };
+        }
+    }
     best
 }
 
@@ -96,6 +122,27 @@ impl Ball {
     fn error(&self, corner: DVec3) -> f64 {
         let size = self.centre.abs() + self.motion.abs() + corner.abs();
         (size.element_sum() + self.radius) * 8.0 * f64::EPSILON
+    }
+
+    /// When the ball may come to what is in a box, rounded down; `None` if not by a time.
+    fn entry(&self, bounds: &Aabb, horizon: f64) -> Option<f64> {
+        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let reach = self.radius + 2.0 * self.error(min.abs().max(max.abs()));
+        let (mut enter, mut leave) = (0.0_f64, horizon);
+        for axis in 0..3 {
+            let near = min[axis] - reach - self.centre[axis];
+            let far = max[axis] + reach - self.centre[axis];
+            let inverse = 1.0 / self.motion[axis];
+            if inverse.is_finite() {
+                let (s, t) = (near * inverse, far * inverse);
+                // Rounded twice each; the times that count are positive.
+                enter = enter.max(s.min(t) * (1.0 - 2.0 * f64::EPSILON));
+                leave = leave.min(s.max(t) * (1.0 + 2.0 * f64::EPSILON));
+            } else if near > 0.0 || far < 0.0 {
+                return None;
+            }
+        }
+        (enter <= leave).then_some(enter)
     }
 
     fn touch(&self, face: u32, corners: [DVec3; 3], horizon: f64) -> Option<BallTouch> {
