@@ -25,6 +25,38 @@ pub static SCENES: &[GalleryScene] = &[
         text: include_str!("../../../assets/scenes/two-cubes.toml"),
     },
     GalleryScene {
+        name: "bounce",
+        text: include_str!("../../../assets/scenes/bounce.toml"),
+    },
+    GalleryScene {
+        name: "bullet",
+        text: include_str!("../../../assets/scenes/bullet.toml"),
+    },
+    GalleryScene {
+        name: "cradle",
+        text: include_str!("../../../assets/scenes/cradle.toml"),
+    },
+    GalleryScene {
+        name: "galperin",
+        text: include_str!("../../../assets/scenes/galperin.toml"),
+    },
+    GalleryScene {
+        name: "closing-walls",
+        text: include_str!("../../../assets/scenes/closing-walls.toml"),
+    },
+    GalleryScene {
+        name: "u-channel",
+        text: include_str!("../../../assets/scenes/u-channel.toml"),
+    },
+    GalleryScene {
+        name: "hundred-cubes",
+        text: include_str!("../../../assets/scenes/hundred-cubes.toml"),
+    },
+    GalleryScene {
+        name: "herd",
+        text: include_str!("../../../assets/scenes/herd.toml"),
+    },
+    GalleryScene {
         name: "spring",
         text: include_str!("../../../assets/scenes/spring.toml"),
     },

@@ -24,4 +24,4 @@ pub use error::SceneError;
 pub use gallery::{GalleryScene, SCENES};
 pub use mesh_file::{FORMATS, Format, LoadedMesh, MeshFileError};
 pub use mesh_ref::MeshRef;
-pub use scene::{Scene, SceneBody};
+pub use scene::{Scene, SceneBody, SceneShape};

@@ -39,22 +39,70 @@ pub struct Scene {
 pub struct SceneBody {
     /// Name, unique in the scene.
     pub name: String,
-    /// Its mesh before rotation and scale.
-    pub mesh: MeshRef,
-    /// Position of the mesh's origin in metres.
+    /// What it is.
+    pub shape: SceneShape,
+    /// Position of the shape's origin in metres.
     pub position: DVec3,
-    /// Turns about x, then y, then z, the axes of the world, in degrees.
+    /// Turns of a mesh about x, then y, then z, the axes of the world, in degrees. Other shapes
+    /// have none.
     pub rotation: DVec3,
-    /// Scale along the mesh's own axes, before the rotation; not 0.
+    /// Scale along the mesh's own axes, before the rotation; not 0. Other shapes have none.
     pub scale: DVec3,
     /// Velocity in metres per second.
     pub velocity: DVec3,
     /// Constant force in newtons.
     pub force: DVec3,
-    /// Mass in kilograms, above 0.
+    /// Mass in kilograms, above 0; infinite for an immovable body, as half-spaces of a scene file
+    /// always are.
     pub mass: f64,
+    /// Part of the approaching speed with which it leaves an impact, 0 to 1.
+    pub restitution: f64,
     /// Colour as sRGB-encoded red, green and blue from 0 to 1, if the scene chooses one.
     pub colour: Option<[f32; 3]>,
+}
+
+/// The shape of a body of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SceneShape {
+    /// A mesh, before rotation and scale.
+    Mesh(MeshRef),
+    /// A ball about the position.
+    Sphere {
+        /// Its radius in metres.
+        radius: f64,
+    },
+    /// Everything behind a plane through the position: a floor or a wall.
+    HalfSpace {
+        /// Points out of it; of any length but 0.
+        normal: DVec3,
+    },
+}
+
+impl SceneBody {
+    /// An elastic body at rest at the origin: of 1 kg, or a half-space that is immovable.
+    pub fn new(name: String, shape: SceneShape) -> SceneBody {
+        let is_half_space = matches!(shape, SceneShape::HalfSpace { .. });
+        SceneBody {
+            name,
+            shape,
+            position: DVec3::ZERO,
+            rotation: DVec3::ZERO,
+            scale: DVec3::ONE,
+            velocity: DVec3::ZERO,
+            force: DVec3::ZERO,
+            mass: if is_half_space { f64::INFINITY } else { 1.0 },
+            restitution: 1.0,
+            colour: None,
+        }
+    }
+
+    /// Its mesh before rotation and scale, if it is one.
+    pub fn mesh(&self) -> Option<&MeshRef> {
+        match &self.shape {
+            SceneShape::Mesh(mesh) => Some(mesh),
+            SceneShape::Sphere { .. } | SceneShape::HalfSpace { .. } => None,
+        }
+    }
 }
 
 impl Scene {
@@ -122,17 +170,18 @@ impl Scene {
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut scene = self.clone();
         for body in &mut scene.bodies {
-            let Some(mesh) = body.mesh.path() else {
+            let SceneShape::Mesh(mesh) = &mut body.shape else {
                 continue;
             };
-            let found_from_there = folder.join(body.mesh.name()) == mesh;
+            let Some(file) = mesh.path() else { continue };
+            let found_from_there = folder.join(mesh.name()) == file;
             if !found_from_there {
-                let absolute = path::absolute(mesh).map_err(|error| SceneError::Write {
+                let absolute = path::absolute(file).map_err(|error| SceneError::Write {
                     path: path.to_owned(),
                     error,
                 })?;
                 let name = absolute.to_string_lossy().into_owned();
-                body.mesh = body.mesh.renamed(name);
+                *mesh = mesh.renamed(name);
             }
         }
         fs::write(path, scene.to_toml()).map_err(|error| SceneError::Write {

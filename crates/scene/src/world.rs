@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3, EulerRot};
-use sim_core::{Body, Mesh, MeshError, Settings, World};
+use sim_core::{Body, Mesh, MeshError, Settings, Shape, World};
 
-use crate::SceneError;
-use crate::scene::{Scene, SceneBody};
+use crate::scene::{Scene, SceneBody, SceneShape};
+use crate::{MeshRef, SceneError};
 
 impl Scene {
     /// The world of this scene, at time 0, with the bodies in the same order.
@@ -22,27 +22,29 @@ impl Scene {
         };
         let mut world =
             World::new(settings).map_err(|error| self.world_error(None, None, error))?;
-        let mut baked: Vec<Arc<Mesh>> = Vec::with_capacity(self.bodies.len());
+        let mut baked: Vec<Option<Arc<Mesh>>> = Vec::with_capacity(self.bodies.len());
         for (i, body) in self.bodies.iter().enumerate() {
             let mut earlier = self.bodies[..i].iter();
-            let mesh = match earlier.position(|other| same_shape(body, other)) {
-                Some(twin) => baked[twin].clone(),
-                None => bake(body).map_err(|error| {
-                    let field = match error {
-                        MeshError::Rotation => "rotation",
-                        _ => "scale",
-                    };
-                    self.world_error(Some(body), Some(field), error)
-                })?,
+            let twin = earlier.position(|other| same_mesh(body, other));
+            let mesh = match (body.mesh(), twin) {
+                (Some(_), Some(twin)) => baked[twin].clone(),
+                (Some(mesh), None) => Some(bake(mesh, body).map_err(|error| {
+                    self.world_error(Some(body), Some(baked_field(&error)), error)
+                })?),
+                (None, _) => None,
             };
             baked.push(mesh.clone());
             let added = world.add(Body {
-                shape: Some(mesh.into()),
+                shape: match body.shape {
+                    SceneShape::Mesh(_) => mesh.map(Shape::Mesh),
+                    SceneShape::Sphere { radius } => Some(Shape::Sphere { radius }),
+                    SceneShape::HalfSpace { normal } => Some(Shape::HalfSpace { normal }),
+                },
                 position: body.position,
                 velocity: body.velocity,
                 mass: body.mass,
                 force: body.force,
-                restitution: 1.0,
+                restitution: body.restitution,
             });
             added.map_err(|error| self.world_error(Some(body), None, error))?;
         }
@@ -69,19 +71,28 @@ impl Scene {
     }
 }
 
-fn same_shape(a: &SceneBody, b: &SceneBody) -> bool {
-    Arc::ptr_eq(a.mesh.mesh(), b.mesh.mesh()) && a.rotation == b.rotation && a.scale == b.scale
+fn same_mesh(a: &SceneBody, b: &SceneBody) -> bool {
+    let meshes = a.mesh().zip(b.mesh());
+    meshes.is_some_and(|(first, second)| Arc::ptr_eq(first.mesh(), second.mesh()))
+        && a.rotation == b.rotation
+        && a.scale == b.scale
 }
 
-fn bake(body: &SceneBody) -> Result<Arc<Mesh>, MeshError> {
+/// The mesh of a body, turned and scaled.
+pub(crate) fn bake(mesh: &MeshRef, body: &SceneBody) -> Result<Arc<Mesh>, MeshError> {
     if body.rotation == DVec3::ZERO && body.scale == DVec3::ONE {
-        return Ok(body.mesh.mesh().clone());
+        return Ok(mesh.mesh().clone());
     }
     // Fixed axes in the order x, y, z are moving axes in the order z, y, x.
     let [x, y, z] = body.rotation.to_array().map(f64::to_radians);
     let rotation = DQuat::from_euler(EulerRot::ZYX, z, y, x);
-    body.mesh
-        .mesh()
-        .transformed(rotation, body.scale)
-        .map(Arc::new)
+    mesh.mesh().transformed(rotation, body.scale).map(Arc::new)
+}
+
+/// The field that makes baking fail.
+pub(crate) fn baked_field(error: &MeshError) -> &'static str {
+    match error {
+        MeshError::Rotation => "rotation",
+        _ => "scale",
+    }
 }

@@ -6,8 +6,16 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use scene::mesh_file::BUILTIN_MESHES;
-use scene::{MeshRef, SCENES, Scene, SceneBody, SceneError};
-use sim_core::{Collision, METHODS};
+use scene::{MeshRef, SCENES, Scene, SceneBody, SceneError, SceneShape};
+use sim_core::{Collision, METHODS, Mesh, Shape};
+
+fn mesh(name: &str) -> SceneShape {
+    SceneShape::Mesh(MeshRef::builtin(name).expect("built in"))
+}
+
+fn triangles(body: &SceneBody) -> &Arc<Mesh> {
+    body.mesh().expect("a mesh").mesh()
+}
 
 fn parse(text: &str) -> Result<Scene, SceneError> {
     Scene::parse(text, Path::new("no such folder/test.toml"))
@@ -22,18 +30,11 @@ fn only_the_step_and_names_must_be_there() {
         ("test", "test")
     );
     assert_eq!((scene.dt, scene.method.name), (0.5, "symplectic-euler"));
-    assert_eq!(scene.collision, Collision::Bvh);
-    let body = SceneBody {
-        name: "a".into(),
-        mesh: MeshRef::builtin("cube.obj").expect("built in"),
-        position: DVec3::ZERO,
-        rotation: DVec3::ZERO,
-        scale: DVec3::ONE,
-        velocity: DVec3::ZERO,
-        force: DVec3::ZERO,
-        mass: 1.0,
-        colour: None,
-    };
+    assert_eq!(scene.collision, Collision::Continuous);
+    let body = SceneBody::new("a".into(), mesh("cube.obj"));
+    assert_eq!((body.mass, body.restitution), (1.0, 1.0));
+    assert_eq!((body.position, body.velocity), (DVec3::ZERO, DVec3::ZERO));
+    assert_eq!((body.rotation, body.scale), (DVec3::ZERO, DVec3::ONE));
     assert_eq!(scene.bodies, [body]);
     assert_eq!(parse("rate = 60").expect("an empty scene").bodies, []);
 }
@@ -60,6 +61,15 @@ fn everything_can_be_said() {
         name = "b"
         mesh = "cow.obj"
         scale = 2
+        immovable = true
+        [[body]]
+        name = "c"
+        sphere = 0.5
+        restitution = 0.25
+        immovable = false
+        [[body]]
+        name = "d"
+        half-space = [0, 2, 0]
     "##;
     let scene = parse(text).expect("a scene");
     assert_eq!(
@@ -68,8 +78,8 @@ fn everything_can_be_said() {
     );
     assert_eq!((scene.dt, scene.method.name), (0.02, "rk4"));
     assert_eq!(scene.collision, Collision::Naive);
-    let [a, b] = &scene.bodies[..] else {
-        panic!("two bodies");
+    let [a, b, c, d] = &scene.bodies[..] else {
+        panic!("four bodies");
     };
     assert_eq!(a.position, DVec3::new(1.0, 2.5, -3.0));
     assert_eq!(a.rotation, DVec3::new(10.0, 20.0, 30.0));
@@ -78,8 +88,17 @@ fn everything_can_be_said() {
     assert_eq!(a.force, DVec3::new(0.0, 0.0, 7.0));
     assert_eq!(a.mass, 2.0);
     assert_eq!(a.colour, Some([1.0, 0.0, 128.0 / 255.0]));
-    assert_eq!(b.scale, DVec3::splat(2.0));
-    assert!(Arc::ptr_eq(a.mesh.mesh(), b.mesh.mesh()));
+    assert_eq!((b.scale, b.mass), (DVec3::splat(2.0), f64::INFINITY));
+    assert!(Arc::ptr_eq(triangles(a), triangles(b)));
+    assert_eq!(c.shape, SceneShape::Sphere { radius: 0.5 });
+    assert_eq!((c.mass, c.restitution), (1.0, 0.25));
+    let normal = DVec3::new(0.0, 2.0, 0.0);
+    assert_eq!(d.shape, SceneShape::HalfSpace { normal });
+    assert_eq!((d.mass, d.restitution), (f64::INFINITY, 1.0));
+    let world = scene.world().expect("a world");
+    assert_eq!(world.shape(2), Some(&Shape::Sphere { radius: 0.5 }));
+    assert_eq!(world.shape(3), Some(&Shape::HalfSpace { normal: DVec3::Y }));
+    assert_eq!((world.mass(3), world.restitution(2)), (f64::INFINITY, 0.25));
 }
 
 #[test]
@@ -198,12 +217,12 @@ colour = "#c8553d"
         (
             "mesh = \"cube.obj\"\nposition",
             "position",
-            ":11: body `second`: missing field `mesh`",
+            ":12: body `second`, mesh: is missing: a body has one of `mesh`, `sphere` and `half-space`",
         ),
         (
             "mesh = \"cube.obj\"\nposition",
             "mesh = \"sphere.obj\"\nposition",
-            ":13: body `second`, mesh: there is no mesh file no such folder/sphere.obj, and the built-in meshes are cube.obj and cow.obj",
+            ":13: body `second`, mesh: there is no mesh file no such folder/sphere.obj, and the built-in meshes are cube.obj, cow.obj",
         ),
         (
             "mass = 1",
@@ -352,11 +371,8 @@ fn load_takes_gallery_names_and_paths() {
     .expect("written");
     let scene = Scene::load(at("own.TOML").to_str().expect("a path")).expect("a scene");
     assert_eq!(scene.name, "own");
-    assert_eq!(scene.bodies[0].mesh.mesh().triangles().len(), 1);
-    assert_eq!(
-        scene.bodies[1].mesh,
-        MeshRef::builtin("cube.obj").expect("built in")
-    );
+    assert_eq!(triangles(&scene.bodies[0]).triangles().len(), 1);
+    assert_eq!(scene.bodies[1].shape, mesh("cube.obj"));
 
     // A file comes before the built-in mesh of its name, and its own errors are passed on.
     std::fs::write(
@@ -387,7 +403,7 @@ fn a_saved_scene_finds_its_meshes_again() {
         scene.save(&at(place)).expect("saved");
         let again = Scene::load(at(place).to_str().expect("a path")).expect("a scene");
         for (a, b) in scene.bodies.iter().zip(&again.bodies) {
-            assert_eq!(a.mesh.mesh(), b.mesh.mesh(), "{place}");
+            assert_eq!(triangles(a), triangles(b), "{place}");
         }
     }
     let own = std::fs::read_to_string(at("own.toml")).expect("text");
@@ -425,7 +441,8 @@ fn the_gallery_and_its_meshes_are_valid() {
             "{} starts with a comment",
             known.name
         );
-        assert!(scene.bodies.iter().all(|body| body.mesh.path().is_none()));
+        let meshes = scene.bodies.iter().filter_map(SceneBody::mesh);
+        assert!(meshes.into_iter().all(|mesh| mesh.path().is_none()));
         let world = scene.world().unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(world.overlapping(), [], "{}", known.name);
         let again = parse(&scene.to_toml()).expect("a scene");
@@ -462,14 +479,14 @@ fn bodies_of_one_shape_share_a_mesh() {
     let world = scene.world().expect("a world");
     let mesh = |i| world.mesh(i).expect("a mesh");
     assert!(
-        Arc::ptr_eq(mesh(0), scene.bodies[0].mesh.mesh()),
+        Arc::ptr_eq(mesh(0), triangles(&scene.bodies[0])),
         "as loaded"
     );
     assert!(Arc::ptr_eq(mesh(0), mesh(1)));
     assert!(!Arc::ptr_eq(mesh(0), mesh(2)));
     assert!(Arc::ptr_eq(mesh(2), mesh(3)));
     assert!(!Arc::ptr_eq(mesh(2), mesh(4)));
-    assert!(Arc::ptr_eq(mesh(5), scene.bodies[5].mesh.mesh()));
+    assert!(Arc::ptr_eq(mesh(5), triangles(&scene.bodies[5])));
 }
 
 #[test]
@@ -537,32 +554,39 @@ fn vector() -> impl Strategy<Value = DVec3> {
     [number.clone(), number.clone(), number].prop_map(DVec3::from)
 }
 
+fn shape() -> impl Strategy<Value = SceneShape> {
+    let normal = vector().prop_filter("a direction", |v| *v != DVec3::ZERO);
+    prop_oneof![
+        Just(mesh("cube.obj")),
+        Just(mesh("cow.obj")),
+        prop_oneof![Just(0.0), 0.0..1e100_f64].prop_map(|radius| SceneShape::Sphere { radius }),
+        normal.prop_map(|normal| SceneShape::HalfSpace { normal }),
+    ]
+}
+
 fn body() -> impl Strategy<Value = SceneBody> {
     let scale = vector().prop_map(|v| DVec3::select(v.cmpeq(DVec3::ZERO), DVec3::ONE, v));
-    let mesh = prop_oneof![Just("cube.obj"), Just("cow.obj")];
-    let moved = (vector(), vector(), vector(), vector());
+    let moved = (vector(), vector(), vector());
+    let turned = (vector(), scale);
     let colour = proptest::option::of(any::<[u8; 3]>());
-    (
-        any::<String>(),
-        mesh,
-        moved,
-        scale,
-        1e-100..1e100_f64,
-        colour,
+    let mass = prop_oneof![1e-100..1e100_f64, Just(f64::INFINITY)];
+    let restitution = prop_oneof![0.0..=1.0_f64, Just(1.0)];
+    let impact = (mass, restitution);
+    (any::<String>(), shape(), moved, turned, impact, colour).prop_map(
+        |(name, shape, moved, (rotation, scale), (mass, restitution), colour)| {
+            let mut body = SceneBody::new(name, shape);
+            (body.position, body.velocity, body.force) = moved;
+            body.restitution = restitution;
+            body.colour = colour.map(|bytes| bytes.map(|byte| f32::from(byte) / 255.0));
+            if body.mesh().is_some() {
+                (body.rotation, body.scale) = (rotation, scale);
+            }
+            if !matches!(body.shape, SceneShape::HalfSpace { .. }) {
+                body.mass = mass;
+            }
+            body
+        },
     )
-        .prop_map(
-            |(name, mesh, (position, rotation, velocity, force), scale, mass, colour)| SceneBody {
-                name,
-                mesh: MeshRef::builtin(mesh).expect("built in"),
-                position,
-                rotation,
-                scale,
-                velocity,
-                force,
-                mass,
-                colour: colour.map(|bytes| bytes.map(|byte| f32::from(byte) / 255.0)),
-            },
-        )
 }
 
 fn scene() -> impl Strategy<Value = Scene> {
@@ -570,7 +594,11 @@ fn scene() -> impl Strategy<Value = Scene> {
         1e-9..1e3_f64,
         (1..1000_u32).prop_map(|rate| 1.0 / f64::from(rate))
     ];
-    let collision = prop_oneof![Just(Collision::Naive), Just(Collision::Bvh)];
+    let collision = prop_oneof![
+        Just(Collision::Naive),
+        Just(Collision::Bvh),
+        Just(Collision::Continuous)
+    ];
     let bodies = proptest::collection::vec(body(), 0..4);
     (
         any::<[String; 2]>(),

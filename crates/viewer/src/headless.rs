@@ -23,18 +23,33 @@ struct RunReport<'a> {
     total_energy: Option<f64>,
     /// Relative change of both together since the start.
     energy_drift: Option<f64>,
-    /// Whether a force takes energy away: then the drift is no error.
+    /// Whether a force, an inelastic impact or a driven body may change it: then the drift is no
+    /// error.
     dissipates: bool,
     momentum_drift: Option<f64>,
     path_error: Option<f64>,
     momentum: [f64; 3],
+    last_impact: Option<ImpactReport<'a>>,
     bodies: Vec<BodyReport<'a>>,
+}
+
+/// The latest impact.
+#[derive(Serialize)]
+struct ImpactReport<'a> {
+    time: f64,
+    bodies: [&'a str; 2],
+    point: [f64; 3],
+    normal: [f64; 3],
+    impulse: f64,
+    approaching: f64,
+    parting: f64,
 }
 
 #[derive(Serialize)]
 struct BodyReport<'a> {
     name: &'a str,
-    mass: f64,
+    /// None of an immovable body.
+    mass: Option<f64>,
     position: [f64; 3],
     velocity: [f64; 3],
 }
@@ -147,13 +162,22 @@ impl<'a> RunReport<'a> {
             momentum_drift: drift.momentum,
             path_error: drift.position,
             momentum: world.momentum().to_array(),
+            last_impact: world.last_impact().map(|impact| ImpactReport {
+                time: impact.time,
+                bodies: [impact.bodies.0, impact.bodies.1].map(|i| scene.bodies[i].name.as_str()),
+                point: impact.point.to_array(),
+                normal: impact.normal.to_array(),
+                impulse: impact.impulse,
+                approaching: impact.speeds.0,
+                parting: impact.speeds.1,
+            }),
             bodies: scene
                 .bodies
                 .iter()
                 .enumerate()
                 .map(|(i, body)| BodyReport {
                     name: &body.name,
-                    mass: world.mass(i),
+                    mass: Some(world.mass(i)).filter(|mass| mass.is_finite()),
                     position: world.position(i).to_array(),
                     velocity: world.velocity(i).to_array(),
                 })
@@ -167,11 +191,11 @@ impl<'a> RunReport<'a> {
             |drift: Option<f64>| drift.map_or_else(|| "unknown".to_owned(), number::relative);
         let mut text = format!("energy {}", relative(self.energy_drift));
         if self.dissipates {
-            text += " (friction takes it: no error)";
+            text += " (friction or impacts change it: no error)";
         }
         match self.momentum_drift {
             Some(drift) => text += &format!(", momentum {}", number::relative(drift)),
-            None => text += ", momentum not kept by these forces",
+            None => text += ", momentum not kept by what acts from outside",
         }
         text += " (drift since the start, relative)";
         if let Some(away) = self.path_error {
@@ -194,6 +218,12 @@ impl<'a> RunReport<'a> {
             ("Run", settings),
             ("Time", format!("{} s", self.time)),
             ("Impacts", self.impacts.to_string()),
+            (
+                "Last impact",
+                self.last_impact
+                    .as_ref()
+                    .map_or_else(|| "none".to_owned(), ImpactReport::text),
+            ),
             ("Kinetic energy", format!("{} J", self.kinetic_energy)),
             ("Potential", joules(self.potential_energy)),
             ("Total energy", joules(self.total_energy)),
@@ -225,12 +255,27 @@ impl<'a> RunReport<'a> {
                 text,
                 "{:<width$} {:>10} {:>38} {:>38}",
                 body.name,
-                body.mass,
+                body.mass
+                    .map_or_else(|| "immovable".to_owned(), |mass| mass.to_string()),
                 vector(body.position.into()),
                 vector(body.velocity.into())
             );
         }
         text
+    }
+}
+
+impl ImpactReport<'_> {
+    fn text(&self) -> String {
+        format!(
+            "{} s, {} and {}, {} N s, {} m/s before and {} m/s after",
+            self.time,
+            self.bodies[0],
+            self.bodies[1],
+            self.impulse,
+            number::figure(self.approaching),
+            number::figure(self.parting)
+        )
     }
 }
 

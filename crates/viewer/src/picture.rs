@@ -14,8 +14,12 @@ pub struct Picture {
     pub camera: Camera,
     /// Meshes, shaded.
     pub models: Vec<Model>,
+    /// Coloured glass.
+    pub panes: Vec<Pane>,
     /// Lines of a width in pixels.
     pub lines: Vec<Line>,
+    /// Lines that nothing hides.
+    pub marks: Vec<Line>,
     /// Arrows with thickness, such as velocities.
     pub arrows: Vec<Arrow>,
     /// Whether the ground grid at `y = 0` and the axes are drawn.
@@ -33,6 +37,15 @@ pub struct Model {
     pub colour: [f32; 3],
     /// Whether the mesh's edges are drawn over it.
     pub selected: bool,
+}
+
+/// A flat pane that is seen through.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pane {
+    /// Its corners in order, m, of a convex polygon; fewer than three are not drawn.
+    pub corners: Vec<DVec3>,
+    /// sRGB and opacity.
+    pub colour: [f32; 4],
 }
 
 /// A straight line.

@@ -66,6 +66,7 @@ fn run_prints_the_final_state() {
             "energy_drift",
             "impacts",
             "kinetic_energy",
+            "last_impact",
             "momentum",
             "momentum_drift",
             "path_error",

@@ -8,7 +8,7 @@ use sim_core::Mesh;
 use super::{Format, read};
 
 /// The built-in meshes, by the file name that scenes use.
-pub static BUILTIN_MESHES: [BuiltinMesh; 2] = [
+pub static BUILTIN_MESHES: [BuiltinMesh; 3] = [
     BuiltinMesh {
         name: "cube.obj",
         bytes: include_bytes!("../../../../assets/meshes/cube.obj"),
@@ -17,6 +17,11 @@ pub static BUILTIN_MESHES: [BuiltinMesh; 2] = [
     BuiltinMesh {
         name: "cow.obj",
         bytes: include_bytes!("../../../../assets/meshes/cow.obj"),
+        mesh: OnceLock::new(),
+    },
+    BuiltinMesh {
+        name: "u-channel.obj",
+        bytes: include_bytes!("../../../../assets/meshes/u-channel.obj"),
         mesh: OnceLock::new(),
     },
 ];

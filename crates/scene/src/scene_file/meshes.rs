@@ -47,7 +47,7 @@ impl MeshSource {
         }
         MeshRef::builtin(name).ok_or_else(|| {
             let builtin: Vec<&str> = BUILTIN_MESHES.iter().map(|mesh| mesh.name).collect();
-            let builtin = builtin.join(" and ");
+            let builtin = builtin.join(", ");
             match path {
                 Some(path) => format!(
                     "there is no mesh file {}, and the built-in meshes are {builtin}",

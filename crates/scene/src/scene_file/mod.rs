@@ -1,5 +1,7 @@
 //! Scene files: TOML text to a [`Scene`](crate::Scene) and back.
 
+mod body;
+mod copies;
 mod force;
 mod meshes;
 mod number;

@@ -11,13 +11,12 @@ use sim_core::{Collision, FixedStep, METHODS, Method, Settings};
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 
-use super::force;
 use super::meshes::MeshSource;
 use super::number::{Number, Triple};
 use super::text::{Body, Header};
-use crate::colour;
+use super::{body, force};
 use crate::error::SceneError;
-use crate::scene::{Scene, SceneBody};
+use crate::scene::Scene;
 
 /// The ways to search for collisions, by the names in scene files.
 const COLLISIONS: [(&str, Collision); 3] = [
@@ -27,7 +26,7 @@ const COLLISIONS: [(&str, Collision); 3] = [
 ];
 
 /// The largest number of a body, as a [`World`](sim_core::World) has it.
-const LARGEST: f64 = 1e100;
+pub(super) const LARGEST: f64 = 1e100;
 
 /// The name of a way to search for collisions.
 pub(super) fn collision_name(collision: Collision) -> &'static str {
@@ -70,12 +69,16 @@ pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<S
             Subject::Body(&called),
         )?;
         let line = source.line(body.name.span().start);
-        if let Some(first) = lines.insert(called, line) {
-            let place = Place::new(&source, Subject::Body(body.name.get_ref()));
-            let what = format!("the body in line {first} has this name too: choose another");
-            return Err(place.error(body.name.span(), "name", what));
+        let span = body.name.span();
+        let bodies = body::parse(&source, body, &mut meshes, &scene.bodies)?;
+        for body in &bodies {
+            if let Some(first) = lines.insert(body.name.clone(), line) {
+                let place = Place::new(&source, Subject::Body(&body.name));
+                let what = format!("the body in line {first} has this name too: choose another");
+                return Err(place.error(span, "name", what));
+            }
         }
-        scene.bodies.push(scene_body(&source, body, &mut meshes)?);
+        scene.bodies.extend(bodies);
     }
     let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
     for (i, table) in forces.into_iter().enumerate() {
@@ -188,7 +191,12 @@ impl<'a> Place<'a> {
         }
     }
 
-    fn vector(&self, field: &str, value: Option<Spanned<Triple>>) -> Result<DVec3, SceneError> {
+    /// Three numbers as a [`World`](sim_core::World) has them; zeros where there is no field.
+    pub(super) fn vector(
+        &self,
+        field: &str,
+        value: Option<Spanned<Triple>>,
+    ) -> Result<DVec3, SceneError> {
         let Some(value) = value else {
             return Ok(DVec3::ZERO);
         };
@@ -300,54 +308,4 @@ fn tolerance(source: &Source, value: Option<Spanned<Number>>) -> Result<f64, Sce
         return Err(Place::new(source, Subject::Scene).error(value.span(), "tolerance", what));
     }
     Ok(tolerance)
-}
-
-fn scene_body(
-    source: &Source,
-    body: Body,
-    meshes: &mut MeshSource,
-) -> Result<SceneBody, SceneError> {
-    let name = body.name.get_ref().clone();
-    let place = Place::new(source, Subject::Body(&name));
-    if name.trim().is_empty() {
-        return Err(place.error(body.name.span(), "name", "must not be empty"));
-    }
-    let mesh = meshes
-        .get(body.mesh.get_ref())
-        .map_err(|what| place.error(body.mesh.span(), "mesh", what))?;
-    let mut scale = DVec3::ONE;
-    if let Some(value) = body.scale {
-        scale = value.get_ref().0;
-        if !scale.is_finite() || scale.cmpeq(DVec3::ZERO).any() {
-            let what = format!("must be finite and not 0, is {scale}");
-            return Err(place.error(value.span(), "scale", what));
-        }
-    }
-    let mut mass = 1.0;
-    if let Some(value) = body.mass {
-        Number(mass) = *value.get_ref();
-        if !(1.0 / LARGEST..=LARGEST).contains(&mass) {
-            let what = format!("must be a mass in kg above 0 (from 1e-100 to 1e100), is {mass}");
-            return Err(place.error(value.span(), "mass", what));
-        }
-    }
-    let mut chosen = None;
-    if let Some(value) = body.colour {
-        chosen = colour::parse(value.get_ref());
-        if chosen.is_none() {
-            let what = format!("must look like `#c8553d`, is `{}`", value.get_ref());
-            return Err(place.error(value.span(), "colour", what));
-        }
-    }
-    Ok(SceneBody {
-        mesh,
-        position: place.vector("position", body.position)?,
-        rotation: place.vector("rotation", body.rotation)?,
-        scale,
-        velocity: place.vector("velocity", body.velocity)?,
-        force: place.vector("force", body.force)?,
-        mass,
-        colour: chosen,
-        name,
-    })
 }

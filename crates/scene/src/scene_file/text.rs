@@ -24,14 +24,27 @@ pub(super) struct Header {
 #[serde(deny_unknown_fields)]
 pub(super) struct Body {
     pub(super) name: Spanned<String>,
-    pub(super) mesh: Spanned<String>,
+    pub(super) mesh: Option<Spanned<String>>,
+    pub(super) sphere: Option<Spanned<Number>>,
+    #[serde(rename = "half-space")]
+    pub(super) half_space: Option<Spanned<Triple>>,
     pub(super) position: Option<Spanned<Triple>>,
     pub(super) rotation: Option<Spanned<Triple>>,
     pub(super) scale: Option<Spanned<Scale>>,
     pub(super) velocity: Option<Spanned<Triple>>,
     pub(super) force: Option<Spanned<Triple>>,
     pub(super) mass: Option<Spanned<Number>>,
+    pub(super) immovable: Option<Spanned<bool>>,
+    pub(super) restitution: Option<Spanned<Number>>,
     pub(super) colour: Option<Spanned<String>>,
+    #[serde(skip_serializing)]
+    pub(super) copies: Option<Spanned<usize>>,
+    #[serde(skip_serializing)]
+    pub(super) inside: Option<Spanned<Vec<Triple>>>,
+    #[serde(skip_serializing)]
+    pub(super) speed: Option<Spanned<Number>>,
+    #[serde(skip_serializing)]
+    pub(super) seed: Option<Spanned<u64>>,
 }
 
 /// A whole file, for writing.

@@ -8,7 +8,7 @@ use super::number::{Number, Scale, Triple};
 use super::parse::collision_name;
 use super::text::{Body, File, Header};
 use crate::colour;
-use crate::scene::{Scene, SceneBody};
+use crate::scene::{Scene, SceneBody, SceneShape};
 
 /// The scene file of a scene.
 pub(crate) fn write(scene: &Scene) -> String {
@@ -38,17 +38,37 @@ pub(crate) fn write(scene: &Scene) -> String {
 }
 
 fn body(body: &SceneBody) -> Body {
-    Body {
+    let is_half_space = matches!(body.shape, SceneShape::HalfSpace { .. });
+    let is_immovable = body.mass.is_infinite();
+    let mut text = Body {
         name: spanned(body.name.clone()),
-        mesh: spanned(body.mesh.name().to_owned()),
+        mesh: None,
+        sphere: None,
+        half_space: None,
         position: Some(spanned(Triple(body.position))),
-        rotation: Some(spanned(Triple(body.rotation))),
-        scale: Some(spanned(Scale(body.scale))),
+        rotation: None,
+        scale: None,
         velocity: Some(spanned(Triple(body.velocity))),
         force: Some(spanned(Triple(body.force))),
-        mass: Some(spanned(Number(body.mass))),
+        mass: (!is_half_space && !is_immovable).then(|| spanned(Number(body.mass))),
+        immovable: (!is_half_space && is_immovable).then(|| spanned(true)),
+        restitution: (body.restitution != 1.0).then(|| spanned(Number(body.restitution))),
         colour: body.colour.map(|c| spanned(colour::format(c))),
+        copies: None,
+        inside: None,
+        speed: None,
+        seed: None,
+    };
+    match &body.shape {
+        SceneShape::Mesh(mesh) => {
+            text.mesh = Some(spanned(mesh.name().to_owned()));
+            text.rotation = Some(spanned(Triple(body.rotation)));
+            text.scale = Some(spanned(Scale(body.scale)));
+        }
+        SceneShape::Sphere { radius } => text.sphere = Some(spanned(Number(*radius))),
+        SceneShape::HalfSpace { normal } => text.half_space = Some(spanned(Triple(*normal))),
     }
+    text
 }
 
 /// A value that stands in no text yet.

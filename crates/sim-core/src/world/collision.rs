@@ -110,14 +110,19 @@ impl World {
 
     /// Whether two bodies meet, through trees, with the second one at `offset` from the first.
     pub(super) fn meet_at(&mut self, i: usize, j: usize, offset: DVec3) -> bool {
-        let offset = snap(offset);
         if let Some((first, second)) = self.mesh(i).zip(self.mesh(j))
-            && !first.bounds().meets(&second.bounds(), offset)
+            && !first.bounds().meets(&second.bounds(), snap(offset))
         {
             return false;
         }
         self.need_bvh(i);
         self.need_bvh(j);
+        self.meet_built(i, j, offset)
+    }
+
+    /// The same with the trees there.
+    pub(super) fn meet_built(&self, i: usize, j: usize, offset: DVec3) -> bool {
+        let offset = snap(offset);
         let forms = self.form(i).zip(self.form(j));
         forms.is_some_and(|(first, second)| collide::meet(first, second, offset))
     }

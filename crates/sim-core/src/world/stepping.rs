@@ -12,7 +12,9 @@ use super::{
     state::State,
     system::Part,
 };
-use crate::integrate::{Failure, Step, ballistic, stability};
+use glam::DVec3;
+
+use crate::integrate::{Failure, Scratch, Step, ballistic, stability};
 
 /// Bodies in a block: some 200 bytes each for state, acceleration and a few stages fill about
 /// the 32 KiB of a first cache.
@@ -131,16 +133,19 @@ impl World {
         let mut start = all.start;
         while start < all.end {
             let bodies = start..all.end.min(start + length);
-            let (from, mut to) = (mem::take(&mut self.previous), mem::take(&mut self.current));
-            let span = (0.0, self.settings.dt);
-            let moved = self.block(
-                plan,
-                bodies.clone(),
-                section.is_coupled,
-                (&from, &mut to),
-                span,
-            );
-            (self.previous, self.current) = (from, to);
+            // Out of the world while it is looked at.
+            let mut to = mem::take(&mut self.current);
+            let mut scratch = mem::take(&mut self.scratch);
+            let block = Block {
+                bodies: bodies.clone(),
+                is_coupled: section.is_coupled,
+                acceleration: &self.acceleration[bodies.clone()],
+                from: &self.previous,
+                since: 0.0,
+                length: self.settings.dt,
+            };
+            let moved = self.step_block(plan, block, &mut to, &mut scratch);
+            (self.current, self.scratch) = (to, scratch);
             moved?;
             if let Some(body) = self.beyond(bodies.clone()) {
                 return Err((body, Cause::Range));
@@ -156,18 +161,25 @@ impl World {
         Ok(())
     }
 
-    /// One call of the method, from some time after the start of the step and over some length.
-    pub(super) fn block(
-        &mut self,
+    /// One call of the method.
+    pub(super) fn step_block(
+        &self,
         plan: &Plan,
-        bodies: Range<usize>,
-        is_coupled: bool,
-        (from, to): (&State, &mut State),
-        (since, length): (f64, f64),
+        block: Block<'_>,
+        to: &mut State,
+        scratch: &mut Scratch,
     ) -> Result<(), (usize, Cause)> {
         let Settings {
             method, tolerance, ..
         } = self.settings;
+        let Block {
+            bodies,
+            is_coupled,
+            acceleration,
+            from,
+            since,
+            length,
+        } = block;
         let start = bodies.start;
         let step = Step {
             time: self.time() + since,
@@ -177,14 +189,14 @@ impl World {
             velocity: &from.velocity[bodies.clone()],
             new_position: &mut to.position[bodies.clone()],
             new_velocity: &mut to.velocity[bodies.clone()],
-            scratch: &mut self.scratch,
+            scratch,
         };
         let part = Part {
             forces: &self.forces,
             plan,
             is_coupled,
             mass: &self.mass[bodies.clone()],
-            acceleration: &self.acceleration[bodies.clone()],
+            acceleration,
             bodies,
         };
         (method.step)(&part, step).map_err(|failure| match failure {
@@ -287,6 +299,19 @@ impl World {
             },
         }
     }
+}
+
+/// Bodies that are stepped at once, and how.
+pub(super) struct Block<'a> {
+    pub(super) bodies: Range<usize>,
+    pub(super) is_coupled: bool,
+    /// What constant forces do to these bodies, m/s².
+    pub(super) acceleration: &'a [DVec3],
+    /// The motion of all bodies before.
+    pub(super) from: &'a State,
+    /// When that is after the start of the world's step, s, and how long the block's is.
+    pub(super) since: f64,
+    pub(super) length: f64,
 }
 
 /// Why a step failed at a body.

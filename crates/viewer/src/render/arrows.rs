@@ -83,6 +83,7 @@ impl Arrows {
             topology: wgpu::PrimitiveTopology::TriangleList,
             blended: false,
             culled: true,
+            on_top: false,
             samples,
         };
         let corners = shape();

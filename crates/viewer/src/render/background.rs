@@ -25,6 +25,7 @@ impl Background {
             topology: wgpu::PrimitiveTopology::TriangleList,
             blended: false,
             culled: false,
+            on_top: false,
             samples,
         };
         Self {

@@ -31,6 +31,7 @@ impl Ground {
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             blended: true,
             culled: false,
+            on_top: false,
             samples,
         };
         Self {

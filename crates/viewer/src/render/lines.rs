@@ -33,7 +33,13 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    pub(super) fn new(device: &wgpu::Device, frame: &FrameBinding, samples: u32) -> Self {
+    /// Lines that nearer surfaces hide, or that are on top of everything.
+    pub(super) fn new(
+        device: &wgpu::Device,
+        frame: &FrameBinding,
+        samples: u32,
+        on_top: bool,
+    ) -> Self {
         let wgsl = concat!(
             include_str!("shaders/frame.wgsl"),
             include_str!("shaders/line.wgsl")
@@ -52,6 +58,7 @@ impl Lines {
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             blended: true,
             culled: false,
+            on_top,
             samples,
         };
         Self {

@@ -16,6 +16,7 @@ mod lines;
 mod meshes;
 mod normals;
 pub mod offscreen;
+mod panes;
 mod pipeline;
 mod shadow;
 mod surface;
@@ -42,7 +43,9 @@ pub struct Renderer {
     surface: surface::Surface,
     shadow: shadow::Shadow,
     ground: ground::Ground,
+    panes: panes::Panes,
     lines: lines::Lines,
+    marks: lines::Lines,
     arrows: arrows::Arrows,
     finish: finish::Finish,
 }
@@ -60,7 +63,9 @@ impl Renderer {
             background: background::Background::new(device, &frame, samples),
             surface: surface::Surface::new(device, &frame, samples),
             ground: ground::Ground::new(device, &frame, &shadow, samples),
-            lines: lines::Lines::new(device, &frame, samples),
+            panes: panes::Panes::new(device, &frame, samples),
+            lines: lines::Lines::new(device, &frame, samples, false),
+            marks: lines::Lines::new(device, &frame, samples, true),
             arrows: arrows::Arrows::new(device, &frame, samples),
             finish: finish::Finish::new(device, target),
             shadow,
@@ -93,8 +98,10 @@ impl Renderer {
         } else {
             Vec::new()
         };
+        self.panes.gather(device, queue, &picture.panes, eye);
         self.lines
             .gather(device, queue, axis.iter().chain(&picture.lines), eye);
+        self.marks.gather(device, queue, picture.marks.iter(), eye);
         self.arrows.gather(device, queue, &picture.arrows, eye);
 
         if picture.grid {
@@ -118,7 +125,9 @@ impl Renderer {
             if picture.grid {
                 self.ground.draw(&mut pass, &self.shadow);
             }
+            self.panes.draw(&mut pass);
             self.lines.draw(&mut pass);
+            self.marks.draw(&mut pass);
         }
         self.finish
             .draw(encoder, target_view, targets.finish_group());

@@ -20,6 +20,8 @@ pub(super) struct Drawing<'a> {
     pub blended: bool,
     /// Without the faces that are seen from behind.
     pub culled: bool,
+    /// Whatever is nearer.
+    pub on_top: bool,
     pub samples: u32,
 }
 
@@ -47,7 +49,10 @@ impl Drawing<'_> {
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH,
                 depth_write_enabled: Some(!self.blended),
-                depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+                depth_compare: Some(match self.on_top {
+                    true => wgpu::CompareFunction::Always,
+                    false => wgpu::CompareFunction::GreaterEqual,
+                }),
                 stencil: Default::default(),
                 bias: Default::default(),
             }),

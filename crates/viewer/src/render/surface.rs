@@ -38,6 +38,7 @@ impl Surface {
                 blended: false,
                 // With no inside to be seen, the far half of the faces is not worth drawing.
                 culled: which.solid,
+                on_top: false,
                 samples,
             };
             (which, drawing.pipeline(device))

@@ -1,7 +1,7 @@
 //! Edits of bodies. In the layout state they change the set-up, later only the world.
 //! A refused value leaves everything as it was and says why.
 
-use scene::SceneBody;
+use scene::{SceneBody, SceneShape};
 use sim_core::{DVec3, WorldError};
 
 use crate::headless;
@@ -36,12 +36,25 @@ impl Session {
         });
     }
 
-    /// Gives the selected body a mass, kg; positive and finite.
+    /// Gives the selected body a mass, kg; positive, infinite for an immovable one.
     pub fn set_mass(&mut self, mass: f64) {
         self.edit("mass", |session, i| {
             session.world.set_mass(i, mass)?;
             Ok(move |body: &mut SceneBody| body.mass = mass)
         });
+    }
+
+    /// Says which part of the approaching speed the selected body leaves an impact with, 0 to 1.
+    pub fn set_restitution(&mut self, restitution: f64) {
+        self.edit("restitution", |session, i| {
+            session.world.set_restitution(i, restitution)?;
+            Ok(move |body: &mut SceneBody| body.restitution = restitution)
+        });
+    }
+
+    /// Gives the selected body another shape. Layout only.
+    pub fn set_shape(&mut self, shape: SceneShape) {
+        self.edit_shape("shape", |body| body.shape = shape);
     }
 
     /// Turns the selected body: degrees about the fixed axes x, then y, then z. Layout only.

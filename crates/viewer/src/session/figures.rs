@@ -77,10 +77,12 @@ pub struct Reference {
 pub struct Drift {
     /// Relative change of kinetic plus potential energy; none while it is not finite.
     pub energy: Option<f64>,
-    /// Whether a force takes energy away, as drag does: then the change is no error.
+    /// Whether friction or an inelastic impact may have taken energy away, or a moving body that
+    /// nothing moves have given it: then the change is no error.
     pub dissipates: bool,
     /// Error of the momentum less the impulse of the forces, relative to the sum of `m |v|`;
-    /// known as long as nothing but constant forces acts from outside.
+    /// known as long as nothing but constant forces acts from outside, and nothing has hit what
+    /// may be immovable.
     pub momentum: Option<f64>,
     /// Largest distance of a body from its exact path, m; known as long as nothing collides and
     /// no force but constant ones acts.
@@ -111,6 +113,9 @@ impl Reference {
         let mut speed = 0.0;
         let mut away: f64 = 0.0;
         for (i, &(start, velocity)) in self.motion.iter().enumerate() {
+            if world.mass(i).is_infinite() {
+                continue;
+            }
             let force = world.force(i) + world.mass(i) * weight;
             work += force.dot(world.position(i) - start);
             impulse += force * elapsed;
@@ -129,13 +134,18 @@ impl Reference {
         let momentum = (world.momentum() - impulse - self.momentum).length();
         let momentum = ratio(momentum, speed.max(self.momentum.length()));
         let (forces, same_impacts) = (world.forces(), world.impacts() == self.impacts);
+        let mut bodies = 0..world.len();
+        let changes_in_impacts = |i| {
+            let is_driven = world.mass(i).is_infinite() && world.velocity(i) != DVec3::ZERO;
+            world.restitution(i) < 1.0 || is_driven
+        };
+        let inelastic = !same_impacts && bodies.clone().any(changes_in_impacts);
+        let closed = same_impacts || bodies.all(|i| world.mass(i).is_finite());
+        let kept = |force| is_weight(force) || is_internal(force);
         Drift {
             energy: Some(ratio(change, scale)).filter(|change| change.is_finite()),
-            dissipates: forces.iter().any(dissipates),
-            momentum: forces
-                .iter()
-                .all(|force| is_weight(force) || is_internal(force))
-                .then_some(momentum),
+            dissipates: inelastic || forces.iter().any(dissipates),
+            momentum: (closed && forces.iter().all(kept)).then_some(momentum),
             position: (same_impacts && forces.iter().all(is_weight)).then_some(away),
         }
     }
@@ -148,7 +158,8 @@ fn varying_potential(world: &World) -> f64 {
     }
     let weight = weight(world);
     let constant = |i| (world.force(i) + world.mass(i) * weight).dot(world.position(i));
-    world.potential_energy() + (0..world.len()).map(constant).sum::<f64>()
+    let movable = (0..world.len()).filter(|&i| world.mass(i).is_finite());
+    world.potential_energy() + movable.map(constant).sum::<f64>()
 }
 
 /// Acceleration by all weights, m/s².

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use scene::{MeshRef, Scene, SceneBody};
-use sim_core::DVec3;
+use scene::{MeshRef, Scene, SceneBody, SceneShape};
 
 use super::Session;
 
@@ -34,23 +33,18 @@ impl Session {
     pub fn import(&mut self, path: &Path) {
         match MeshRef::load(path) {
             Ok(mesh) => {
-                self.reset();
                 let name = path.file_stem().unwrap_or_default().to_string_lossy();
-                self.add_body(SceneBody {
-                    name: name.into_owned(),
-                    mesh,
-                    position: DVec3::ZERO,
-                    rotation: DVec3::ZERO,
-                    scale: DVec3::ONE,
-                    velocity: DVec3::ZERO,
-                    force: DVec3::ZERO,
-                    mass: 1.0,
-                    colour: None,
-                });
+                self.add(&name, SceneShape::Mesh(mesh));
                 self.frame();
             }
             Err(error) => self.notices.error("import", error.to_string()),
         }
+    }
+
+    /// Adds a body of a shape beside all others, at rest. Returns to the layout state first.
+    pub fn add(&mut self, name: &str, shape: SceneShape) {
+        self.reset();
+        self.add_body(SceneBody::new(name.to_owned(), shape));
     }
 
     /// Opens a scene or adds a mesh, by the name's ending.

@@ -7,9 +7,9 @@
 
 use std::time::Duration;
 
-use sim_core::{DVec3, StepError, World};
+use sim_core::{DVec3, Impact, StepError, World};
 
-use super::{Session, State, trails};
+use super::{Session, State, impacts, trails};
 use crate::headless;
 
 /// Real time that the steps of one frame may take before the rest of them is given up: leaves
@@ -23,6 +23,8 @@ pub struct Job {
     steps: u32,
     /// Positions are to be noted after each step.
     traced: bool,
+    /// Impacts are to be listed.
+    reported: bool,
     edition: u64,
 }
 
@@ -35,6 +37,7 @@ pub struct Done {
     time: Duration,
     error: Option<StepError>,
     trace: Vec<DVec3>,
+    impacts: Vec<Impact>,
     edition: u64,
 }
 
@@ -44,9 +47,13 @@ impl Job {
     pub fn run(mut self, stopwatch: impl Fn() -> Duration) -> Done {
         let began = stopwatch();
         let (mut taken, mut time, mut error) = (0, Duration::ZERO, None);
-        let mut trace = Vec::new();
+        let (mut trace, mut impacts) = (Vec::new(), Vec::new());
         while taken < self.steps && time <= STEP_BUDGET && error.is_none() {
-            error = self.world.step().err();
+            error = match self.reported {
+                true => self.world.step_reporting(&mut impacts).err(),
+                false => self.world.step().err(),
+            };
+            impacts.drain(..impacts.len().saturating_sub(impacts::MOST));
             taken += u32::from(error.is_none());
             if self.traced && error.is_none() {
                 trace.extend(trails::positions(&self.world));
@@ -60,6 +67,7 @@ impl Job {
             time,
             error,
             trace,
+            impacts,
             edition: self.edition,
         }
     }
@@ -97,6 +105,7 @@ impl Session {
                 world: self.world.clone(),
                 steps,
                 traced: self.display.trails,
+                reported: self.display.impacts,
                 edition: self.edition,
             }
         })
@@ -117,6 +126,7 @@ impl Session {
         if self.display.trails {
             self.trails.extend(&done.trace);
         }
+        self.impacts.extend(done.impacts, self.world.time());
         match done.error {
             None if self.state == State::Running => {
                 let left = f64::from(done.due - done.taken) * self.clock.dt();

@@ -9,11 +9,14 @@
 //! Nothing here draws, opens windows or reads a clock: see `picture` for what is drawn, and
 //! [`Session::due`] for how time comes in and steps are taken.
 
+mod ball;
 mod compare;
 mod edit;
 mod figures;
 mod files;
 mod forces;
+mod framing;
+mod impacts;
 mod job;
 mod notice;
 mod pick;
@@ -22,14 +25,17 @@ mod picture;
 mod tests;
 mod ties;
 mod trails;
+mod walls;
 
 use std::time::Duration;
 
 use scene::{Scene, SceneBody};
 use sim_core::{Collision, FixedStep, Method, Settings, World};
 
+use ball::Balls;
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
 pub use figures::{Drift, Figures, Reference};
+use impacts::Impacts;
 pub use job::{Done, Job, STEP_BUDGET};
 pub use notice::{Notice, Notices};
 pub use picture::{BvhView, Display};
@@ -45,6 +51,9 @@ pub const MAX_RATE: f64 = 240.0;
 /// Real time of one frame that may be caught up with; what exceeds it is dropped, so that a
 /// window that was held still for ten seconds does not have to simulate ten seconds at once.
 const CATCH_UP: Duration = Duration::from_millis(250);
+
+/// Bodies up to which their trails are shown at first.
+const MOST_TRAILS: usize = 20;
 
 /// What the session is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +76,8 @@ pub struct Session {
     figures: Figures,
     notices: Notices,
     trails: Trails,
+    impacts: Impacts,
+    balls: Balls,
     selection: Option<usize>,
     /// Steps are being taken on a copy of the world.
     under_way: bool,
@@ -98,6 +109,8 @@ impl Session {
             figures: Figures::default(),
             notices: Notices::default(),
             trails: Trails::default(),
+            impacts: Impacts::default(),
+            balls: Balls::default(),
             selection: None,
             under_way: false,
             steps_wanted: 0,
@@ -107,8 +120,9 @@ impl Session {
             display: Display::default(),
             compare: Compare::default(),
         };
-        // Where paths are curved, they show what a method does.
-        session.show_trails(!session.scene.forces.is_empty());
+        // Where paths are curved, they show what a method does; those of a crowd hide it.
+        let few = session.world.len() <= MOST_TRAILS;
+        session.show_trails(few && !session.scene.forces.is_empty());
         session.frame_opening();
         Ok(session)
     }
@@ -270,6 +284,7 @@ impl Session {
         self.reference = Reference::of(&self.world);
         self.figures = Figures::default();
         self.compare.forget();
+        self.impacts = Impacts::default();
         self.notices.dismiss("step");
         if self.display.trails {
             self.trails.begin(&self.world);

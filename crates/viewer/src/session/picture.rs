@@ -1,16 +1,16 @@
 //! What the person sees: the world as a [`Picture`].
 
-use sim_core::{Aabb, DVec3};
+use sim_core::{Aabb, DVec3, Shape};
 
 use super::Session;
+use super::framing::Bounds;
 use crate::picture::{Arrow, Line, Model, PALETTE, Picture};
 
 /// Velocity arrows.
 const BLUE: [f32; 3] = [0.10, 0.35, 1.0];
-/// The last impact.
-const ORANGE: [f32; 3] = [1.0, 0.45, 0.05];
-/// Simulated time for which an impact stays in sight, s.
-const IMPACT_SHOWN: f64 = 0.75;
+/// Half-spaces that have no colour of their own.
+const SLATE: [f32; 3] = [0.40, 0.45, 0.52];
+
 /// Which boxes of the bounding volume hierarchies are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BvhView {
@@ -39,6 +39,8 @@ pub struct Display {
     pub trails: bool,
     /// Springs, anchors and centres of attraction.
     pub ties: bool,
+    /// Points, normals and impulses of late impacts. Off, none are listed.
+    pub impacts: bool,
 }
 
 impl Default for Display {
@@ -55,6 +57,7 @@ impl Default for Display {
             grid: true,
             trails: false,
             ties: true,
+            impacts: true,
         }
     }
 }
@@ -68,15 +71,22 @@ impl Session {
         let mut picture = Picture {
             camera: self.camera,
             models: Vec::with_capacity(self.world.len()),
+            panes: Vec::new(),
             lines: Vec::new(),
+            marks: Vec::new(),
             arrows: Vec::new(),
             grid: self.display.grid,
         };
         for i in 0..self.world.len() {
             let selected = self.selection == Some(i);
-            if let Some(mesh) = self.world.mesh(i) {
+            let mesh = match self.world.shape(i) {
+                Some(Shape::Mesh(mesh)) => Some(mesh.clone()),
+                Some(&Shape::Sphere { radius }) => self.balls.mesh(radius),
+                Some(Shape::HalfSpace { .. }) | None => None,
+            };
+            if let Some(mesh) = mesh {
                 picture.models.push(Model {
-                    mesh: mesh.clone(),
+                    mesh,
                     position: self.shown_position(i),
                     colour: self.colour(i),
                     selected,
@@ -96,15 +106,20 @@ impl Session {
         if self.display.ties {
             self.add_ties(&mut picture.lines);
         }
-        self.add_impact(&mut picture);
+        self.add_walls(&mut picture);
+        if self.display.impacts {
+            self.add_impacts(&mut picture.marks);
+        }
         picture
     }
 
     /// Colour of body `i`, sRGB.
     pub fn colour(&self, i: usize) -> [f32; 3] {
-        self.scene.bodies[i]
-            .colour
-            .unwrap_or(PALETTE[i % PALETTE.len()])
+        let default = match self.is_half_space(i) {
+            true => SLATE,
+            false => PALETTE[i % PALETTE.len()],
+        };
+        self.scene.bodies[i].colour.unwrap_or(default)
     }
 
     /// Number of levels in the deepest hierarchy among the meshes; builds those missing.
@@ -150,12 +165,18 @@ impl Session {
     fn velocity_arrow(&self, i: usize) -> Option<Arrow> {
         let velocity = self.world.velocity(i);
         let direction = velocity.try_normalize()?;
-        let (centre, half) = match self.world.mesh(i) {
-            Some(mesh) => (mesh.bounds().centre(), mesh.bounds().half_extent()),
-            None => (DVec3::ZERO, DVec3::splat(0.05)),
+        let Bounds { centre, half } = self.bounds(i);
+        let place = match self.world.shape(i) {
+            Some(Shape::HalfSpace { .. }) => self.foot(i, self.room().0),
+            _ => self.shown_position(i) + centre,
+        };
+        let half = if half == DVec3::ZERO {
+            DVec3::splat(0.05)
+        } else {
+            half
         };
         let exit = (half / direction.abs()).min_element();
-        let from = self.shown_position(i) + centre + direction * exit;
+        let from = place + direction * exit;
         Some(Arrow {
             from,
             to: from + velocity * self.display.arrow_time,
@@ -181,36 +202,6 @@ impl Session {
                 }));
             }
         }
-    }
-
-    /// A cross at the point of a fresh impact and an arrow along its normal.
-    fn add_impact(&self, picture: &mut Picture) {
-        let Some(impact) = self.world.last_impact() else {
-            return;
-        };
-        if self.world.time() - impact.time > IMPACT_SHOWN {
-            return;
-        }
-        let size = 0.15
-            * [impact.bodies.0, impact.bodies.1]
-                .into_iter()
-                .filter_map(|i| Some(self.world.mesh(i)?.bounds().half_extent().max_element()))
-                .fold(f64::INFINITY, f64::min)
-                .min(1e6);
-        for axis in DVec3::AXES {
-            picture.lines.push(Line {
-                from: impact.point - axis * size,
-                to: impact.point + axis * size,
-                colour: [ORANGE[0], ORANGE[1], ORANGE[2], 1.0],
-                width: 2.5,
-            });
-        }
-        picture.arrows.push(Arrow {
-            from: impact.point,
-            to: impact.point + impact.normal * 5.0 * size,
-            colour: ORANGE,
-            radius: (0.15 * size) as f32,
-        });
     }
 }
 

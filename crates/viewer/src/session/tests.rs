@@ -8,6 +8,7 @@ use sim_core::{Collision, DVec3, METHODS};
 use super::{STEP_BUDGET, Session, State};
 
 mod forces;
+mod shapes;
 
 const FRAME: Duration = Duration::from_millis(17);
 
@@ -286,7 +287,7 @@ fn reset_keeps_the_way_to_simulate() {
 fn refused_values_change_nothing_and_are_explained() {
     let mut session = session();
     session.select(Some(0));
-    for mass in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+    for mass in [0.0, -1.0, f64::NAN, f64::NEG_INFINITY] {
         session.set_mass(mass);
         let text = complaint(&mut session, "mass").expect("a message");
         assert!(text.contains("mover"), "{text}");

@@ -1,6 +1,8 @@
 //! The selected body: its place in the set-up and its physics.
 
-use egui::RichText;
+use egui::{RichText, Slider};
+use scene::SceneShape;
+use sim_core::DVec3;
 
 use super::field;
 use crate::session::{Session, State};
@@ -10,35 +12,35 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         ui.label(RichText::new("Click a body in the picture or in the list.").weak());
         return;
     };
-    let (rotation, scale) = (body.rotation, body.scale);
+    let (shape, rotation, scale) = (body.shape.clone(), body.rotation, body.scale);
     heading(ui, session, i);
 
     let world = session.world();
     let (position, velocity) = (world.position(i), world.velocity(i));
     let (force, mass) = (world.force(i), world.mass(i));
+    let restitution = world.restitution(i);
     let layout = session.state() == State::Layout;
-    if let Some(value) = field::vector(ui, "Position", "m", "Where the mesh's origin is", position)
-    {
+    let place = match shape {
+        SceneShape::Mesh(_) => "Where the mesh's origin is",
+        SceneShape::Sphere { .. } => "Where the centre is",
+        SceneShape::HalfSpace { .. } => "A point of its plane",
+    };
+    if let Some(value) = field::vector(ui, "Position", "m", place, position) {
         session.set_position(value);
     }
-    ui.add_enabled_ui(layout, |ui| {
-        if let Some(value) = field::vector(
-            ui,
-            "Rotation",
-            "°",
-            "Turn about the fixed axes x, then y, then z",
-            rotation,
-        ) {
-            session.set_rotation(value);
+    ui.add_enabled_ui(layout, |ui| match shape {
+        SceneShape::Mesh(_) => turned(ui, session, rotation, scale),
+        SceneShape::Sphere { radius } => {
+            let value = field::scalar(ui, "Radius", "m", "Radius of the sphere", radius);
+            if let Some(radius) = value {
+                session.set_shape(SceneShape::Sphere { radius });
+            }
         }
-        if let Some(value) = field::vector(
-            ui,
-            "Scale",
-            "",
-            "Stretch along the body's own axes; not 0",
-            scale,
-        ) {
-            session.set_scale(value);
+        SceneShape::HalfSpace { normal } => {
+            let meaning = "Direction out of the half-space, of any length but 0";
+            if let Some(normal) = field::vector(ui, "Normal", "", meaning, normal) {
+                session.set_shape(SceneShape::HalfSpace { normal });
+            }
         }
     })
     .response
@@ -46,12 +48,12 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     if let Some(value) = field::vector(ui, "Velocity", "m/s", "Velocity", velocity) {
         session.set_velocity(value);
     }
-    if let Some(value) = field::vector(ui, "Force", "N", "Constant force on the body", force) {
+    if mass.is_finite()
+        && let Some(value) = field::vector(ui, "Force", "N", "Constant force on the body", force)
+    {
         session.set_force(value);
     }
-    if let Some(value) = field::scalar(ui, "Mass", "kg", "Mass, above 0", mass) {
-        session.set_mass(value);
-    }
+    mass_and_restitution(ui, session, mass, restitution);
     ui.horizontal(|ui| {
         ui.add_enabled_ui(layout, |ui| {
             if ui
@@ -77,7 +79,57 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     });
 }
 
-/// Colour, name and mesh.
+fn turned(ui: &mut egui::Ui, session: &mut Session, rotation: DVec3, scale: DVec3) {
+    let meaning = "Turn about the fixed axes x, then y, then z";
+    if let Some(value) = field::vector(ui, "Rotation", "°", meaning, rotation) {
+        session.set_rotation(value);
+    }
+    let meaning = "Stretch along the body's own axes; not 0";
+    if let Some(value) = field::vector(ui, "Scale", "", meaning, scale) {
+        session.set_scale(value);
+    }
+}
+
+fn mass_and_restitution(ui: &mut egui::Ui, session: &mut Session, mass: f64, restitution: f64) {
+    let is_half_space = session
+        .selected()
+        .is_some_and(|body| matches!(body.shape, SceneShape::HalfSpace { .. }));
+    ui.horizontal(|ui| {
+        if mass.is_finite() {
+            if let Some(value) = field::scalar(ui, "Mass", "kg", "Mass, above 0", mass) {
+                session.set_mass(value);
+            }
+        } else {
+            field::label(ui, "Mass", "An immovable body has an infinite one");
+        }
+        let mut immovable = mass.is_infinite();
+        let changed = ui
+            .add_enabled(
+                !is_half_space,
+                egui::Checkbox::new(&mut immovable, "Immovable"),
+            )
+            .on_hover_text("Nothing moves it: it stands still or keeps its velocity")
+            .on_disabled_hover_text(
+                "Half-spaces always are: they stand still or keep their velocity",
+            )
+            .changed();
+        if changed {
+            session.set_mass(if immovable { f64::INFINITY } else { 1.0 });
+        }
+    });
+    ui.horizontal(|ui| {
+        let meaning = "Part of the approaching speed that is left after an impact; of the two \
+                       bodies' the lesser one counts";
+        field::label(ui, "Restitution", meaning);
+        let mut value = restitution;
+        let slider = Slider::new(&mut value, 0.0..=1.0).max_decimals(3);
+        if ui.add(slider).on_hover_text(meaning).changed() {
+            session.set_restitution(value);
+        }
+    });
+}
+
+/// Colour, name and shape.
 fn heading(ui: &mut egui::Ui, session: &mut Session, i: usize) {
     let mut colour = session.colour(i).map(|part| (255.0 * part).round() as u8);
     ui.horizontal(|ui| {
@@ -89,11 +141,14 @@ fn heading(ui: &mut egui::Ui, session: &mut Session, i: usize) {
         }
         let body = &session.scene().bodies[i];
         ui.add(egui::Label::new(RichText::new(&body.name).strong()).truncate());
-        let triangles = session
-            .world()
-            .mesh(i)
-            .map_or(0, |mesh| mesh.triangles().len());
-        let about = format!("{}, {triangles} triangles", body.mesh.name());
+        let about = match &body.shape {
+            SceneShape::Mesh(mesh) => {
+                let triangles = mesh.mesh().triangles().len();
+                format!("{}, {triangles} triangles", mesh.name())
+            }
+            SceneShape::Sphere { .. } => "sphere".to_owned(),
+            SceneShape::HalfSpace { .. } => "half-space".to_owned(),
+        };
         ui.add(egui::Label::new(RichText::new(about).weak()).truncate());
     });
 }

@@ -6,6 +6,9 @@ use super::{field, style};
 use crate::number;
 use crate::session::Session;
 
+/// Pairs in overlap that are named; more would cover the picture.
+const OVERLAPS: usize = 4;
+
 /// Shows the figures in the lower left corner of the picture.
 pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &Session) {
     Area::new(egui::Id::unique("live"))
@@ -81,7 +84,8 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     let (name, meaning) = match drift.dissipates {
         true => (
             "  change",
-            "Relative change of the energy since the start or the last edit: friction takes it, so it is no error",
+            "Relative change of the energy since the start or the last edit: friction or inelastic \
+             impacts take it, or a driven wall gives it, so it is no error",
         ),
         false => (
             "  drift",
@@ -101,7 +105,8 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
         ui,
         "  drift",
         "Relative error of the momentum since the start or the last edit; what the forces do is \
-         taken into account. Unknown where a spring, drag or attraction acts from outside",
+         taken into account. Unknown where a spring, drag or attraction acts from outside, or an \
+         immovable body was there to be hit",
         drift.momentum.map_or_else(none, number::relative),
     );
     field::figure(
@@ -135,17 +140,24 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
         field::figure(
             ui,
             "  last",
-            "The last collision: when, between which bodies, and the impulse exchanged",
+            "The last collision: when and between which bodies",
+            format!("{:.3} s  {} and {}", impact.time, name(a), name(b)),
+        );
+        let (approaching, parting) = impact.speeds;
+        field::figure(
+            ui,
+            "  impulse",
+            "The impulse exchanged in the last collision, and the speeds along its normal at which \
+             the bodies approached and part",
             format!(
-                "{:.3} s  {} and {}  {} N s",
-                impact.time,
-                name(a),
-                name(b),
-                number::figure(impact.impulse)
+                "{} N s  {} → {} m/s",
+                number::figure(impact.impulse),
+                number::figure(approaching),
+                number::figure(parting)
             ),
         );
     }
-    for &(a, b) in world.overlapping() {
+    for &(a, b) in world.overlapping().iter().take(OVERLAPS) {
         let text = format!("{} and {} began inside each other", name(a), name(b));
         ui.label(RichText::new(text).color(style::AMBER)).on_hover_text(
             "They move freely until they have parted. Reset and move them apart to let them collide.",

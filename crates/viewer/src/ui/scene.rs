@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use egui::{ComboBox, RichText, TextEdit};
+use scene::{MeshRef, SceneShape};
+use sim_core::DVec3;
 
 use super::dialog::{Answer, Dialog, Purpose};
 use super::field;
@@ -122,6 +124,21 @@ fn bodies(ui: &mut egui::Ui, session: &mut Session) {
     if session.scene().bodies.is_empty() {
         ui.label(RichText::new("No bodies. Add a mesh by its path or by dropping it here.").weak());
     }
+    ui.horizontal(|ui| {
+        field::label(ui, "Add", "A body beside all others; returns to the layout");
+        let shapes = [
+            ("cube", MeshRef::builtin("cube.obj").map(SceneShape::Mesh)),
+            ("sphere", Some(SceneShape::Sphere { radius: 0.5 })),
+            ("floor", Some(SceneShape::HalfSpace { normal: DVec3::Y })),
+        ];
+        for (name, shape) in shapes {
+            if let Some(shape) = shape
+                && ui.button(name).clicked()
+            {
+                session.add(name, shape);
+            }
+        }
+    });
     let mut chosen = None;
     egui::ScrollArea::vertical()
         .max_height(120.0)

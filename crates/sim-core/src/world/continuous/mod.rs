@@ -25,6 +25,7 @@ use crate::{
     collide::{Broad, Contact, Swept},
 };
 use respond::{Answer, Rest};
+use way::Probe;
 
 /// What a step with continuous collision needs beside the state; empty while there is none.
 #[derive(Clone, Debug, Default)]
@@ -34,8 +35,8 @@ pub(super) struct Continuous {
     since: Vec<f64>,
     /// How often a body's way has changed in this step; an impact of an older way is void.
     version: Vec<u32>,
-    /// What resting contacts add to the acceleration of each body, m/s².
-    reaction: Vec<DVec3>,
+    /// What constant forces and resting contacts do to each body, m/s².
+    acceleration: Vec<DVec3>,
     /// Contacts whose bodies stay together for the rest of the step.
     resting: Vec<Rest>,
     events: BinaryHeap<Event>,
@@ -44,7 +45,8 @@ pub(super) struct Continuous {
     broad: Broad,
     /// Half-spaces, which no box holds.
     walls: Vec<usize>,
-    probe: State,
+    probe: Probe,
+    renewed_motion: Vec<(DVec3, DVec3)>,
     /// Bodies whose ways are new, and bodies that may come near one of them.
     renewed: Vec<usize>,
     partners: Vec<usize>,
@@ -92,6 +94,10 @@ impl PartialEq for Event {
 }
 
 impl Eq for Event {}
+
+/// Pairs for a thread at least: less is faster done than handed over.
+#[cfg(feature = "rayon")]
+const PAIRS_A_TASK: usize = 32;
 
 /// Pairs that are listed before they are sorted, and named once each.
 const MOST_NEAR: usize = 1 << 16;
@@ -144,9 +150,37 @@ impl World {
         self.continuous.events.clear();
         for place in 0..count {
             let (i, j) = self.continuous.near[place];
-            if let Some(event) = self.seek(i, j)? {
-                self.continuous.events.push(event);
-            }
+            self.need_bvh(i);
+            self.need_bvh(j);
+        }
+        self.seek_near()
+    }
+
+    /// Seeks the first impact of each pair that comes near.
+    #[cfg(not(feature = "rayon"))]
+    fn seek_near(&mut self) -> Result<(), (usize, Cause)> {
+        let mut probe = mem::take(&mut self.continuous.probe);
+        let mut events = mem::take(&mut self.continuous.events);
+        let found = self.continuous.near.iter().try_for_each(|&(i, j)| {
+            events.extend(self.seek(i, j, &mut probe)?);
+            Ok(())
+        });
+        (self.continuous.probe, self.continuous.events) = (probe, events);
+        found
+    }
+
+    /// The same on many threads. What is found depends on the pair alone, and the queue puts it in
+    /// order.
+    #[cfg(feature = "rayon")]
+    fn seek_near(&mut self) -> Result<(), (usize, Cause)> {
+        use rayon::prelude::*;
+        let seek = |probe: &mut Probe, &(i, j): &(usize, usize)| self.seek(i, j, probe).transpose();
+        let pairs = self.continuous.near.par_iter().with_min_len(PAIRS_A_TASK);
+        let found = pairs.map_init(Probe::default, seek).flatten_iter();
+        // The first error in the order of pairs, whatever the threads do.
+        let found: Vec<Result<Event, (usize, Cause)>> = found.collect();
+        for event in found {
+            self.continuous.events.push(event?);
         }
         Ok(())
     }
@@ -218,7 +252,12 @@ impl World {
             }
             let pair = (body.min(other), body.max(other));
             self.continuous.near.push(pair);
-            if let Some(event) = self.seek(pair.0, pair.1)? {
+            self.need_bvh(body);
+            self.need_bvh(other);
+            let mut probe = mem::take(&mut self.continuous.probe);
+            let event = self.seek(pair.0, pair.1, &mut probe);
+            self.continuous.probe = probe;
+            if let Some(event) = event? {
                 self.continuous.events.push(event);
             }
         }

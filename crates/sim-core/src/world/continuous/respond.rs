@@ -216,7 +216,7 @@ impl World {
 
         // Nor do forces close them.
         for body in bodies {
-            self.continuous.reaction[body] = DVec3::ZERO;
+            self.continuous.acceleration[body] = self.acceleration[body];
         }
         let (places, joined) = Places::of(here.iter().copied());
         let mut acceleration: Vec<DVec3> = Vec::with_capacity(places.bodies.len());
@@ -226,7 +226,7 @@ impl World {
         let free = acceleration.clone();
         project(&joined, &places.inverse_mass(self), &mut acceleration);
         for (&body, (pushed, free)) in places.bodies.iter().zip(acceleration.iter().zip(free)) {
-            self.continuous.reaction[body] = pushed - free;
+            self.continuous.acceleration[body] += pushed - free;
         }
         here.extend(elsewhere);
         self.continuous.resting = here;

@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
-use super::{Event, respond::Answer};
+use super::{Event, Probe, respond::Answer};
 use crate::{
     collide::{Contact, first_contact, snap},
     shape::Shape,
@@ -39,9 +39,13 @@ struct Pair {
 
 impl World {
     /// The next impact of two bodies within the step, and where they are just before they touch.
-    pub(super) fn seek(&mut self, i: usize, j: usize) -> Result<Option<Event>, (usize, Cause)> {
-        self.need_bvh(i);
-        self.need_bvh(j);
+    /// The trees over their meshes must be there.
+    pub(super) fn seek(
+        &self,
+        i: usize,
+        j: usize,
+        probe: &mut Probe,
+    ) -> Result<Option<Event>, (usize, Cause)> {
         let since = &self.continuous.since;
         let (start, end) = (since[i].max(since[j]), self.settings.dt);
         let pair = Pair {
@@ -56,7 +60,7 @@ impl World {
         // 0/0 for points on straight ways.
         let chords = libm::ceil(libm::sqrt(ratio)).clamp(1.0, MOST_CHORDS);
         let chords = if pair.bend > 0.0 { chords } else { 1.0 };
-        let mut from = (start, self.offset_at(pair, start)?);
+        let mut from = (start, self.offset_at(pair, start, probe)?);
         let mut chord = 1.0;
         while chord <= chords {
             let time = if chord == chords {
@@ -64,8 +68,8 @@ impl World {
             } else {
                 start + length * (chord / chords)
             };
-            let to = (time, self.offset_at(pair, time)?);
-            if let Some(event) = self.seek_on_chord(pair, from, to, 0)? {
+            let to = (time, self.offset_at(pair, time, probe)?);
+            if let Some(event) = self.seek_on_chord(pair, (from, to), 0, probe)? {
                 return Ok(Some(event));
             }
             (from, chord) = (to, chord + 1.0);
@@ -75,11 +79,11 @@ impl World {
 
     /// The first impact on a part of the way, given as times and offsets of its ends.
     fn seek_on_chord(
-        &mut self,
+        &self,
         pair: Pair,
-        from: (f64, DVec3),
-        to: (f64, DVec3),
+        (from, to): ((f64, DVec3), (f64, DVec3)),
         depth: u32,
+        probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         let motion = to.1 - from.1;
         let forms = self.form(pair.i).zip(self.form(pair.j));
@@ -94,10 +98,16 @@ impl World {
         let is_straight = departure <= pair.grain || depth == DEEPEST;
         let is_there = contact.time * fall <= 4.0 * pair.grain
             && from.0 == self.start_of(pair)
-            && self.is_closing(pair, contact.normal);
+            && self.is_closing(pair, contact.normal, probe);
         if is_straight || is_there {
             let time = if is_there { 0.0 } else { contact.time };
-            return self.settle(pair, from, (length, fall), Contact { time, ..contact });
+            return self.settle(
+                pair,
+                from,
+                (length, fall),
+                Contact { time, ..contact },
+                probe,
+            );
         }
         // Within this of the chord's impact lies the way's, unless it slips past.
         let time = from.0 + contact.time * length;
@@ -113,9 +123,9 @@ impl World {
             }
             let part = match end == to.0 {
                 true => to,
-                false => (end, self.offset_at(pair, end)?),
+                false => (end, self.offset_at(pair, end, probe)?),
             };
-            if let Some(event) = self.seek_on_chord(pair, from, part, depth + 1)? {
+            if let Some(event) = self.seek_on_chord(pair, (from, part), depth + 1, probe)? {
                 return Ok(Some(event));
             }
             from = part;
@@ -125,11 +135,12 @@ impl World {
 
     /// The last time before a contact, but for rounding, at which two bodies are apart.
     fn settle(
-        &mut self,
+        &self,
         pair: Pair,
         from: (f64, DVec3),
         (length, fall): (f64, f64),
         contact: Contact,
+        probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         let Pair { i, j, grain, .. } = pair;
         let touching = from.0 + contact.time * length;
@@ -138,12 +149,12 @@ impl World {
         while time > from.0 {
             time = (touching - back).max(from.0);
             back *= 2.0;
-            let offset = self.offset_at(pair, time)?;
-            if !self.meet_at(i, j, offset) {
+            let offset = self.offset_at(pair, time, probe)?;
+            if !self.meet_built(i, j, offset) {
                 break;
             }
         }
-        let (place, _) = self.motion_at(i, time)?;
+        let (place, _) = self.motion_at(i, time, probe)?;
         let ways = &self.continuous;
         Ok(Some(Event {
             time,
@@ -158,9 +169,9 @@ impl World {
         }))
     }
 
-    fn offset_at(&mut self, pair: Pair, time: f64) -> Result<DVec3, (usize, Cause)> {
-        let (first, second) = (self.motion_at(pair.i, time)?, self.motion_at(pair.j, time)?);
-        Ok(second.0 - first.0)
+    fn offset_at(&self, pair: Pair, time: f64, probe: &mut Probe) -> Result<DVec3, (usize, Cause)> {
+        let first = self.motion_at(pair.i, time, probe)?.0;
+        Ok(self.motion_at(pair.j, time, probe)?.0 - first)
     }
 
     fn start_of(&self, pair: Pair) -> f64 {
@@ -168,13 +179,11 @@ impl World {
     }
 
     /// Whether two bodies at the start of their common way do not part along a normal.
-    fn is_closing(&mut self, pair: Pair, normal: DVec3) -> bool {
+    fn is_closing(&self, pair: Pair, normal: DVec3, probe: &mut Probe) -> bool {
         let start = self.start_of(pair);
-        let velocities = self
-            .motion_at(pair.i, start)
-            .ok()
-            .zip(self.motion_at(pair.j, start).ok());
-        velocities.is_some_and(|((_, v1), (_, v2))| {
+        let mut velocity = |body| self.motion_at(body, start, probe).map(|(_, v)| v);
+        let velocities = velocity(pair.i).ok().zip(velocity(pair.j).ok());
+        velocities.is_some_and(|(v1, v2)| {
             (v2 - v1).dot(normal) <= 8.0 * f64::EPSILON * (v1.length() + v2.length())
         })
     }

@@ -9,8 +9,20 @@ use alloc::vec;
 use core::{mem, ops::Range};
 use glam::DVec3;
 
-use super::super::{World, error, stepping::Cause, system::Part};
-use crate::System;
+use super::super::{
+    World, error,
+    state::State,
+    stepping::{Block, Cause},
+    system::Part,
+};
+use crate::{System, integrate::Scratch};
+
+/// Room to ask where bodies are.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Probe {
+    state: State,
+    scratch: Scratch,
+}
 
 impl World {
     /// Lets every way start where the step does. The ends are in the current state already.
@@ -20,12 +32,11 @@ impl World {
         self.continuous.is_free = sections == 0 && self.settings.method.fall.is_some();
         let ways = &mut self.continuous;
         ways.start.clone_from(&self.previous);
+        ways.acceleration.clone_from(&self.acceleration);
         ways.since.clear();
         ways.since.resize(n, 0.0);
         ways.version.clear();
         ways.version.resize(n, 0);
-        ways.reaction.clear();
-        ways.reaction.resize(n, DVec3::ZERO);
     }
 
     /// The bodies that must be stepped with one, and whether they are coupled; `None` where its
@@ -46,9 +57,10 @@ impl World {
     /// Position and velocity of a body at a time from the start of its way to the end of the step,
     /// s from the step's start.
     pub(super) fn motion_at(
-        &mut self,
+        &self,
         body: usize,
         time: f64,
+        probe: &mut Probe,
     ) -> Result<(DVec3, DVec3), (usize, Cause)> {
         let ways = &self.continuous;
         let (x, v) = (ways.start.position[body], ways.start.velocity[body]);
@@ -61,43 +73,45 @@ impl World {
         }
         let Some((bodies, is_coupled)) = self.unit(body) else {
             let fall = self.settings.method.fall.unwrap_or(0.0);
-            let a = self.way_acceleration(body);
+            let a = ways.acceleration[body];
             return Ok((x + h * (v + fall * h * a), v + h * a));
         };
-        let mut probe = mem::take(&mut self.continuous.probe);
-        let moved = self.step_unit(bodies, is_coupled, time, &mut probe);
-        let motion = moved.map(|()| (probe.position[body], probe.velocity[body]));
-        self.continuous.probe = probe;
-        motion
+        probe.state.position.resize(self.len(), DVec3::ZERO);
+        probe.state.velocity.resize(self.len(), DVec3::ZERO);
+        self.step_unit(
+            bodies,
+            is_coupled,
+            time,
+            &mut probe.state,
+            &mut probe.scratch,
+        )?;
+        Ok((probe.state.position[body], probe.state.velocity[body]))
     }
 
     /// Steps coupled bodies, or one, from the start of their way to a time.
     fn step_unit(
-        &mut self,
+        &self,
         bodies: Range<usize>,
         is_coupled: bool,
         time: f64,
-        to: &mut super::State,
+        to: &mut State,
+        scratch: &mut Scratch,
     ) -> Result<(), (usize, Cause)> {
-        to.position.resize(self.len(), DVec3::ZERO);
-        to.velocity.resize(self.len(), DVec3::ZERO);
-        let since = self.continuous.since[bodies.start];
-        let plan = self.plan.take().unwrap_or_default();
-        let start = mem::take(&mut self.continuous.start);
-        let reaction = mem::take(&mut self.continuous.reaction);
-        // The method sees the reactions of resting contacts as part of the constant forces.
-        for body in bodies.clone() {
-            self.acceleration[body] += reaction[body];
-        }
-        let span = (since, time - since);
-        let moved = self.block(&plan, bodies.clone(), is_coupled, (&start, to), span);
-        for body in bodies {
-            self.acceleration[body] = self.constant_acceleration(body);
-        }
-        self.continuous.start = start;
-        self.continuous.reaction = reaction;
-        self.plan = Some(plan);
-        moved
+        let Some(plan) = &self.plan else {
+            return Ok(());
+        };
+        let ways = &self.continuous;
+        let since = ways.since[bodies.start];
+        let block = Block {
+            // Resting contacts push like constant forces.
+            acceleration: &ways.acceleration[bodies.clone()],
+            bodies,
+            is_coupled,
+            from: &ways.start,
+            since,
+            length: time - since,
+        };
+        self.step_block(plan, block, to, scratch)
     }
 
     /// Lets the way of a body, and of those coupled to it, start anew at a time, where they are
@@ -108,26 +122,26 @@ impl World {
         time: f64,
     ) -> Result<Range<usize>, (usize, Cause)> {
         let unit = self.unit(body);
+        let bodies = unit.map_or(body..body + 1, |(bodies, _)| bodies);
         if self.continuous.since[body] == time {
-            return Ok(unit.map_or(body..body + 1, |(bodies, _)| bodies));
+            return Ok(bodies);
         }
-        let Some((bodies, is_coupled)) = unit else {
-            let (x, v) = self.motion_at(body, time)?;
-            let ways = &mut self.continuous;
-            (ways.start.position[body], ways.start.velocity[body]) = (x, v);
-            ways.since[body] = time;
-            return Ok(body..body + 1);
-        };
-        let mut there = mem::take(&mut self.continuous.probe);
-        let moved = self.step_unit(bodies.clone(), is_coupled, time, &mut there);
+        let mut probe = mem::take(&mut self.continuous.probe);
+        let mut motion = mem::take(&mut self.continuous.renewed_motion);
+        motion.clear();
+        let found = bodies.clone().try_for_each(|body| {
+            motion.push(self.motion_at(body, time, &mut probe)?);
+            Ok(())
+        });
         let ways = &mut self.continuous;
-        if moved.is_ok() {
-            ways.start.position[bodies.clone()].copy_from_slice(&there.position[bodies.clone()]);
-            ways.start.velocity[bodies.clone()].copy_from_slice(&there.velocity[bodies.clone()]);
-            ways.since[bodies.clone()].fill(time);
+        if found.is_ok() {
+            for (body, &(x, v)) in bodies.clone().zip(&motion) {
+                (ways.start.position[body], ways.start.velocity[body]) = (x, v);
+                ways.since[body] = time;
+            }
         }
-        ways.probe = there;
-        moved.map(|()| bodies)
+        (ways.probe, ways.renewed_motion) = (probe, motion);
+        found.map(|()| bodies)
     }
 
     /// Moves bodies that are stepped together from the start of their way to the end of the step.
@@ -139,14 +153,15 @@ impl World {
                 let fall = self.settings.method.fall.unwrap_or(0.0);
                 let ways = &self.continuous;
                 let (x, v) = (ways.start.position[body], ways.start.velocity[body]);
-                let (h, a) = (dt - ways.since[body], self.way_acceleration(body));
+                let (h, a) = (dt - ways.since[body], ways.acceleration[body]);
                 self.current.position[body] = x + h * (v + fall * h * a);
                 self.current.velocity[body] = v + h * a;
             }
             Some((bodies, is_coupled)) => {
                 let mut current = mem::take(&mut self.current);
-                let moved = self.step_unit(bodies, is_coupled, dt, &mut current);
-                self.current = current;
+                let mut scratch = mem::take(&mut self.scratch);
+                let moved = self.step_unit(bodies, is_coupled, dt, &mut current, &mut scratch);
+                (self.current, self.scratch) = (current, scratch);
                 moved?;
             }
         }
@@ -159,18 +174,13 @@ impl World {
         }
     }
 
-    /// What forces and resting contacts do to a body on a parabola, m/s².
-    fn way_acceleration(&self, body: usize) -> DVec3 {
-        self.acceleration[body] + self.continuous.reaction[body]
-    }
-
     /// What forces and resting contacts do to a body where its way starts, m/s².
     pub(super) fn acceleration_there(&self, body: usize) -> DVec3 {
         let Some((bodies, is_coupled)) = self.unit(body) else {
-            return self.way_acceleration(body);
+            return self.continuous.acceleration[body];
         };
         let Some(plan) = &self.plan else {
-            return self.way_acceleration(body);
+            return self.continuous.acceleration[body];
         };
         let ways = &self.continuous;
         let part = Part {
@@ -178,14 +188,14 @@ impl World {
             plan,
             is_coupled,
             mass: &self.mass[bodies.clone()],
-            acceleration: &self.acceleration[bodies.clone()],
+            acceleration: &ways.acceleration[bodies.clone()],
             bodies: bodies.clone(),
         };
         let time = self.time() + ways.since[body];
         let mut all = vec![DVec3::ZERO; bodies.len()];
         let (x, v) = (&ways.start.position, &ways.start.velocity);
         part.accelerations(time, &x[bodies.clone()], &v[bodies.clone()], &mut all);
-        all[body - bodies.start] + ways.reaction[body]
+        all[body - bodies.start]
     }
 
     /// How far a body's way departs from its chord, at most, m, by component.
@@ -194,7 +204,7 @@ impl World {
         let h = self.settings.dt - ways.since[body];
         if self.unit(body).is_none() {
             let fall = self.settings.method.fall.unwrap_or(0.0);
-            return (0.25 * fall * h * h) * self.way_acceleration(body).abs();
+            return (0.25 * fall * h * h) * ways.acceleration[body].abs();
         }
         // Of a parabola the sum is four times the bulge.
         let chord = self.current.position[body] - ways.start.position[body];
@@ -207,7 +217,8 @@ impl World {
     pub(super) fn bend(&self, i: usize, j: usize) -> f64 {
         if self.unit(i).is_none() && self.unit(j).is_none() {
             let fall = self.settings.method.fall.unwrap_or(0.0);
-            let relative = self.way_acceleration(j) - self.way_acceleration(i);
+            let push = &self.continuous.acceleration;
+            let relative = push[j] - push[i];
             return 0.25 * fall * relative.length();
         }
         let of = |body: usize| {

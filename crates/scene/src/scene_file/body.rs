@@ -1,0 +1,158 @@
+//! A `[[body]]` to the bodies that it stands for.
+
+use glam::DVec3;
+use toml::Spanned;
+
+use super::copies;
+use super::meshes::MeshSource;
+use super::number::{Number, Triple};
+use super::parse::{LARGEST, Place, Source, Subject};
+use super::text::Body;
+use crate::colour;
+use crate::error::SceneError;
+use crate::scene::{SceneBody, SceneShape};
+
+/// The bodies of a table: one, or its copies, which keep clear of those before it.
+pub(super) fn parse(
+    source: &Source,
+    text: Body,
+    meshes: &mut MeshSource,
+    before: &[SceneBody],
+) -> Result<Vec<SceneBody>, SceneError> {
+    let name = text.name.get_ref().clone();
+    let place = Place::new(source, Subject::Body(&name));
+    if name.trim().is_empty() {
+        return Err(place.error(text.name.span(), "name", "must not be empty"));
+    }
+    let shape = shape(&place, &text, meshes)?;
+    let mut body = SceneBody::new(name.clone(), shape);
+    refuse_senseless(&place, &text, &body.shape)?;
+    let copies = copies::parse(&place, &text)?;
+    body.position = place.vector("position", text.position)?;
+    body.rotation = place.vector("rotation", text.rotation)?;
+    body.velocity = place.vector("velocity", text.velocity)?;
+    body.force = place.vector("force", text.force)?;
+    if let Some(value) = text.scale {
+        body.scale = value.get_ref().0;
+        if !body.scale.is_finite() || body.scale.cmpeq(DVec3::ZERO).any() {
+            let what = format!("must be finite and not 0, is {}", body.scale);
+            return Err(place.error(value.span(), "scale", what));
+        }
+    }
+    if let Some(value) = text.mass {
+        body.mass = mass(&place, &value)?;
+    }
+    if text.immovable.is_some_and(|value| *value.get_ref()) {
+        body.mass = f64::INFINITY;
+    }
+    if let Some(value) = text.restitution {
+        body.restitution = value.get_ref().0;
+        if !(0.0..=1.0).contains(&body.restitution) {
+            let what = format!(
+                "must be from 0 (keeps nothing of the approaching speed) to 1 (all of it), is {}",
+                body.restitution
+            );
+            return Err(place.error(value.span(), "restitution", what));
+        }
+    }
+    if let Some(value) = text.colour {
+        body.colour = colour::parse(value.get_ref());
+        if body.colour.is_none() {
+            let what = format!("must look like `#c8553d`, is `{}`", value.get_ref());
+            return Err(place.error(value.span(), "colour", what));
+        }
+    }
+    match copies {
+        Some(copies) => copies.place(&place, &body, before),
+        None => Ok(vec![body]),
+    }
+}
+
+/// The one shape of a table.
+fn shape(place: &Place, text: &Body, meshes: &mut MeshSource) -> Result<SceneShape, SceneError> {
+    match (&text.mesh, &text.sphere, &text.half_space) {
+        (Some(name), None, None) => {
+            let mesh = meshes.get(name.get_ref());
+            mesh.map(SceneShape::Mesh)
+                .map_err(|what| place.error(name.span(), "mesh", what))
+        }
+        (None, Some(value), None) => {
+            let Number(radius) = *value.get_ref();
+            if !(0.0..=LARGEST).contains(&radius) {
+                let what = format!("must be a radius in m from 0 to 1e100, is {radius}");
+                return Err(place.error(value.span(), "sphere", what));
+            }
+            Ok(SceneShape::Sphere { radius })
+        }
+        (None, None, Some(value)) => half_space(place, value),
+        (None, None, None) => Err(place.error(
+            text.name.span(),
+            "mesh",
+            "is missing: a body has one of `mesh`, `sphere` and `half-space`",
+        )),
+        (Some(_), Some(value), _) => Err(second_shape(place, value, "sphere")),
+        (_, _, Some(value)) => Err(second_shape(place, value, "half-space")),
+    }
+}
+
+fn half_space(place: &Place, value: &Spanned<Triple>) -> Result<SceneShape, SceneError> {
+    let normal = place.vector("half-space", Some(value.clone()))?;
+    if normal == DVec3::ZERO {
+        let what = "must be the direction that points out of it, such as [0, 1, 0] for a floor, \
+                    is [0, 0, 0]";
+        return Err(place.error(value.span(), "half-space", what));
+    }
+    Ok(SceneShape::HalfSpace { normal })
+}
+
+fn second_shape<T>(place: &Place, value: &Spanned<T>, field: &str) -> SceneError {
+    let what = "the body has a shape already: give one of `mesh`, `sphere` and `half-space`";
+    place.error(value.span(), field, what)
+}
+
+/// Refuses fields that a body of that shape does not have, rather than to ignore them.
+fn refuse_senseless(place: &Place, text: &Body, shape: &SceneShape) -> Result<(), SceneError> {
+    let wrong = |span, field, what: String| Err(place.error(span, field, what));
+    let shape = match shape {
+        SceneShape::Mesh(_) => None,
+        SceneShape::Sphere { .. } => Some(("sphere", "`sphere` is its radius")),
+        SceneShape::HalfSpace { .. } => Some(("half-space", "`half-space` is its normal")),
+    };
+    if let Some((kind, instead)) = shape {
+        let what = format!("a {kind} has none, {instead}: leave it out");
+        if let Some(value) = &text.rotation {
+            return wrong(value.span(), "rotation", what);
+        }
+        if let Some(value) = &text.scale {
+            return wrong(value.span(), "scale", what);
+        }
+    }
+    let is_half_space = text.half_space.is_some();
+    match (&text.mass, &text.immovable) {
+        (Some(mass), _) if is_half_space => {
+            let what = "a half-space is always immovable: leave it out".to_owned();
+            wrong(mass.span(), "mass", what)
+        }
+        (_, Some(immovable)) if is_half_space && !immovable.get_ref() => {
+            let what = "a half-space is always immovable: leave it out".to_owned();
+            wrong(immovable.span(), "immovable", what)
+        }
+        (Some(mass), Some(immovable)) if *immovable.get_ref() => {
+            let what = "an immovable body needs no mass: leave out one of both".to_owned();
+            wrong(mass.span(), "mass", what)
+        }
+        _ => Ok(()),
+    }
+}
+
+fn mass(place: &Place, value: &Spanned<Number>) -> Result<f64, SceneError> {
+    let Number(mass) = *value.get_ref();
+    if (1.0 / LARGEST..=LARGEST).contains(&mass) {
+        return Ok(mass);
+    }
+    let mut what = format!("must be a mass in kg above 0 (from 1e-100 to 1e100), is {mass}");
+    if mass == f64::INFINITY {
+        what += "; a body that nothing moves is `immovable = true`";
+    }
+    Err(place.error(value.span(), "mass", what))
+}

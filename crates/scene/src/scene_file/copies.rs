@@ -1,0 +1,211 @@
+//! `copies`: many bodies from one table, at random places where none touches another.
+
+use glam::DVec3;
+use toml::Spanned;
+
+use super::number::Triple;
+use super::parse::{LARGEST, Place};
+use super::text::Body;
+use crate::error::SceneError;
+use crate::scene::{SceneBody, SceneShape};
+use crate::world::{bake, baked_field};
+
+/// The most copies of one body.
+const MOST: usize = 10_000;
+/// Places tried for a copy before the box counts as full.
+const TRIES: usize = 10_000;
+
+/// What a table says of its copies.
+pub(super) struct Copies {
+    count: Spanned<usize>,
+    /// Least and greatest corner of the box that they are in.
+    inside: (DVec3, DVec3),
+    speed: f64,
+    seed: u64,
+}
+
+/// The fields about copies, if the table has some.
+pub(super) fn parse(place: &Place, text: &Body) -> Result<Option<Copies>, SceneError> {
+    let Some(count) = text.copies.clone() else {
+        let stray = [
+            text.inside.as_ref().map(|value| ("inside", value.span())),
+            text.speed.as_ref().map(|value| ("speed", value.span())),
+            text.seed.as_ref().map(|value| ("seed", value.span())),
+        ];
+        return match stray.into_iter().flatten().next() {
+            Some((field, span)) => {
+                let what = "is about copies: say how many there are, such as `copies = 100`";
+                Err(place.error(span, field, what))
+            }
+            None => Ok(None),
+        };
+    };
+    if !(1..=MOST).contains(count.get_ref()) {
+        let what = format!("must be from 1 to {MOST}, is {}", count.get_ref());
+        return Err(place.error(count.span(), "copies", what));
+    }
+    if let Some(value) = &text.half_space {
+        let what = "half-spaces have no copies: give each a table of its own";
+        return Err(place.error(value.span(), "half-space", what));
+    }
+    if let Some(value) = &text.position {
+        let what = "copies are placed `inside` a box: leave it out";
+        return Err(place.error(value.span(), "position", what));
+    }
+    let Some(corners) = &text.inside else {
+        let what = "`inside` is missing: the corners of the box that the copies are in, such as \
+                    `inside = [[-2, 0, -2], [2, 4, 2]]`";
+        return Err(place.error(count.span(), "copies", what));
+    };
+    let speed = text.speed.as_ref().map_or(0.0, |value| value.get_ref().0);
+    if !(0.0..=LARGEST).contains(&speed) {
+        let what = format!("must be a speed in m/s from 0 to 1e100, is {speed}");
+        let span = text.speed.as_ref().map_or(count.span(), Spanned::span);
+        return Err(place.error(span, "speed", what));
+    }
+    Ok(Some(Copies {
+        inside: inside(place, corners)?,
+        count,
+        speed,
+        seed: text.seed.as_ref().map_or(0, |value| *value.get_ref()),
+    }))
+}
+
+fn inside(place: &Place, corners: &Spanned<Vec<Triple>>) -> Result<(DVec3, DVec3), SceneError> {
+    let wrong = |what: &str| Err(place.error(corners.span(), "inside", what));
+    let &[Triple(one), Triple(other)] = &corners.get_ref()[..] else {
+        return wrong("must be two corners, such as [[-2, 0, -2], [2, 4, 2]]");
+    };
+    let within = |corner: DVec3| corner.abs().cmple(DVec3::splat(LARGEST)).all();
+    if !within(one) || !within(other) {
+        return wrong("must be two corners of numbers within ±1e100");
+    }
+    Ok((one.min(other), one.max(other)))
+}
+
+impl Copies {
+    /// The copies of `body`, `cube 1`, `cube 2` and so on: all of each is in the box and apart from
+    /// each other and from the bodies before. The same seed gives the same places everywhere.
+    pub(super) fn place(
+        &self,
+        place: &Place,
+        body: &SceneBody,
+        before: &[SceneBody],
+    ) -> Result<Vec<SceneBody>, SceneError> {
+        let wrong = |what: String| place.error(self.count.span(), "copies", what);
+        let obstacle = |body: &SceneBody| {
+            Obstacle::of(body)
+                .map_err(|(field, error)| place.error(self.count.span(), field, error))
+        };
+        let mut taken = before.iter().map(obstacle).collect::<Result<Vec<_>, _>>()?;
+        let Obstacle::Box { min, max } = obstacle(body)? else {
+            return Err(wrong("half-spaces have no copies".to_owned()));
+        };
+        let (min, max) = (min - body.position, max - body.position);
+        let (least, greatest) = (self.inside.0 - min, self.inside.1 - max);
+        if !least.cmple(greatest).all() {
+            let size = max - min;
+            return Err(wrong(format!(
+                "the box `inside` is smaller than the body, which takes up {size} m"
+            )));
+        }
+        let mut random = Random(self.seed);
+        let mut copies = Vec::with_capacity(*self.count.get_ref());
+        for number in 1..=*self.count.get_ref() {
+            let free = (0..TRIES).find_map(|_| {
+                let parts = DVec3::from([(); 3].map(|()| random.unit()));
+                let position = least + parts * (greatest - least);
+                let (min, max) = (position + min, position + max);
+                let is_free = taken.iter().all(|other| other.is_apart(min, max));
+                is_free.then_some((position, Obstacle::Box { min, max }))
+            });
+            let Some((position, here)) = free else {
+                return Err(wrong(format!(
+                    "only {} fit into the box `inside` without touching: enlarge it or ask for fewer",
+                    number - 1
+                )));
+            };
+            taken.push(here);
+            copies.push(SceneBody {
+                name: format!("{} {number}", body.name),
+                position,
+                velocity: body.velocity + self.speed * random.direction(),
+                ..body.clone()
+            });
+        }
+        Ok(copies)
+    }
+}
+
+/// Where no copy can be.
+enum Obstacle {
+    /// A body in its box.
+    Box { min: DVec3, max: DVec3 },
+    /// Behind a plane.
+    HalfSpace { point: DVec3, normal: DVec3 },
+}
+
+impl Obstacle {
+    /// Of a body, or the field that makes it impossible and why.
+    fn of(body: &SceneBody) -> Result<Obstacle, (&'static str, String)> {
+        let (min, max) = match &body.shape {
+            SceneShape::Mesh(mesh) => {
+                let mesh = bake(mesh, body);
+                let mesh = mesh.map_err(|error| (baked_field(&error), error.to_string()))?;
+                let bounds = mesh.bounds();
+                (bounds.min.as_dvec3(), bounds.max.as_dvec3())
+            }
+            SceneShape::Sphere { radius } => (DVec3::splat(-radius), DVec3::splat(*radius)),
+            SceneShape::HalfSpace { normal } => {
+                return Ok(Obstacle::HalfSpace {
+                    point: body.position,
+                    normal: *normal,
+                });
+            }
+        };
+        Ok(Obstacle::Box {
+            min: body.position + min,
+            max: body.position + max,
+        })
+    }
+
+    /// Whether a box is clear of it.
+    fn is_apart(&self, least: DVec3, greatest: DVec3) -> bool {
+        match *self {
+            Obstacle::Box { min, max } => max.cmplt(least).any() || greatest.cmplt(min).any(),
+            Obstacle::HalfSpace { point, normal } => {
+                let deepest = DVec3::select(normal.cmpgt(DVec3::ZERO), least, greatest);
+                (deepest - point).dot(normal) > 0.0
+            }
+        }
+    }
+}
+
+/// SplitMix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators), and
+/// nothing but exact operations after it: the same numbers on every platform.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// From 0 to below 1.
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A direction, all alike: that of the first point of a cube that is in its ball.
+    fn direction(&mut self) -> DVec3 {
+        loop {
+            let v = DVec3::from([(); 3].map(|()| 2.0 * self.unit() - 1.0));
+            if (0.01..=1.0).contains(&v.length_squared()) {
+                return v.normalize();
+            }
+        }
+    }
+}

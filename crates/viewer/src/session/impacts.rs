@@ -1,0 +1,78 @@
+//! Impacts of late: where, along which normal, how strong.
+
+use std::collections::VecDeque;
+
+use sim_core::{DVec3, Impact};
+
+use super::Session;
+use crate::picture::Line;
+
+/// The most that are shown at a time.
+pub(super) const MOST: usize = 200;
+/// Simulated time in which an impact fades, s.
+const SHOWN: f64 = 0.5;
+const ORANGE: [f32; 3] = [1.0, 0.45, 0.05];
+/// Length of a normal: in half sizes of the smaller body, and at least in distances of the camera.
+const LENGTH: f64 = 1.6;
+const LEAST_LENGTH: f64 = 0.03;
+/// The strongest impulse's arrow, in lengths of its normal.
+const STRONGEST: f64 = 0.75;
+/// Half the width of an arrow's head, in lengths of the arrow; it is as long as wide.
+const HEAD: f64 = 0.12;
+
+/// The impacts that have not faded, the oldest first.
+#[derive(Default)]
+pub(super) struct Impacts(VecDeque<Impact>);
+
+impl Impacts {
+    /// Takes in those of some steps, and forgets what has faded by `now`, s.
+    pub(super) fn extend(&mut self, impacts: Vec<Impact>, now: f64) {
+        self.0.extend(impacts);
+        let beyond = self.0.len().saturating_sub(MOST);
+        self.0.drain(..beyond);
+        self.0.retain(|impact| now - impact.time < SHOWN);
+    }
+}
+
+impl Session {
+    /// Each point as a dot, its normal as a thin line, and on it the impulse on the second body as
+    /// an arrow, as long as it is strong. The bodies do not hide them.
+    pub(super) fn add_impacts(&self, marks: &mut Vec<Line>) {
+        let impacts = &self.impacts.0;
+        let strongest = impacts.iter().map(|impact| impact.impulse);
+        let strongest = strongest.fold(f64::MIN_POSITIVE, f64::max);
+        let [_, _, backward] = self.camera.axes();
+        for impact in impacts {
+            let age = (self.world.time() - impact.time) / SHOWN;
+            let fresh = (1.0 - age).clamp(0.0, 1.0) as f32;
+            let [red, green, blue] = ORANGE;
+            let mut line = |from: DVec3, to: DVec3, width: f32| {
+                marks.push(Line {
+                    from,
+                    to,
+                    colour: [red, green, blue, fresh],
+                    width,
+                });
+            };
+            let along = self.normal_length(impact) * impact.normal;
+            line(impact.point, impact.point + along, 1.0);
+            let arrow = STRONGEST * impact.impulse / strongest * along;
+            let tip = impact.point + arrow;
+            let aside = HEAD * arrow.length() * along.cross(backward).normalize_or_zero();
+            line(impact.point, tip, 3.0);
+            line(tip, tip - 2.0 * HEAD * arrow + aside, 3.0);
+            line(tip, tip - 2.0 * HEAD * arrow - aside, 3.0);
+            line(impact.point, impact.point, 9.0);
+        }
+    }
+
+    fn normal_length(&self, impact: &Impact) -> f64 {
+        let (i, j) = impact.bodies;
+        let sizes = [i, j]
+            .into_iter()
+            .filter(|&body| !self.is_half_space(body))
+            .map(|body| self.bounds(body).half.max_element());
+        let smaller = sizes.reduce(f64::min).unwrap_or_default();
+        (LENGTH * smaller).max(LEAST_LENGTH * self.camera.distance)
+    }
+}

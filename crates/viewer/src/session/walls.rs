@@ -1,0 +1,153 @@
+//! Half-spaces: the part of each plane near the bodies, as glass with a grid. From behind only
+//! the outline is drawn, so that the near walls of a box do not hide its inside.
+
+use sim_core::{DVec3, Shape};
+
+use super::Session;
+use crate::picture::{Line, Pane, Picture};
+
+/// Cells of a grid across the half of a wall, at least.
+const CELLS: f64 = 4.0;
+/// Opacity of a wall, seen from its front.
+const GLASS: f32 = 0.14;
+const SELECTED: [f32; 3] = [0.10, 0.35, 1.0];
+
+/// A half-space as it is drawn.
+struct Wall {
+    body: usize,
+    /// The middle of what is drawn.
+    centre: DVec3,
+    normal: DVec3,
+    /// Unit vectors along the wall.
+    axes: [DVec3; 2],
+}
+
+impl Session {
+    pub(super) fn add_walls(&self, picture: &mut Picture) {
+        let (centre, half) = self.room();
+        let wall = |body: usize| match self.world.shape(body) {
+            Some(&Shape::HalfSpace { normal }) => {
+                // Along the world's axes where it stands or lies along them.
+                let level = normal.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
+                Some(Wall {
+                    body,
+                    centre: self.foot(body, centre),
+                    normal,
+                    axes: [level, level.cross(normal)],
+                })
+            }
+            _ => None,
+        };
+        let walls: Vec<Wall> = (0..self.world.len()).filter_map(wall).collect();
+        for wall in &walls {
+            // What is inside another half-space is not seen.
+            let others: Vec<&Wall> = walls.iter().filter(|w| w.body != wall.body).collect();
+            self.add_wall(wall, half, &others, picture);
+        }
+    }
+
+    fn add_wall(&self, wall: &Wall, half: f64, others: &[&Wall], picture: &mut Picture) {
+        let is_selected = self.selection == Some(wall.body);
+        let is_front = (self.camera.eye() - wall.centre).dot(wall.normal) > 0.0;
+        let [red, green, blue] = match is_selected {
+            true => SELECTED,
+            false => self.colour(wall.body),
+        };
+        let line = |(from, to): (DVec3, DVec3), opacity: f32, width: f32| Line {
+            from,
+            to,
+            colour: [red, green, blue, opacity],
+            width,
+        };
+        let outline = outline(wall, half, others);
+        let ends = outline.iter().skip(1).chain(outline.first());
+        let (opacity, width) = match (is_front, is_selected) {
+            (_, true) => (1.0, 2.5),
+            (true, false) => (0.9, 1.5),
+            (false, false) => (0.7, 1.0),
+        };
+        let edges = outline.iter().copied().zip(ends.copied());
+        let edges = edges.map(|edge| line(edge, opacity, width));
+        picture.lines.extend(edges);
+        if !is_front {
+            return;
+        }
+        // The ground has a grid of its own.
+        let is_ground = wall.normal == DVec3::Y && wall.centre.y == 0.0 && self.display.grid;
+        if !is_ground {
+            let grid = grid(wall, half, others);
+            picture.lines.extend(grid.map(|edge| line(edge, 0.4, 1.0)));
+        }
+        picture.panes.push(Pane {
+            corners: outline,
+            colour: [red, green, blue, GLASS],
+        });
+    }
+}
+
+/// The corners of what is left of a square, in order.
+fn outline(wall: &Wall, half: f64, others: &[&Wall]) -> Vec<DVec3> {
+    let [u, v] = wall.axes.map(|axis| half * axis);
+    let square = [-u - v, u - v, u + v, v - u].map(|corner| wall.centre + corner);
+    others.iter().fold(square.into(), |corners, other| {
+        let mut kept = Vec::with_capacity(corners.len() + 1);
+        for (n, &from) in corners.iter().enumerate() {
+            let to = corners[(n + 1) % corners.len()];
+            let (start, end) = (height(other, from), height(other, to));
+            if start >= 0.0 {
+                kept.push(from);
+            }
+            if (start < 0.0) != (end < 0.0) {
+                kept.push(from.lerp(to, start / (start - end)));
+            }
+        }
+        kept
+    })
+}
+
+/// Lines along both axes at round distances, where they are free.
+fn grid<'a>(
+    wall: &'a Wall,
+    half: f64,
+    others: &'a [&'a Wall],
+) -> impl Iterator<Item = (DVec3, DVec3)> + 'a {
+    let spacing = round_below(half / CELLS);
+    let [u, v] = wall.axes;
+    [(u, v), (v, u)]
+        .into_iter()
+        .flat_map(move |(across, along)| {
+            // On multiples of the spacing in the world, which stay where they are when others move.
+            let middle = wall.centre.dot(across);
+            let (first, last) = ((middle - half) / spacing, (middle + half) / spacing);
+            let count = (last.floor() - first.ceil()).clamp(0.0, 100.0) as u32;
+            (0..=count).filter_map(move |n| {
+                let at = (first.ceil() + f64::from(n)) * spacing - middle;
+                let place = wall.centre + at * across;
+                let ends = (place - half * along, place + half * along);
+                others.iter().try_fold(ends, |(from, to), other| {
+                    let (start, end) = (height(other, from), height(other, to));
+                    let cut = from.lerp(to, start / (start - end));
+                    match (start >= 0.0, end >= 0.0) {
+                        (true, true) => Some((from, to)),
+                        (true, false) => Some((from, cut)),
+                        (false, true) => Some((cut, to)),
+                        (false, false) => None,
+                    }
+                })
+            })
+        })
+}
+
+/// How far a point is in front of a wall, m.
+fn height(wall: &Wall, point: DVec3) -> f64 {
+    (point - wall.centre).dot(wall.normal)
+}
+
+/// The greatest of 1, 2 and 5 times a power of ten that is not above `length`.
+fn round_below(length: f64) -> f64 {
+    let decade = 10_f64.powf(length.log10().floor());
+    let factor = [5.0, 2.0]
+        .into_iter()
+        .find(|factor| factor * decade <= length);
+    factor.unwrap_or(1.0) * decade
+}
