@@ -1,0 +1,139 @@
+//! A hundred bodies in a closed box: case 26.
+
+use sim_core::{Body, DVec3, Vec3, World};
+
+use crate::shapes::{boxes, cube};
+use crate::worlds::{DT, Kept, ball, bits, immovable, mesh_body, run, wall, world};
+
+const HALF_BOX: f64 = 2.5;
+const HALF_CUBE: f64 = 0.25;
+
+/// SplitMix64: numbers from -1 to 1 that look random and are the same on every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        let mixed = mixed ^ mixed >> 31;
+        (mixed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+}
+
+/// Places in a grid of 5 by 5 by 4, shaken, that leave cubes and balls apart; velocities of up to
+/// 2 m/s along each axis.
+fn motions() -> impl Iterator<Item = (DVec3, DVec3)> {
+    let mut random = Random(26);
+    (0..100).map(move |i| {
+        let cell = DVec3::new(f64::from(i % 5), f64::from(i / 5 % 5), f64::from(i / 25));
+        let place = cell - DVec3::new(2.0, 2.0, 1.5) + 0.2 * random.vector();
+        (place, 2.0 * random.vector())
+    })
+}
+
+fn half_spaces() -> Vec<Body> {
+    [DVec3::X, DVec3::Y, DVec3::Z]
+        .into_iter()
+        .flat_map(|axis| [axis, -axis])
+        .map(|normal| wall(normal, -HALF_BOX * normal, DVec3::ZERO))
+        .collect()
+}
+
+/// A closed box as one mesh, around all.
+fn mesh_box() -> Vec<Body> {
+    let half = Vec3::splat(HALF_BOX as f32);
+    vec![immovable(mesh_body(
+        &boxes(&[[-half, half]]),
+        DVec3::ZERO,
+        DVec3::ZERO,
+    ))]
+}
+
+/// Runs for 10 s and returns what came out.
+fn assert_kept(name: &str, mut bodies: Vec<Body>, movers: impl Iterator<Item = Body>) -> World {
+    let walls = bodies.len();
+    bodies.extend(movers);
+    let mut world = world(DT, &bodies);
+    assert!(world.overlapping().is_empty(), "{name}");
+    let kept = Kept::of(&world);
+    for _ in 0..600 {
+        world.step().expect("a step");
+    }
+    let impacts = world.impacts();
+    assert!(impacts > 1000, "{name}: {impacts}");
+    let error = kept.energy_error(&world);
+    let tolerance = 4e-15 * (impacts as f64).sqrt();
+    assert!(
+        error <= tolerance,
+        "{name}: energy off by {error:e} after {impacts}"
+    );
+    for i in walls..world.len() {
+        let farthest = world.position(i).abs().max_element();
+        assert!(
+            farthest <= HALF_BOX - HALF_CUBE + 1e-12,
+            "{name}: {i} is outside"
+        );
+    }
+    world
+}
+
+fn cubes() -> impl Iterator<Item = Body> {
+    let mesh = cube(HALF_CUBE as f32);
+    motions().map(move |(x, v)| mesh_body(&mesh, x, v))
+}
+
+fn balls() -> impl Iterator<Item = Body> {
+    motions().map(|(x, v)| ball(HALF_CUBE, x, v))
+}
+
+#[test]
+fn a_hundred_cubes_keep_their_energy_in_their_box() {
+    for (name, walls) in [("half-spaces", half_spaces()), ("a mesh", mesh_box())] {
+        let first = walls.len();
+        let world = assert_kept(name, walls, cubes());
+        for j in first + 1..world.len() {
+            for i in first..j {
+                let apart = (world.position(j) - world.position(i)).abs().max_element();
+                assert!(
+                    apart > 2.0 * HALF_CUBE - 1e-12,
+                    "{name}: {i} and {j} overlap"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_hundred_balls_keep_their_energy_in_their_box() {
+    for (name, walls) in [("half-spaces", half_spaces()), ("a mesh", mesh_box())] {
+        let first = walls.len();
+        let world = assert_kept(name, walls, balls());
+        for j in first + 1..world.len() {
+            for i in first..j {
+                let apart = (world.position(j) - world.position(i)).length();
+                assert!(
+                    apart > 2.0 * HALF_CUBE - 1e-12,
+                    "{name}: {i} and {j} overlap"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_crowd_has_the_same_bits_twice() {
+    let [first, second] = [0, 1].map(|_| {
+        let mut world = world(
+            DT,
+            &half_spaces().into_iter().chain(cubes()).collect::<Vec<_>>(),
+        );
+        let impacts = run(&mut world, 300);
+        (bits(&world), impacts)
+    });
+    assert_eq!(first, second);
+}

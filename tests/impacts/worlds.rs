@@ -1,0 +1,163 @@
+//! Worlds as the tests need them, and what they all must keep.
+
+use std::sync::Arc;
+
+use sim_core::collide::tree;
+use sim_core::{Body, Bvh, Collision, DVec3, Impact, Mesh, Settings, Shape, World};
+
+/// From 1 to the next double.
+pub(crate) const ULP: f64 = f64::EPSILON;
+
+pub(crate) const DT: f64 = 1.0 / 60.0;
+
+pub(crate) fn settings(dt: f64) -> Settings {
+    Settings {
+        dt,
+        collision: Collision::Continuous,
+        tolerance: 1e-13,
+        ..Settings::default()
+    }
+}
+
+pub(crate) fn world_with(settings: Settings, bodies: &[Body]) -> World {
+    let mut world = World::new(settings).expect("settings");
+    for body in bodies {
+        world.add(body.clone()).expect("a body");
+    }
+    world
+}
+
+pub(crate) fn world(dt: f64, bodies: &[Body]) -> World {
+    world_with(settings(dt), bodies)
+}
+
+pub(crate) fn mesh_body(mesh: &Arc<Mesh>, position: DVec3, velocity: DVec3) -> Body {
+    Body {
+        shape: Some(Shape::Mesh(mesh.clone())),
+        position,
+        velocity,
+        ..Body::default()
+    }
+}
+
+pub(crate) fn ball(radius: f64, position: DVec3, velocity: DVec3) -> Body {
+    Body {
+        shape: Some(Shape::Sphere { radius }),
+        position,
+        velocity,
+        ..Body::default()
+    }
+}
+
+/// An immovable half-space, perhaps with a velocity of its own.
+pub(crate) fn wall(normal: DVec3, position: DVec3, velocity: DVec3) -> Body {
+    Body {
+        shape: Some(Shape::HalfSpace { normal }),
+        position,
+        velocity,
+        mass: f64::INFINITY,
+        ..Body::default()
+    }
+}
+
+pub(crate) fn immovable(body: Body) -> Body {
+    Body {
+        mass: f64::INFINITY,
+        ..body
+    }
+}
+
+/// Steps, and all impacts on the way.
+pub(crate) fn run(world: &mut World, steps: u64) -> Vec<Impact> {
+    let mut impacts = Vec::new();
+    for _ in 0..steps {
+        world.step_reporting(&mut impacts).expect("a step");
+    }
+    impacts
+}
+
+/// Steps, and after each one makes sure that no two meshes meet.
+pub(crate) fn run_apart(world: &mut World, steps: u64) -> Vec<Impact> {
+    let trees: Vec<Option<Bvh>> = (0..world.len())
+        .map(|i| world.mesh(i).map(|mesh| Bvh::build(mesh)))
+        .collect();
+    let mut impacts = Vec::new();
+    for _ in 0..steps {
+        world.step_reporting(&mut impacts).expect("a step");
+        assert_apart(world, &trees);
+    }
+    impacts
+}
+
+fn assert_apart(world: &World, trees: &[Option<Bvh>]) {
+    for j in 1..trees.len() {
+        for i in 0..j {
+            let Some((first, second)) = trees[i].as_ref().zip(trees[j].as_ref()) else {
+                continue;
+            };
+            let offset = world.position(j) - world.position(i);
+            let meet = tree::intersect(first, second, offset);
+            assert!(!meet, "step {}: {i} and {j} meet", world.steps());
+        }
+    }
+}
+
+/// What a force-free elastic world must keep.
+pub(crate) struct Kept {
+    energy: f64,
+    momentum: DVec3,
+    /// Sum of all momenta's lengths.
+    scale: f64,
+}
+
+impl Kept {
+    pub(crate) fn of(world: &World) -> Kept {
+        let movable = (0..world.len()).filter(|&i| world.mass(i).is_finite());
+        Kept {
+            energy: world.kinetic_energy(),
+            momentum: world.momentum(),
+            scale: movable
+                .map(|i| world.mass(i) * world.velocity(i).length())
+                .sum(),
+        }
+    }
+
+    /// Relative change of the energy.
+    pub(crate) fn energy_error(&self, world: &World) -> f64 {
+        (world.kinetic_energy() / self.energy - 1.0).abs()
+    }
+
+    /// Change of the momentum, of the sum of momenta.
+    pub(crate) fn momentum_error(&self, world: &World) -> f64 {
+        (world.momentum() - self.momentum).length() / self.scale
+    }
+
+    #[track_caller]
+    pub(crate) fn assert(&self, world: &World, tolerance: f64, what: &str) {
+        let (energy, momentum) = (self.energy_error(world), self.momentum_error(world));
+        assert!(energy <= tolerance, "{what}: energy off by {energy:e}");
+        assert!(
+            momentum <= tolerance,
+            "{what}: momentum off by {momentum:e}"
+        );
+    }
+}
+
+/// Positions and velocities, bit by bit.
+pub(crate) fn bits(world: &World) -> Vec<[u64; 6]> {
+    (0..world.len())
+        .map(|i| {
+            let (x, v) = (world.position(i), world.velocity(i));
+            [x.x, x.y, x.z, v.x, v.y, v.z].map(f64::to_bits)
+        })
+        .collect()
+}
+
+#[track_caller]
+pub(crate) fn assert_close(value: DVec3, exact: DVec3, tolerance: f64, what: &str) {
+    let error = (value - exact).abs().max_element();
+    assert!(
+        error <= tolerance,
+        "{what}: {value} is {error:e} from {exact}, which is more than {tolerance:e}"
+    );
+}
