@@ -172,8 +172,8 @@ fn many(contacts: &[Joined], inverse_mass: &[f64], wanted: &[f64]) -> Vec<f64> {
         given = rows.solve(wanted, &pushes);
         let missing = rows.missing(wanted, &given);
         let is_wrong = |k: usize| match pushes[k] {
-            true => given[k] < 0.0,
-            false => missing[k] > 8.0 * f64::EPSILON * scale,
+            true => given[k] * rows.own(k) < -ROUNDING * scale,
+            false => missing[k] > ROUNDING * scale,
         };
         let wrong: Vec<usize> = (0..contacts.len()).filter(|&k| is_wrong(k)).collect();
         if wrong.is_empty() {
@@ -194,6 +194,8 @@ const FEW: usize = 32;
 /// Sweeps over a pile.
 const SWEEPS: usize = 64;
 
+/// Part of the largest speed that is lost in solving.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Guesses at which contacts push; a few are enough, by far.
 const GUESSES: usize = 40;
 
@@ -226,6 +228,12 @@ impl Rows {
         Rows(contacts.iter().map(row).collect())
     }
 
+    /// What a contact's own impulse does to its speed.
+    fn own(&self, k: usize) -> f64 {
+        let entry = self.0[k].iter().find(|&&(l, _)| l == k);
+        entry.map_or(1.0, |&(_, own)| own)
+    }
+
     /// What is left of the wanted change after some impulses.
     fn missing(&self, wanted: &[f64], given: &[f64]) -> Vec<f64> {
         let done = |row: &Vec<(usize, f64)>| sum(row.iter().map(|&(l, x)| x * given[l]));
@@ -238,10 +246,6 @@ impl Rows {
 
     /// Impulses from some others on by projected Gauss-Seidel sweeps, there and back.
     fn sweep(&self, wanted: &[f64], mut given: Vec<f64>) -> Vec<f64> {
-        let own = |k: usize| {
-            let entry = self.0[k].iter().find(|&&(l, _)| l == k);
-            entry.map_or(1.0, |&(_, own)| own)
-        };
         for sweep in 0..SWEEPS {
             for step in 0..given.len() {
                 let k = if sweep % 2 == 0 {
@@ -250,7 +254,7 @@ impl Rows {
                     given.len() - 1 - step
                 };
                 let done: f64 = self.0[k].iter().map(|&(l, shared)| shared * given[l]).sum();
-                given[k] = (given[k] + (wanted[k] - done) / own(k)).max(0.0);
+                given[k] = (given[k] + (wanted[k] - done) / self.own(k)).max(0.0);
             }
         }
         given
@@ -268,6 +272,8 @@ impl Rows {
         let dot = |a: &[f64], b: &[f64]| sum(a.iter().zip(b).map(|(a, b)| a * b));
         let mut given = vec![0.0; wanted.len()];
         let mut best = (f64::INFINITY, given.clone());
+        let scale = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
+        let enough = (f64::EPSILON * scale) * (f64::EPSILON * scale);
         // Rounding leaves a part of the last bits in each run, so that one more is worth it.
         for _ in 0..3 {
             let mut residual = only(self.missing(wanted, &given));
@@ -277,6 +283,9 @@ impl Rows {
             }
             let mut direction = residual.clone();
             for _ in 0..wanted.len() {
+                if size <= enough {
+                    return best.1;
+                }
                 let none = vec![0.0; wanted.len()];
                 let image: Vec<f64> = only(self.missing(&none, &direction));
                 let curvature = -dot(&direction, &image);
