@@ -128,6 +128,7 @@ fn multipliers(contacts: &[Joined], inverse_mass: &[f64], velocity: &[DVec3]) ->
     let wanted: Vec<f64> = contacts.iter().map(|c| -c.opening(velocity)).collect();
     let own = |k: usize| contacts[k].shared(&contacts[k], inverse_mass);
     match contacts.len() {
+        0 => Vec::new(),
         1 => vec![wanted[0].max(0.0) / own(0)],
         2 => {
             let shared = contacts[0].shared(&contacts[1], inverse_mass);

@@ -104,7 +104,7 @@ const PAIRS_A_TASK: usize = 32;
 
 /// A body that comes to rest so often in one step is wedged in, and stops for what is left of it: so
 /// a step ends whatever lies on what.
-const MOST_RESTS: u32 = 100;
+const MOST_RESTS: u32 = 32;
 
 /// Pairs that are listed before they are sorted, and named once each.
 const MOST_NEAR: usize = 1 << 16;

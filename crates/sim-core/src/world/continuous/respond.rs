@@ -21,6 +21,9 @@ const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
 /// have rested before, and it is no impact.
 const SLIGHTEST: f64 = 1e-6;
 
+/// Cosine of the angle to which the normals of two contacts of the same bodies are one: 0.8 degrees.
+const SAME_NORMAL: f64 = 0.9999;
+
 /// Two bodies that stay together, and the normal between them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rest {
@@ -71,9 +74,14 @@ impl World {
             let grain = self.grain(event.bodies.0, event.bodies.1);
             self.move_apart(event.bodies, 2.0 * grain * event.contact.normal);
         }
-        self.continuous
-            .resting
-            .extend(chosen(Answer::Rest).map(Rest::from));
+        for rest in chosen(Answer::Rest).map(Rest::from) {
+            // In the place of one that it continues.
+            let is_other = |known: &Rest| {
+                known.bodies != rest.bodies || known.normal.dot(rest.normal) < SAME_NORMAL
+            };
+            self.continuous.resting.retain(is_other);
+            self.continuous.resting.push(rest);
+        }
         if !self.continuous.resting.is_empty() {
             self.rest(group, time, &mut renewed)?;
         }
