@@ -89,6 +89,9 @@ fn exact<const N: usize>(&[u, v, w]: &[Exact; 3]) -> Expansion<N> {
     for (i, u) in u.into_iter().enumerate() {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         for (minus, v, w) in [(false, v[j], w[k]), (true, v[k], w[j])] {
+            if w == (0.0, 0.0) {
+                continue;
+            }
             for x in [u.0, u.1] {
                 for y in [v.0, v.1] {
                     if x == 0.0 || y == 0.0 {
@@ -97,7 +100,9 @@ fn exact<const N: usize>(&[u, v, w]: &[Exact; 3]) -> Expansion<N> {
                     let (high, low) = two_product(if minus { -x } else { x }, y);
                     for z in [w.0, w.1] {
                         if z != 0.0 {
-                            sum.add_product(low, z);
+                            if low != 0.0 {
+                                sum.add_product(low, z);
+                            }
                             sum.add_product(high, z);
                         }
                     }
