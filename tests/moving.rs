@@ -16,7 +16,7 @@ use sim_core::collide::{Touch, tree};
 use sim_core::{Bvh, DQuat, DVec3, Mesh, Vec3};
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1500))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
     fn points_meet_triangles_when_they_do_in_rational_arithmetic(([p, a, b, c], motion) in points()) {
@@ -81,7 +81,7 @@ fn check(first: &Mesh, second: &Mesh, offset: DVec3, motion: DVec3) -> Result<()
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(30))]
 
     #[test]
     fn meshes_on_lattices_meet_when_a_feature_does(

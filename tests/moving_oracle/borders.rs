@@ -139,7 +139,7 @@ fn boxes_overlap(reach: DVec3, offset: DVec3, motion: DVec3) -> Option<(Q, Vec<u
 const HAIR: f64 = 1.0 / (1_u64 << 40) as f64;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4000))]
+    #![proptest_config(ProptestConfig::with_cases(2000))]
 
     /// Boxes that touch more often than not block each other only where their insides would overlap.
     #[test]
