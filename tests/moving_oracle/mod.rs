@@ -4,7 +4,11 @@
 //! A moving point is held against a convex polygon by cutting down its interval of times, one linear
 //! condition after the other. Two edges are one point against the parallelogram of their differences.
 
+pub(crate) mod brute;
+pub(crate) mod inputs;
+
 use num_rational::BigRational;
+use proptest::prelude::*;
 use sim_core::DVec3;
 
 pub(crate) type Q = BigRational;
@@ -135,4 +139,17 @@ pub(crate) fn edge_meets_edge([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DV
 pub(crate) fn is_across(u: [DVec3; 2], v: [DVec3; 2], motion: DVec3) -> bool {
     let along = |[from, to]: [DVec3; 2]| sub(&point(to), &point(from));
     dot(&cross(&along(u), &along(v)), &point(motion)) != zero()
+}
+
+/// The greatest f64 that is not above the exact time.
+pub(crate) fn assert_rounded_down(
+    time: Option<f64>,
+    exact: Option<Q>,
+) -> Result<(), TestCaseError> {
+    prop_assert_eq!(time.is_some(), exact.is_some(), "{:?} {:?}", time, exact);
+    if let Some((time, exact)) = time.zip(exact) {
+        prop_assert!(rational(time) <= exact, "{} is late", time);
+        prop_assert!(rational(time.next_up()) > exact, "{} is early", time);
+    }
+    Ok(())
 }

@@ -236,6 +236,7 @@ fn nearest_on_edge(p: DVec3, a: DVec3, b: DVec3) -> DVec3 {
 mod tests {
     use super::*;
     use crate::test_meshes::{cube, sphere};
+    use alloc::vec;
 
     fn v(x: f64, y: f64, z: f64) -> DVec3 {
         DVec3::new(x, y, z)
@@ -317,5 +318,78 @@ mod tests {
             }
         }
         assert!(hits > 100);
+    }
+
+    /// When a moving point comes to a distance from a triangle: from a face, which is a plane's
+    /// distance inside its border, from the line of an edge between its ends, or from a corner.
+    fn closed_form(p: DVec3, d: DVec3, radius: f64, corners: [DVec3; 3]) -> Option<f64> {
+        let mut times = vec![];
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).normalize();
+        let edges = [(a, b), (b, c), (c, a)];
+        for side in [radius, -radius] {
+            let time = (side - normal.dot(p - a)) / normal.dot(d);
+            let at = p + time * d;
+            if edges
+                .iter()
+                .all(|&(a, b)| normal.dot((b - a).cross(at - a)) >= 0.0)
+            {
+                times.push(time);
+            }
+        }
+        // The lesser root of |x + t y|² = r².
+        let root = |x: DVec3, y: DVec3| {
+            let (half, square) = (x.dot(y), y.length_squared());
+            let inner = half * half - square * (x.length_squared() - radius * radius);
+            (inner >= 0.0).then(|| (-half - libm::sqrt(inner)) / square)
+        };
+        for (a, b) in edges {
+            let along = (b - a).normalize();
+            let off = |v: DVec3| v - along.dot(v) * along;
+            let time = root(off(p - a), off(d));
+            times.extend(time.filter(|&t| {
+                let part = along.dot(p + t * d - a);
+                (0.0..=(b - a).length()).contains(&part)
+            }));
+            times.extend(root(p - a, d));
+        }
+        let ahead = |t: &f64| (0.0..=1.0).contains(t);
+        times.into_iter().filter(ahead).min_by(f64::total_cmp)
+    }
+
+    #[test]
+    fn balls_touch_when_closed_forms_say_so() {
+        let mesh = sphere(8);
+        let tree = Bvh::build(&mesh);
+        let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut random = |most: f64| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            ((state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0) * most
+        };
+        let (mut hits, mut asked) = (0, 0);
+        while asked < 1000 {
+            let from = v(random(3.0), random(3.0), random(3.0));
+            let motion = v(random(1.0), random(1.0), random(1.0)) - 1.2 * from;
+            let radius = 0.4 * (random(1.0) + 1.0);
+            if from.length() < 1.1 + radius {
+                continue;
+            }
+            asked += 1;
+            let corners = |i: usize| mesh.corners(i).map(|v| v.as_dvec3());
+            let times = (0..mesh.triangles().len())
+                .filter_map(|i| closed_form(from, motion, radius, corners(i)));
+            let exact = times.min_by(f64::total_cmp);
+            let touch = ball_touch(&tree, from, radius, motion).map(|touch| touch.time);
+            assert_eq!(touch.is_some(), exact.is_some(), "{from} {motion} {radius}");
+            if let Some((time, exact)) = touch.zip(exact) {
+                hits += 1;
+                // A graze has a square root of the rounding.
+                assert!((time - exact).abs() < 1e-7, "{time} {exact}");
+                assert!(time <= exact + 1e-14, "{time} is later than {exact}");
+            }
+        }
+        assert!(hits > 300, "{hits}");
     }
 }

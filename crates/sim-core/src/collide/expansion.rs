@@ -23,8 +23,12 @@ impl<const N: usize> Expansion<N> {
         &self.terms[..self.len]
     }
 
-    /// Adds a number; at most `N` times (Shewchuk's GROW-EXPANSION, without the zeros).
+    /// Adds a number; at most `N` times but for zeros (Shewchuk's GROW-EXPANSION, without the zeros).
+    #[inline]
     pub(super) fn add(&mut self, x: f64) {
+        if x == 0.0 {
+            return;
+        }
         let (mut sum, mut kept) = (x, 0);
         for i in 0..self.len {
             let (high, low) = two_sum(sum, self.terms[i]);
@@ -42,6 +46,7 @@ impl<const N: usize> Expansion<N> {
     }
 
     /// Adds a product of two numbers, as two terms.
+    #[inline(always)]
     pub(super) fn add_product(&mut self, x: f64, y: f64) {
         let (high, low) = two_product(x, y);
         self.add(low);
@@ -56,7 +61,7 @@ impl<const N: usize> Expansion<N> {
         }
     }
 
-    /// To within two units in the last place: each term is below the last place of the next.
+    /// To within some units in the last place: each term is below the lowest digit of the next.
     pub(super) fn rounded(&self) -> f64 {
         self.terms().iter().sum()
     }

@@ -27,12 +27,7 @@ use super::{
 /// first meets an edge.
 pub fn point_meets_triangle(p: DVec3, motion: DVec3, triangle: [DVec3; 3]) -> Option<f64> {
     let (motion, [a, b, c]) = (snap(motion), triangle);
-    let time = Time {
-        u: Difference(b, a),
-        v: Difference(c, a),
-        gap: Difference(a, p),
-        motion,
-    };
+    let time = Time::new(Difference(b, a), Difference(c, a), Difference(a, p), motion);
     match time.course() {
         Ordering::Equal => point_slides_into_triangle(p, motion, triangle),
         course => (time.is_within(course) && line_passes(line_sides(p, motion, triangle)))
@@ -45,12 +40,7 @@ pub fn point_meets_triangle(p: DVec3, motion: DVec3, triangle: [DVec3; 3]) -> Op
 pub fn edge_meets_edge([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DVec3) -> Option<f64> {
     let motion = snap(motion);
     let (u, w) = (Difference(b, a), Difference(d, c));
-    let time = Time {
-        u,
-        v: w,
-        gap: Difference(a, c),
-        motion,
-    };
+    let time = Time::new(u, w, Difference(a, c), motion);
     match time.course() {
         // In one plane, or along one line, an end comes first.
         Ordering::Equal if segments_meet(a, b, c, d) => Some(0.0),
@@ -79,12 +69,7 @@ pub fn point_meets_edge(p: DVec3, motion: DVec3, [a, b]: [DVec3; 2]) -> Option<f
     let way = Difference::from(motion);
     // Seen along an axis along which motion and edge are not parallel.
     for axis in AXES.map(Difference::from) {
-        let time = Time {
-            u: along,
-            v: axis,
-            gap: from,
-            motion,
-        };
+        let time = Time::new(along, axis, from, motion);
         let course = time.course();
         if course == Ordering::Equal {
             continue;
@@ -101,12 +86,12 @@ pub fn point_meets_edge(p: DVec3, motion: DVec3, [a, b]: [DVec3; 2]) -> Option<f
     let along = (0..3).find(|&axis| is_ahead && motion[axis] != 0.0)?;
     // Along the edge, or onto a point.
     least([from, to].map(|gap| {
-        let time = Time {
-            u: AXES[(along + 1) % 3].into(),
-            v: AXES[(along + 2) % 3].into(),
+        let time = Time::new(
+            AXES[(along + 1) % 3].into(),
+            AXES[(along + 2) % 3].into(),
             gap,
             motion,
-        };
+        );
         time.is_within(time.course()).then(|| time.rounded_down())
     }))
 }

@@ -18,8 +18,8 @@ impl Difference {
         self.0 - self.1
     }
 
-    /// Each component as a rounded difference and what rounding took.
-    fn exact(self) -> [(f64, f64); 3] {
+    #[inline]
+    fn exact(self) -> Exact {
         let (p, q) = (self.0.to_array(), self.1.to_array());
         [0, 1, 2].map(|i| two_sum(p[i], -q[i]))
     }
@@ -37,6 +37,10 @@ const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
 /// The most terms of a triple product: six products of three pairs, each of four terms.
 const TERMS: usize = 6 * 8 * 4;
 
+/// The most terms where differences are no longer than f64: six products of four terms. Twice as many
+/// where those of one row are.
+const FEW: usize = 6 * 4;
+
 /// The exact sign of `det(u, v, w) = (u × v)·w`.
 #[inline]
 pub(super) fn sign(rows: [Difference; 3]) -> Ordering {
@@ -50,19 +54,44 @@ pub(super) fn sign_of(estimate: Estimate, rows: [Difference; 3]) -> Ordering {
     estimate.sign().unwrap_or_else(|| exact_sign(rows))
 }
 
-#[cold]
+#[inline(never)]
 fn exact_sign(rows: [Difference; 3]) -> Ordering {
-    exact(rows).sign()
+    let rows = rows.map(Difference::exact);
+    match rows.iter().filter(|row| !is_short(row)).count() {
+        0 => exact::<FEW>(&rows).sign(),
+        1 => exact::<{ 2 * FEW }>(&rows).sign(),
+        _ => long_sign(&rows),
+    }
 }
 
+#[cold]
+#[inline(never)]
+fn long_sign(rows: &[Exact; 3]) -> Ordering {
+    exact::<TERMS>(rows).sign()
+}
+
+/// A difference as rounded components and what rounding took.
+type Exact = [(f64, f64); 3];
+
+/// Whether rounding took nothing.
+#[inline(always)]
+fn is_short(row: &Exact) -> bool {
+    row[0].1 == 0.0 && row[1].1 == 0.0 && row[2].1 == 0.0
+}
+
+/// The determinant; for how many terms see [`TERMS`] and [`FEW`].
+///
 /// Nothing underflows, as components are multiples of 2^-340, nor overflows, as they are at most
 /// 2e100.
-fn exact(rows: [Difference; 3]) -> Expansion<TERMS> {
-    let [u, v, w] = rows.map(Difference::exact);
+#[inline]
+fn exact<const N: usize>(&[u, v, w]: &[Exact; 3]) -> Expansion<N> {
     let mut sum = Expansion::ZERO;
     for (i, u) in u.into_iter().enumerate() {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         for (minus, v, w) in [(false, v[j], w[k]), (true, v[k], w[j])] {
+            if w == (0.0, 0.0) {
+                continue;
+            }
             for x in [u.0, u.1] {
                 for y in [v.0, v.1] {
                     if x == 0.0 || y == 0.0 {
@@ -71,7 +100,9 @@ fn exact(rows: [Difference; 3]) -> Expansion<TERMS> {
                     let (high, low) = two_product(if minus { -x } else { x }, y);
                     for z in [w.0, w.1] {
                         if z != 0.0 {
-                            sum.add_product(low, z);
+                            if low != 0.0 {
+                                sum.add_product(low, z);
+                            }
                             sum.add_product(high, z);
                         }
                     }
@@ -118,41 +149,53 @@ pub(super) struct Time {
     pub(super) v: Difference,
     pub(super) gap: Difference,
     pub(super) motion: DVec3,
+    over: Estimate,
+    under: Estimate,
 }
 
 impl Time {
-    fn over(&self) -> [Difference; 3] {
+    #[inline]
+    pub(super) fn new(u: Difference, v: Difference, gap: Difference, motion: DVec3) -> Time {
+        let cross = Cross::of(u.rounded(), v.rounded());
+        Time {
+            u,
+            v,
+            gap,
+            motion,
+            over: cross.dot(gap.rounded()),
+            under: cross.dot(motion),
+        }
+    }
+
+    fn rows_over(&self) -> [Difference; 3] {
         [self.u, self.v, self.gap]
     }
 
-    fn under(&self) -> [Difference; 3] {
+    fn rows_under(&self) -> [Difference; 3] {
         [self.u, self.v, self.motion.into()]
     }
 
-    fn cross(&self) -> Cross {
-        Cross::of(self.u.rounded(), self.v.rounded())
-    }
-
     /// On which side of `u × v` the motion leads; if on neither, there is no time.
+    #[inline]
     pub(super) fn course(&self) -> Ordering {
-        sign_of(self.cross().dot(self.motion), self.under())
+        sign_of(self.under, self.rows_under())
     }
 
     /// Whether it is 0, given that it is not negative.
+    #[inline]
     pub(super) fn is_start(&self) -> bool {
-        sign_of(self.cross().dot(self.gap.rounded()), self.over()) == Ordering::Equal
+        sign_of(self.over, self.rows_over()) == Ordering::Equal
     }
 
     /// Whether it is in [0, 1], exactly, on a course that leads anywhere.
+    #[inline]
     pub(super) fn is_within(&self, course: Ordering) -> bool {
-        let cross = self.cross();
-        let (over, under) = (cross.dot(self.gap.rounded()), cross.dot(self.motion));
-        let side = sign_of(over, self.over());
+        let side = sign_of(self.over, self.rows_over());
         if side == Ordering::Equal {
             return true;
         }
         side == course
-            && match over.magnitude_cmp(under) {
+            && match self.over.magnitude_cmp(self.under) {
                 Some(order) => order == Ordering::Less,
                 None => self.is_at_most_one(course),
             }
@@ -160,22 +203,36 @@ impl Time {
 
     #[cold]
     fn is_at_most_one(&self, course: Ordering) -> bool {
-        let mut rest = Expansion::<{ 2 * TERMS }>::ZERO;
-        exact(self.under())
-            .terms()
-            .iter()
-            .for_each(|&x| rest.add(x));
-        exact(self.over())
-            .terms()
-            .iter()
-            .for_each(|&x| rest.add(-x));
-        rest.sign() != course.reverse()
+        let rest = self.with_terms(|over, under| rest_sign(over, under, 1.0));
+        rest != course
+    }
+
+    /// Passes on the terms of the numbers whose quotient it is.
+    #[inline(always)]
+    fn with_terms<T>(&self, then: impl FnOnce(&[f64], &[f64]) -> T) -> T {
+        let [u, v, gap] = self.rows_over().map(Difference::exact);
+        let motion = self.motion.to_array().map(|x| (x, 0.0));
+        let (over, under) = ([u, v, gap], [u, v, motion]);
+        match (is_short(&u) && is_short(&v), is_short(&gap)) {
+            (true, true) => {
+                let (over, under) = (exact::<FEW>(&over), exact::<FEW>(&under));
+                then(over.terms(), under.terms())
+            }
+            (true, false) => {
+                let (over, under) = (exact::<{ 2 * FEW }>(&over), exact::<FEW>(&under));
+                then(over.terms(), under.terms())
+            }
+            (false, _) => {
+                let (over, under) = (exact::<TERMS>(&over), exact::<TERMS>(&under));
+                then(over.terms(), under.terms())
+            }
+        }
     }
 
     /// Not above and not below it, quickly; of a time that is not negative.
+    #[inline]
     pub(super) fn bounds(&self) -> (f64, f64) {
-        let cross = self.cross();
-        let (over, under) = (cross.dot(self.gap.rounded()), cross.dot(self.motion));
+        let (over, under) = (self.over, self.under);
         // For the roundings of sums, quotient and product.
         const DOWN: f64 = 1.0 - 4.0 * f64::EPSILON;
         const UP: f64 = 1.0 + 4.0 * f64::EPSILON;
@@ -195,45 +252,84 @@ impl Time {
     /// would over- or underflow (coordinates above 1e94, or the last term of the denominator times
     /// the quotient below 2^-900) it may be up to eight units in the last place less.
     pub(super) fn rounded_down(&self) -> f64 {
-        let (over, under) = (exact(self.over()), exact(self.under()));
-        let course = under.sign();
-        let (Some(&least), Some(&most)) = (under.terms().first(), under.terms().last()) else {
-            return 0.0;
-        };
-        if over.terms().is_empty() {
-            return 0.0;
-        }
-        let mut time = over.rounded() / under.rounded();
-        if least.abs() * time < LEAST_PRODUCT || most.abs() > 1e285 {
-            let time = time * (1.0 - 3.0 * f64::EPSILON);
-            return time.next_down().clamp(0.0, 1.0);
-        }
-        let is_late = |time: f64| {
-            let mut rest = Expansion::<{ 3 * TERMS }>::ZERO;
-            over.terms().iter().for_each(|&x| rest.add(x));
-            under
-                .terms()
-                .iter()
-                .for_each(|&x| rest.add_product(-time, x));
-            (
-                rest.sign() == course.reverse(),
-                rest.sign() == Ordering::Equal,
-            )
-        };
-        let (mut late, is_equal) = is_late(time);
-        if is_equal {
-            return time;
-        }
-        if late {
-            while late {
-                time = time.next_down();
-                late = is_late(time).0;
-            }
-            return time;
-        }
-        while !is_late(time.next_up()).0 {
-            time = time.next_up();
-        }
-        time
+        self.with_terms(floor_of_quotient)
     }
+}
+
+/// The quotient of two sums, in [0, 1], as [`Time::rounded_down`] has it.
+fn floor_of_quotient(over: &[f64], under: &[f64]) -> f64 {
+    let (Some(&least), Some(&most)) = (under.first(), under.last()) else {
+        return 0.0;
+    };
+    if over.is_empty() {
+        return 0.0;
+    }
+    let mut time = over.iter().sum::<f64>() / under.iter().sum::<f64>();
+    if least.abs() * time < LEAST_PRODUCT || most.abs() > 1e285 {
+        let time = time * (1.0 - 3.0 * f64::EPSILON);
+        return time.next_down().clamp(0.0, 1.0);
+    }
+    let order = |time: f64| {
+        let rest = rest_sign(over, under, time);
+        if most > 0.0 { rest } else { rest.reverse() }
+    };
+    match order(time) {
+        Ordering::Equal => time,
+        Ordering::Less => {
+            time = time.next_down();
+            while order(time) == Ordering::Less {
+                time = time.next_down();
+            }
+            time
+        }
+        Ordering::Greater => {
+            while order(time.next_up()) != Ordering::Less {
+                time = time.next_up();
+            }
+            time
+        }
+    }
+}
+
+/// The sign of `over - time under`: from the largest term of each and the sum of the others, where
+/// that is enough.
+fn rest_sign(over: &[f64], under: &[f64], time: f64) -> Ordering {
+    let top = |terms: &[f64]| match *terms {
+        [ref others @ .., most] => (most, others.iter().sum()),
+        [] => (0.0, 0.0),
+    };
+    let ((o, o_next), (u, u_next)): ((f64, f64), (f64, f64)) = (top(over), top(under));
+    let (high, low) = two_product(time, u);
+    let (rest, lost) = two_sum(o, -high);
+    let next = time * u_next;
+    let value = rest + (((lost - low) + o_next) - next);
+    // Five roundings, and those of sums whose parts at least double from one to the next.
+    let size = lost.abs() + low.abs() + o_next.abs() + next.abs();
+    let error = (16.0 * size + 2.0 * rest.abs()) * f64::EPSILON;
+    if value.abs() > error || error == 0.0 {
+        return if value > 0.0 {
+            Ordering::Greater
+        } else if value < 0.0 {
+            Ordering::Less
+        } else {
+            Ordering::Equal
+        };
+    }
+    let most = over.len() + 2 * under.len();
+    if most <= SOME {
+        exact_rest_sign::<SOME>(over, under, time)
+    } else {
+        exact_rest_sign::<{ 3 * TERMS }>(over, under, time)
+    }
+}
+
+/// Terms of which all but a few sums have fewer.
+const SOME: usize = 24;
+
+#[inline(never)]
+fn exact_rest_sign<const N: usize>(over: &[f64], under: &[f64], time: f64) -> Ordering {
+    let mut rest = Expansion::<N>::ZERO;
+    over.iter().for_each(|&x| rest.add(x));
+    under.iter().for_each(|&x| rest.add_product(-time, x));
+    rest.sign()
 }

@@ -42,6 +42,11 @@ impl Portable {
     }
 
     #[inline(always)]
+    pub(in crate::collide) fn lanes(self) -> [f32; TILE] {
+        self.0
+    }
+
+    #[inline(always)]
     fn map(self, f: impl Fn(f32) -> f32) -> Portable {
         Portable(self.0.map(f))
     }

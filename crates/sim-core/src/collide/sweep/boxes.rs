@@ -1,0 +1,257 @@
+//! When the boxes of two trees begin to meet, one of which moves.
+
+use glam::DVec3;
+
+use crate::bvh::{Boxes, Bvh, WIDTH};
+use crate::collide::pairs::{Lanes, Portable, Reach, TILE};
+
+/// The motion as boxes see it.
+pub(super) struct Moving {
+    offset: DVec3,
+    motion: DVec3,
+    /// Where f32 is enough.
+    swift: Option<Swift>,
+}
+
+impl Moving {
+    pub(super) fn new(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> Moving {
+        Moving {
+            offset,
+            motion,
+            swift: Swift::new(first, second, offset, motion),
+        }
+    }
+
+    /// A bit for each pair of boxes that meet no later than the horizon, and when they begin to,
+    /// rounded down.
+    #[inline(never)]
+    pub(super) fn meet(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, Portable) {
+        match &self.swift {
+            Some(swift) => swift.meet(first, second, horizon),
+            None => self.meet_in_f64(first, second, horizon),
+        }
+    }
+
+    /// For meshes so large that f32 is of no use. It need not be fast.
+    #[cold]
+    fn meet_in_f64(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, Portable) {
+        let (mut bits, mut times) = (0, [f32::INFINITY; TILE]);
+        for (pair, place) in times.iter_mut().enumerate() {
+            let time = self.entry(first, pair / WIDTH, second, pair % WIDTH);
+            if let Some(time) = time.filter(|&t| t <= horizon) {
+                bits |= 1 << pair;
+                *place = time as f32;
+            }
+        }
+        (bits, Portable::new(times))
+    }
+
+    /// When two boxes begin to meet, rounded down; `None` if they do not within the motion.
+    fn entry(&self, first: &Boxes, i: usize, second: &Boxes, j: usize) -> Option<f64> {
+        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+        for axis in 0..3 {
+            let wide = |x: &[[f32; WIDTH]; 3], lane: usize| f64::from(x[axis][lane]);
+            let (a, b) = (wide(&first.centre, i), wide(&second.centre, j));
+            let reach = wide(&first.half, i) + wide(&second.half, j);
+            if reach < 0.0 {
+                return None;
+            }
+            let offset = self.offset[axis];
+            let between = a - (b + offset);
+            let (near, far) = (between - reach, between + reach);
+            let slack = 8.0 * f64::EPSILON * (a.abs() + b.abs() + reach + offset.abs());
+            let (near, far) = (near - slack, far + slack);
+            let motion = self.motion[axis];
+            let inverse = 1.0 / motion;
+            if inverse.is_finite() {
+                let (s, t) = (near * inverse, far * inverse);
+                // One more rounding than the slack has seen.
+                enter = enter.max(s.min(t) * (1.0 - f64::EPSILON));
+                leave = leave.min(s.max(t) * (1.0 + f64::EPSILON));
+            } else if near > 0.0 || far < 0.0 {
+                return None;
+            }
+        }
+        (enter <= leave).then_some(enter)
+    }
+}
+
+/// Moving boxes in f32.
+struct Swift {
+    offset: [f32; 3],
+    /// One over the motion; zero where there is so little that it counts as width.
+    inverse: [f32; 3],
+    /// More than all roundings of distances, and than the motion that does not count.
+    margin: [f32; 3],
+}
+
+impl Swift {
+    /// `None` if f32 does not reach so far.
+    fn new(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> Option<Swift> {
+        let reach = Reach::new(first, second, &offset.into())?;
+        let margin = reach.margin();
+        if motion.abs().max_element() > 1e30 {
+            return None;
+        }
+        // Distances are below 2^127, so with a motion above 2^-100 quotients that are times from 0
+        // to 1 neither overflow nor underflow to what matters.
+        let counts = motion
+            .to_array()
+            .map(|m| m.abs() > f64::from(margin).max(1e-30));
+        let of = |axis: usize| (counts[axis], motion[axis]);
+        Some(Swift {
+            offset: reach.offset(),
+            inverse: [0, 1, 2].map(|axis| match of(axis) {
+                (true, m) => (1.0 / m) as f32,
+                (false, _) => 0.0,
+            }),
+            margin: [0, 1, 2].map(|axis| match of(axis) {
+                (true, _) => margin,
+                (false, m) => margin + (m.abs() * 1.001) as f32,
+            }),
+        })
+    }
+
+    /// A bit for each pair of boxes that meet before the horizon, and when they begin to.
+    ///
+    /// Distances are known to within the margin ([`Reach::new`]), whose roundings here are a small
+    /// part of it. Quotients are rounded three times, by `2^-24` each.
+    #[inline(always)]
+    fn meet(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, Portable) {
+        const DOWN: f32 = 1.0 - 4.0 * f32::EPSILON;
+        const UP: f32 = 1.0 + 4.0 * f32::EPSILON;
+        let (mut enter, mut leave) = (Portable::splat(0.0), Portable::splat(1.0));
+        let mut meet = u32::MAX;
+        for axis in 0..3 {
+            let (c, h) = (&first.centre[axis], &first.half[axis]);
+            let (d, k) = (&second.centre[axis], &second.half[axis]);
+            let moved = Portable::columns(d).add(Portable::splat(self.offset[axis]));
+            let between = Portable::rows(c).sub(moved);
+            let reach = Portable::rows(h).add(Portable::columns(k));
+            let reach = reach.add(Portable::splat(self.margin[axis]));
+            // Not so where a lane holds nothing.
+            meet &= Portable::splat(0.0).at_most(reach);
+            if self.inverse[axis] == 0.0 {
+                meet &= between.abs().at_most(reach);
+                continue;
+            }
+            let inverse = Portable::splat(self.inverse[axis]);
+            let middle = between.mul(inverse);
+            let around = reach.mul(inverse.abs());
+            // Both roundings are relative to the parts, not to what is left of them.
+            let slack = middle
+                .abs()
+                .add(around.abs())
+                .mul(Portable::splat(4.0 * f32::EPSILON));
+            enter = enter.max(middle.sub(around).sub(slack));
+            leave = leave.min(middle.add(around).add(slack));
+        }
+        let enter = enter.mul(Portable::splat(DOWN));
+        // More than what quotients lose below the normal numbers.
+        let least = Portable::splat(f32::MIN_POSITIVE);
+        let latest = leave.min(Portable::splat(horizon as f32));
+        let latest = latest.mul_add(Portable::splat(UP), least);
+        (meet & enter.at_most(latest) & 0xffff, enter)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_meshes::cube;
+    use glam::{DQuat, Vec3A};
+
+    /// Numbers from a sequence of Marsaglia's.
+    struct Random(u64);
+
+    impl Random {
+        fn up_to(&mut self, most: i64) -> i64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            (self.0 >> 1) as i64 % (2 * most + 1) - most
+        }
+
+        fn three(&mut self, most: i64) -> [i64; 3] {
+            [self.up_to(most), self.up_to(most), self.up_to(most)]
+        }
+    }
+
+    /// When two boxes given as low and high corners begin to meet within the motion, as a fraction.
+    fn exact(
+        [low, high]: [[i64; 3]; 2],
+        [others_low, others_high]: [[i64; 3]; 2],
+        offset: [i64; 3],
+        motion: [i64; 3],
+    ) -> Option<(i128, i128)> {
+        let (mut enter, mut leave) = ((0_i128, 1_i128), (1_i128, 1_i128));
+        for axis in 0..3 {
+            let near = i128::from(low[axis] - others_high[axis] - offset[axis]);
+            let far = i128::from(high[axis] - others_low[axis] - offset[axis]);
+            let (from, to, by) = match i128::from(motion[axis]) {
+                0 if near <= 0 && far >= 0 => continue,
+                0 => return None,
+                m if m > 0 => (near, far, m),
+                m => (-far, -near, -m),
+            };
+            if from * enter.1 > enter.0 * by {
+                enter = (from, by);
+            }
+            if to * leave.1 < leave.0 * by {
+                leave = (to, by);
+            }
+        }
+        (enter.0 * leave.1 <= leave.0 * enter.1).then_some(enter)
+    }
+
+    #[test]
+    fn moving_boxes_in_f32_are_never_apart_where_exact_ones_meet() {
+        let mut random = Random(0x9e37_79b9_7f4a_7c15);
+        let (mut meetings, mut misses) = (0, 0);
+        for round in 0..4000 {
+            // A lattice on which boxes touch, and the ends of what f32 holds.
+            let (most, unit) = [(4, 0.25), (1 << 23, 0.5_f64.powi(23))][round % 2];
+            let size = cube().transformed(
+                DQuat::IDENTITY,
+                glam::DVec3::splat(8.0 * most as f64 * unit),
+            );
+            let tree = Bvh::build(&size.unwrap());
+            let tile = |random: &mut Random| {
+                let mut boxes = Boxes::EMPTY;
+                let corners: [[[i64; 3]; 2]; WIDTH] = core::array::from_fn(|lane| {
+                    let (p, q) = (random.three(most), random.three(most));
+                    let low: [i64; 3] = core::array::from_fn(|i| p[i].min(q[i]));
+                    let high: [i64; 3] = core::array::from_fn(|i| p[i].max(q[i]));
+                    let float =
+                        |c: [i64; 3]| Vec3A::from_array(c.map(|x| (x as f64 * unit) as f32));
+                    boxes.set(lane, float(low), float(high));
+                    [low, high]
+                });
+                (boxes, corners)
+            };
+            let ((first, s), (second, t)) = (tile(&mut random), tile(&mut random));
+            let (offset, mut motion) = (random.three(most), random.three(4 * most));
+            motion[round % 3] *= i64::from(round % 5 != 0);
+            let float = |v: [i64; 3]| DVec3::from_array(v.map(|x| x as f64 * unit));
+            let moving = Moving::new(&tree, &tree, float(offset), float(motion));
+            assert!(moving.swift.is_some());
+            let (pairs, enter) = moving.meet(&first, &second, 1.0);
+            for pair in 0..TILE {
+                let time = exact(s[pair / WIDTH], t[pair % WIDTH], offset, motion);
+                let Some((over, under)) = time else {
+                    misses += u32::from(pairs >> pair & 1 == 0);
+                    continue;
+                };
+                meetings += 1;
+                assert!(pairs >> pair & 1 == 1, "{round} {pair}");
+                // Rounding to f64 is monotonic.
+                let time = over as f64 / under as f64;
+                assert!(f64::from(enter.lanes()[pair]) <= time, "{round} {pair}");
+                // Nor where the horizon is the time itself.
+                let (pairs, _) = moving.meet(&first, &second, time);
+                assert!(pairs >> pair & 1 == 1, "{round} {pair} at the horizon");
+            }
+        }
+        assert!(meetings > 5_000 && misses > 5_000, "{meetings} {misses}");
+    }
+}

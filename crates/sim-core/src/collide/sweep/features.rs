@@ -1,0 +1,429 @@
+//! Contacts of the vertices, edges and faces of two triangles.
+
+use core::cmp::Ordering;
+use glam::{DVec3, Vec3};
+
+use super::{
+    Kind, Search,
+    candidate::{Candidate, Spot},
+};
+use crate::bvh::{Bvh, Node};
+use crate::collide::{
+    moving::{line_passes, point_slides_into_triangle},
+    plane::{Cross, Estimate},
+    touch::Feature,
+    triple::{Difference, Time, sign},
+};
+use crate::mesh::Topology;
+
+/// Meshes seen along the motion, in a plane of two axes, and quick tests in f64.
+///
+/// With `S` above all coordinates, `u = 2^-53` and ratios of the motion at most one, a point seen
+/// errs by `4 u S` and is at most `2 S` out, differences of such err by `12 u S`, and a
+/// cross product of these by `2 (2 · 4 S · 12 u S + 16 S² u) + 32 S² u = 256 u S²`. The normal of a
+/// triangle is at most `8 S²`, and errs by `32 u S²`; its product with a difference of points errs
+/// by `384 u S³`, with a motion of components up to `M` by `168 u S² M`. The bounds have room for
+/// products of errors.
+pub(super) struct View {
+    /// The axes of the picture and the one along which the motion leads most.
+    axes: [usize; 3],
+    /// The other components of the motion by the largest one.
+    slope: [f64; 2],
+    motion: DVec3,
+    /// What sides, heights and falls err by at most.
+    side_error: f64,
+    height_error: f64,
+    fall_error: f64,
+}
+
+impl View {
+    pub(super) fn new(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> View {
+        let size = |bvh: &Bvh| {
+            let bounds = bvh.bounds();
+            bounds.min.abs().max(bounds.max.abs()).as_dvec3()
+        };
+        let farthest = size(first).max(size(second) + offset.abs()).max_element();
+        let most = motion.abs().max_element();
+        let of = motion.to_array();
+        let k = (0..3).find(|&k| of[k].abs() == most).unwrap_or(2);
+        // So that turning left is turning left whichever way the motion leads.
+        let (i, j) = match of[k] > 0.0 {
+            true => ((k + 1) % 3, (k + 2) % 3),
+            false => ((k + 2) % 3, (k + 1) % 3),
+        };
+        let unit = f64::EPSILON / 2.0;
+        View {
+            axes: [i, j, k],
+            slope: [of[i] / of[k], of[j] / of[k]],
+            motion,
+            side_error: 300.0 * unit * (farthest * farthest),
+            height_error: 400.0 * unit * (farthest * farthest * farthest),
+            fall_error: 200.0 * unit * (farthest * farthest * most),
+        }
+    }
+
+    #[inline(always)]
+    fn seen(&self, p: DVec3) -> [f64; 2] {
+        let (p, [i, j, k]) = (p.to_array(), self.axes);
+        [p[i] - p[k] * self.slope[0], p[j] - p[k] * self.slope[1]]
+    }
+
+    #[inline(always)]
+    fn triangle(&self, corners: [DVec3; 3]) -> Triangle {
+        let [a, b, c] = corners;
+        Triangle {
+            corners,
+            seen: [self.seen(a), self.seen(b), self.seen(c)],
+        }
+    }
+
+    /// The sign of what errs like a side, 0 if that leaves a doubt.
+    #[inline(always)]
+    fn tell(&self, side: f64) -> i8 {
+        i8::from(side > self.side_error) - i8::from(side < -self.side_error)
+    }
+
+    /// On which sides of a triangle's edges the corners of another one are: `[i][j]` is the sign of
+    /// `det(edge i, motion, its start - corner j)`, 0 in doubt. `None` if an edge has one triangle on
+    /// either side.
+    #[inline(always)]
+    fn sides(&self, of: &Triangle, others: &Triangle) -> Option<[[i8; 3]; 3]> {
+        let [a, b, c] = of.seen;
+        let inside = self.tell(left(a, b, c));
+        let side = |from: [f64; 2], to: [f64; 2]| {
+            let [p, q, r] = others.seen;
+            [
+                self.tell(left(from, to, p)),
+                self.tell(left(from, to, q)),
+                self.tell(left(from, to, r)),
+            ]
+        };
+        let outside = [-inside; 3];
+        let mut sides = [[0; 3]; 3];
+        for (side_of, (from, to)) in sides.iter_mut().zip([(a, b), (b, c), (c, a)]) {
+            *side_of = side(from, to);
+            if inside != 0 && *side_of == outside {
+                return None;
+            }
+        }
+        Some(sides)
+    }
+
+    /// Heights of corners above a triangle's plane, and `way` times what the motion adds to them,
+    /// unless the corners stay on one side until a time.
+    #[inline(always)]
+    fn heights(&self, of: &Triangle, others: &Triangle, way: f64, until: f64) -> Option<Heights> {
+        let [a, b, c] = of.corners;
+        let normal = (b - a).cross(c - a);
+        let heights = others.corners.map(|p| normal.dot(p - a));
+        let fall = normal.dot(self.motion);
+        let [h, i, j] = heights;
+        let stays = |lowest: f64, fall: f64| {
+            // Doubled for the roundings here.
+            let (lowest, fall) = (
+                lowest - 2.0 * self.height_error,
+                fall - 2.0 * self.fall_error,
+            );
+            lowest > 0.0 && lowest + until * fall > 0.0
+        };
+        if stays(h.min(i).min(j), way * fall) || stays(-h.max(i).max(j), -way * fall) {
+            return None;
+        }
+        Some(Heights { heights, fall })
+    }
+}
+
+/// Twice the area of a triangle, above zero if it turns left.
+#[inline(always)]
+fn left(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// A triangle, and its corners seen along the motion.
+struct Triangle {
+    corners: [DVec3; 3],
+    seen: [[f64; 2]; 3],
+}
+
+struct Heights {
+    heights: [f64; 3],
+    fall: f64,
+}
+
+/// What the mesh of a triangle knows of it.
+struct Names {
+    face: u32,
+    vertices: [u32; 3],
+    edges: [u32; 3],
+    /// Of the vertices and of the edges those that are looked at with this triangle and no other.
+    owns_vertex: [bool; 3],
+    owns_edge: [bool; 3],
+}
+
+impl Names {
+    #[inline(always)]
+    fn of(face: u32, topology: &Topology) -> Names {
+        let i = face as usize;
+        Names {
+            face,
+            vertices: topology.triangles[i],
+            edges: topology.triangle_edges[i],
+            owns_vertex: topology.owned[i].vertex,
+            owns_edge: topology.owned[i].edge,
+        }
+    }
+
+    fn edge(&self, i: usize) -> [u32; 2] {
+        [self.vertices[i], self.vertices[(i + 1) % 3]]
+    }
+}
+
+/// A point that may touch a triangle.
+struct Corner {
+    point: DVec3,
+    /// Its name, and that of the contact.
+    vertex: u32,
+    feature: Feature,
+    /// Of the triangle's edges, as [`View::sides`] has them.
+    sides: [i8; 3],
+    /// 1 if it moves, -1 if the triangle does.
+    way: f64,
+}
+
+impl Search<'_> {
+    /// Looks at a triangle of a leaf of each mesh.
+    #[inline(never)]
+    pub(super) fn try_triangles(&mut self, (leaf, i): (&Node, usize), (other, j): (&Node, usize)) {
+        let wide = |[a, b, c]: [Vec3; 3]| [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
+        let (s, t) = (self.first.triangles(leaf), self.second.triangles(other));
+        let first = self.view.triangle(wide(s.corners(i)));
+        let [a, b, c] = wide(t.corners(j));
+        let placed = [a + self.offset, b + self.offset, c + self.offset];
+        let second = self.view.triangle(placed);
+        let Some(above_first) = self.view.heights(&first, &second, 1.0, self.horizon) else {
+            return;
+        };
+        let Some(above_second) = self.view.heights(&second, &first, -1.0, self.horizon) else {
+            return;
+        };
+        let Some(of_first) = self.view.sides(&first, &second) else {
+            return;
+        };
+        let Some(of_second) = self.view.sides(&second, &first) else {
+            return;
+        };
+        let s = Names::of(s.face[i], self.first.topology());
+        let t = Names::of(t.face[j], self.second.topology());
+        self.try_vertices((&first, &s), (&second, &t), &above_first, &of_first, 1.0);
+        self.try_vertices((&second, &t), (&first, &s), &above_second, &of_second, -1.0);
+        self.try_edges((&first, &s, &of_first), (&second, &t, &of_second));
+    }
+
+    /// The corners of one triangle against another one; `way` is 1 where the corners move, else -1.
+    #[inline(always)]
+    fn try_vertices(
+        &mut self,
+        (face, face_names): (&Triangle, &Names),
+        (corners, names): (&Triangle, &Names),
+        above: &Heights,
+        sides: &[[i8; 3]; 3],
+        way: f64,
+    ) {
+        let fall = Estimate {
+            value: above.fall,
+            error: self.view.fall_error,
+        };
+        for k in (0..3).filter(|&k| names.owns_vertex[k]) {
+            let sides = [sides[0][k], sides[1][k], sides[2][k]];
+            if sides.contains(&1) && sides.contains(&-1) {
+                continue;
+            }
+            let gap = Estimate {
+                value: -way * above.heights[k],
+                error: self.view.height_error,
+            };
+            if !self.may_be_first(gap, fall) {
+                continue;
+            }
+            let (vertex, of) = (names.vertices[k], face_names.face);
+            let feature = if way > 0.0 {
+                Feature::FaceVertex { face: of, vertex }
+            } else {
+                Feature::VertexFace { vertex, face: of }
+            };
+            let corner = Corner {
+                point: corners.corners[k],
+                vertex,
+                feature,
+                sides,
+                way,
+            };
+            self.vertex_face(&corner, face, face_names);
+        }
+    }
+
+    #[inline(never)]
+    fn vertex_face(&mut self, corner: &Corner, face: &Triangle, names: &Names) {
+        let [a, b, c] = face.corners;
+        let (x, way) = (corner.point, corner.way);
+        let gap = if way > 0.0 {
+            Difference(a, x)
+        } else {
+            Difference(x, a)
+        };
+        let time = Time::new(Difference(b, a), Difference(c, a), gap, self.motion);
+        let course = time.course();
+        if course == Ordering::Equal {
+            if self.kind == Kind::Any {
+                let motion = way * self.motion;
+                self.slide(point_slides_into_triangle(x, motion, face.corners));
+            }
+            return;
+        }
+        let motion = Difference::from(self.motion);
+        let side = |i: usize| {
+            let (from, to) = (face.corners[i], face.corners[(i + 1) % 3]);
+            known(corner.sides[i], || {
+                [Difference(to, from), motion, Difference(from, x)]
+            })
+        };
+        let sides = [side(0), side(1), side(2)];
+        if !line_passes(sides) || !time.is_within(course) {
+            return;
+        }
+        let on = |i: usize| sides[i] == Ordering::Equal;
+        let spot = match [on(0), on(1), on(2)] {
+            [false, false, false] => Spot::Face,
+            [true, false, false] => Spot::Edge(names.edge(0), a),
+            [false, true, false] => Spot::Edge(names.edge(1), b),
+            [false, false, true] => Spot::Edge(names.edge(2), c),
+            [_, true, true] => Spot::Vertex(names.vertices[2], c),
+            [true, false, true] => Spot::Vertex(names.vertices[0], a),
+            [true, true, false] => Spot::Vertex(names.vertices[1], b),
+        };
+        let vertex = Spot::Vertex(corner.vertex, x);
+        let (spots, drift) = if way > 0.0 {
+            ([spot, vertex], self.motion)
+        } else {
+            ([vertex, spot], DVec3::ZERO)
+        };
+        let at = (x, drift);
+        self.add(Candidate::new((time, course), corner.feature, at, spots));
+    }
+
+    #[inline(always)]
+    fn try_edges(
+        &mut self,
+        (first, s, of_first): (&Triangle, &Names, &[[i8; 3]; 3]),
+        (second, t, of_second): (&Triangle, &Names, &[[i8; 3]; 3]),
+    ) {
+        for i in (0..3).filter(|&i| s.owns_edge[i]) {
+            let i_end = (i + 1) % 3;
+            for j in (0..3).filter(|&j| t.owns_edge[j]) {
+                let j_end = (j + 1) % 3;
+                // Of the second edge's ends as the first edge has them, and the other way round.
+                let of_first = [of_first[i][j], of_first[i][j_end]];
+                let of_second = [of_second[j][i], of_second[j][i_end]];
+                let is_apart = |sides: [i8; 2]| sides[0] * sides[1] > 0;
+                if is_apart(of_first) || is_apart(of_second) {
+                    continue;
+                }
+                let (a, b) = (first.corners[i], first.corners[i_end]);
+                let (c, d) = (second.corners[j], second.corners[j_end]);
+                let cross = Cross::of(b - a, d - c);
+                let fall = cross.dot(self.motion);
+                if !self.may_be_first(cross.dot(a - c), fall) {
+                    continue;
+                }
+                let feature = Feature::EdgeEdge {
+                    first: s.edges[i],
+                    second: t.edges[j],
+                };
+                let sides = [of_second[0], -of_second[1], -of_first[0], of_first[1]];
+                let ends = (s.edge(i), t.edge(j));
+                self.edge_edge(feature, [a, b, c, d], sides, ends);
+            }
+        }
+    }
+
+    /// An edge `ab` against an edge `cd`, with the signs of [`edge_sides`] as far as they are known.
+    ///
+    /// [`edge_sides`]: crate::collide::moving::edge_sides
+    #[inline(never)]
+    fn edge_edge(
+        &mut self,
+        feature: Feature,
+        [a, b, c, d]: [DVec3; 4],
+        sides: [i8; 4],
+        (first, second): ([u32; 2], [u32; 2]),
+    ) {
+        let (u, w) = (Difference(b, a), Difference(d, c));
+        let time = Time::new(u, w, Difference(a, c), self.motion);
+        let course = time.course();
+        if course == Ordering::Equal {
+            return;
+        }
+        let motion = Difference::from(self.motion);
+        let side = |i: usize, along: Difference, apart: Difference| {
+            known(sides[i], || [along, apart, motion])
+        };
+        let away = course.reverse();
+        let sides = [
+            side(0, w, Difference(a, c)),
+            side(1, w, Difference(c, b)),
+            side(2, u, Difference(a, c)),
+            side(3, u, Difference(d, a)),
+        ];
+        if sides.contains(&away) || !time.is_within(course) {
+            return;
+        }
+        let spot = |[from, to]: [(u32, DVec3); 2], at_from: Ordering, at_to: Ordering| {
+            if at_to == Ordering::Equal {
+                Spot::Vertex(to.0, to.1)
+            } else if at_from == Ordering::Equal {
+                Spot::Vertex(from.0, from.1)
+            } else {
+                Spot::Edge([from.0, to.0], from.1)
+            }
+        };
+        let spots = [
+            spot([(first[0], a), (first[1], b)], sides[0], sides[1]),
+            spot([(second[0], c), (second[1], d)], sides[2], sides[3]),
+        ];
+        let along = Cross::of(d - c, self.motion);
+        let part = -along.dot(a - c).value / Cross::of(b - a, d - c).dot(self.motion).value;
+        let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
+        let at = (a + part * (b - a), DVec3::ZERO);
+        self.add(Candidate::new((time, course), feature, at, spots));
+    }
+
+    /// Whether `gap / fall` may be a time from 0 to the horizon.
+    #[inline(always)]
+    fn may_be_first(&self, gap: Estimate, fall: Estimate) -> bool {
+        if fall.error == 0.0 {
+            return self.kind == Kind::Any && gap.value.abs() <= gap.error;
+        }
+        if fall.value.abs() <= fall.error {
+            return true;
+        }
+        let ahead = if fall.value < 0.0 {
+            -gap.value
+        } else {
+            gap.value
+        };
+        // For the roundings of both sides.
+        const UP: f64 = 1.0 + 4.0 * f64::EPSILON;
+        let farthest = self.horizon * (fall.value.abs() + fall.error) * UP;
+        ahead + gap.error >= 0.0 && ahead - gap.error <= farthest
+    }
+}
+
+/// A sign that may be known.
+#[inline(always)]
+fn known(side: i8, rows: impl FnOnce() -> [Difference; 3]) -> Ordering {
+    match side {
+        1 => Ordering::Greater,
+        -1 => Ordering::Less,
+        _ => sign(rows()),
+    }
+}

@@ -1,0 +1,203 @@
+//! The search for the first contact of two trees, one of which moves.
+//!
+//! Pairs of boxes are looked at in the order in which they meet ([`boxes`]), and no longer once that
+//! is after the first contact so far. Pairs of triangles that come together give contacts of
+//! features ([`features`]), in exact arithmetic where f64 leaves a doubt; of those at one time the
+//! first one counts ([`candidate`]), and at the borders of faces those that block ([`border`]).
+
+mod border;
+mod boxes;
+mod candidate;
+mod features;
+
+use core::cmp::Ordering;
+use glam::DVec3;
+
+use super::{pairs::TILE, touch::Touch};
+use crate::bvh::{Bvh, LEAF, WIDTH};
+use boxes::Moving;
+use candidate::Candidate;
+use features::View;
+
+/// Which contacts count.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Those with a normal that opposes the motion, which they block.
+    Entering,
+    /// All but two edges in a plane along the motion.
+    Any,
+}
+
+pub(super) struct Search<'a> {
+    first: &'a Bvh,
+    second: &'a Bvh,
+    offset: DVec3,
+    motion: DVec3,
+    kind: Kind,
+    boxes: Moving,
+    view: View,
+    /// What comes after this time is not the first contact.
+    horizon: f64,
+    best: Option<Candidate>,
+    /// When a vertex first slides into a triangle, rounded down.
+    slide: Option<f64>,
+}
+
+impl<'a> Search<'a> {
+    /// Looks for contacts within the motion.
+    pub(super) fn run(
+        kind: Kind,
+        (first, second): (&'a Bvh, &'a Bvh),
+        offset: DVec3,
+        motion: DVec3,
+    ) -> Search<'a> {
+        let mut search = Search {
+            first,
+            second,
+            offset,
+            motion,
+            kind,
+            boxes: Moving::new(first, second, offset, motion),
+            view: View::new(first, second, offset, motion),
+            horizon: 1.0,
+            best: None,
+            slide: None,
+        };
+        if motion != DVec3::ZERO {
+            search.visit(first.root(), second.root());
+        }
+        search
+    }
+
+    /// The first contact, by the order of those at one time.
+    pub(super) fn best(self) -> Option<Touch> {
+        let mut best = self.best?;
+        let time = best.rounded();
+        Some(Touch {
+            time,
+            point: best.point + time * best.drift,
+            normal: best.normal(),
+            feature: best.feature,
+        })
+    }
+
+    /// The time of the first contact.
+    pub(super) fn time(self) -> Option<f64> {
+        let crossing = self.best.map(|mut best| best.rounded());
+        crossing
+            .into_iter()
+            .chain(self.slide)
+            .min_by(f64::total_cmp)
+    }
+
+    /// Looks at all below two nodes or leaves, in the order in which boxes meet. A leaf against a node
+    /// stays for the node's children, once for all its triangles.
+    fn visit(&mut self, a: u32, b: u32) {
+        let (node, other) = (self.first.node(a), self.second.node(b));
+        let (pairs, enter) = self.boxes.meet(&node.boxes, &other.boxes, self.horizon);
+        if pairs == 0 {
+            return;
+        }
+        let among = match (a & LEAF == 0, b & LEAF == 0) {
+            (true, false) => Among::Rows,
+            (false, true) => Among::Columns,
+            _ => Among::Pairs,
+        };
+        let is_leaves = a & b & LEAF != 0;
+        let (list, count) = in_order(pairs, &enter.lanes(), among);
+        for &(soonest, lane) in &list[..count] {
+            // Quotients lose no more than that below the normal numbers.
+            if f64::from(soonest) > self.horizon + f64::from(f32::MIN_POSITIVE) {
+                return;
+            }
+            let (i, j) = (lane as usize / WIDTH, lane as usize % WIDTH);
+            if is_leaves {
+                self.try_triangles((node, i), (other, j));
+            } else {
+                self.visit(node.child[i], other.child[j]);
+            }
+        }
+    }
+
+    fn slide(&mut self, time: Option<f64>) {
+        let Some(time) = time else { return };
+        self.slide = Some(self.slide.map_or(time, |first| first.min(time)));
+        self.horizon = self.horizon.min(time.next_up());
+    }
+
+    /// Keeps a contact if it is the first so far.
+    fn add(&mut self, mut new: Candidate) {
+        let mut is_tie = false;
+        new.is_from_inside = self.comes_from_inside(&new);
+        if let Some(old) = &mut self.best {
+            if new.bounds.0 > old.bounds.1 {
+                return;
+            }
+            if new.bounds.1 >= old.bounds.0 {
+                let order = new.rounded().total_cmp(&old.rounded());
+                is_tie = order == Ordering::Equal;
+                // In doubt it would come later still.
+                if order == Ordering::Greater || (is_tie && !new.is_before(old)) {
+                    return;
+                }
+            }
+        }
+        if self.kind == Kind::Entering && new.is_on_brink {
+            if !self.counts(&mut new) {
+                return;
+            }
+            if let Some(old) = self.best.as_mut().filter(|_| is_tie && new.is_doubtful)
+                && !new.is_before(old)
+            {
+                return;
+            }
+        }
+        self.horizon = self.horizon.min(new.bounds.1);
+        self.best = Some(new);
+    }
+}
+
+/// What is visited of the pairs of a tile.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Among {
+    Pairs,
+    /// For each of the first's lanes the soonest pair.
+    Rows,
+    /// For each of the second's lanes the soonest pair.
+    Columns,
+}
+
+/// The times and lanes of some pairs, the soonest first, and how many there are.
+#[inline(never)]
+fn in_order(mut pairs: u32, enter: &[f32; TILE], among: Among) -> ([(f32, u32); TILE], usize) {
+    let mut list = [(0.0, 0); TILE];
+    let mut count = 0;
+    'pairs: while pairs != 0 {
+        let lane = pairs.trailing_zeros();
+        pairs &= pairs - 1;
+        let time = enter[lane as usize];
+        let mut place = count;
+        let group = |lane: u32| match among {
+            Among::Pairs => TILE as u32,
+            Among::Rows => lane / WIDTH as u32,
+            Among::Columns => lane % WIDTH as u32,
+        };
+        if among != Among::Pairs
+            && let Some(known) = (0..count).find(|&k| group(list[k].1) == group(lane))
+        {
+            if list[known].0 <= time {
+                continue 'pairs;
+            }
+            // To be put further ahead.
+            place = known;
+            count -= 1;
+        }
+        while place > 0 && list[place - 1].0 > time {
+            list[place] = list[place - 1];
+            place -= 1;
+        }
+        list[place] = (time, lane);
+        count += 1;
+    }
+    (list, count)
+}
