@@ -125,7 +125,7 @@ impl Session {
         }
         let mut radius = (0.47 * size.length()).max(1e-3);
         if (0..self.world.len()).any(|i| self.is_half_space(i)) {
-            radius = radius.max(1.35 * self.room().1);
+            radius = radius.max(1.1 * self.room().1);
         }
         self.camera.frame(middle, radius);
     }
@@ -191,9 +191,15 @@ impl Session {
         matches!(self.world.shape(i), Some(Shape::HalfSpace { .. }))
     }
 
-    /// Centre and radius, m, of a ball around all bodies as they were set up and what they stand
-    /// before: how much of a half-space is worth seeing. It stays while they move.
+    /// Centre and radius, m, of a ball around the room.
     pub(super) fn room(&self) -> (DVec3, f64) {
+        let (min, max) = self.room_box();
+        (0.5 * (min + max), (0.5 * (max - min).length()).max(1e-3))
+    }
+
+    /// Box of all bodies as they were set up and of what they stand before: how much of a
+    /// half-space is worth seeing. It stays while they move.
+    pub(super) fn room_box(&self) -> (DVec3, DVec3) {
         let set_up = |i: usize| self.scene.bodies[i].position;
         let boxes = (0..self.world.len())
             .filter(|&i| !self.is_half_space(i))
@@ -202,15 +208,14 @@ impl Session {
                 (set_up(i) + centre - half, set_up(i) + centre + half)
             });
         let bodies = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-        let (min, max) = match bodies {
+        match bodies {
             Some((min, max)) => self.with_feet(min, max),
             None => {
                 let places = (0..self.world.len()).map(set_up);
                 let middle = places.reduce(|a, b| a.lerp(b, 0.5)).unwrap_or_default();
                 (middle - 1.0, middle + 1.0)
             }
-        };
-        (0.5 * (min + max), (0.5 * (max - min).length()).max(1e-3))
+        }
     }
 
     /// A box grown to where its middle stands on the half-spaces near it, as they were set up.

@@ -44,7 +44,10 @@ impl Session {
         let [_, _, backward] = self.camera.axes();
         for impact in impacts {
             let age = (self.world.time() - impact.time) / SHOWN;
-            let fresh = (1.0 - age).clamp(0.0, 1.0) as f32;
+            let fresh = (1.0 - age).clamp(0.0, 1.0).powi(2) as f32;
+            // Among stronger ones a weak one is small, or those of a crowd would hide it.
+            let strength = impact.impulse / strongest;
+            let width = 1.0 + 2.0 * strength as f32;
             let [red, green, blue] = ORANGE;
             let mut line = |from: DVec3, to: DVec3, width: f32| {
                 marks.push(Line {
@@ -56,13 +59,13 @@ impl Session {
             };
             let along = self.normal_length(impact) * impact.normal;
             line(impact.point, impact.point + along, 1.0);
-            let arrow = STRONGEST * impact.impulse / strongest * along;
+            let arrow = STRONGEST * strength * along;
             let tip = impact.point + arrow;
             let aside = HEAD * arrow.length() * along.cross(backward).normalize_or_zero();
-            line(impact.point, tip, 3.0);
-            line(tip, tip - 2.0 * HEAD * arrow + aside, 3.0);
-            line(tip, tip - 2.0 * HEAD * arrow - aside, 3.0);
-            line(impact.point, impact.point, 9.0);
+            line(impact.point, tip, width);
+            line(tip, tip - 2.0 * HEAD * arrow + aside, width);
+            line(tip, tip - 2.0 * HEAD * arrow - aside, width);
+            line(impact.point, impact.point, 3.0 * width);
         }
     }
 

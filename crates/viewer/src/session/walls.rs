@@ -12,6 +12,13 @@ const CELLS: f64 = 4.0;
 const GLASS: f32 = 0.14;
 const SELECTED: [f32; 3] = [0.10, 0.35, 1.0];
 
+/// The room beside the bodies, and the least part of its radius that is drawn each way.
+const MARGIN: f64 = 1.1;
+const LEAST_PART: f64 = 0.6;
+
+/// A point of a plane and its normal.
+type Plane = (DVec3, DVec3);
+
 /// A half-space as it is drawn.
 struct Wall {
     body: usize,
@@ -39,14 +46,22 @@ impl Session {
             _ => None,
         };
         let walls: Vec<Wall> = (0..self.world.len()).filter_map(wall).collect();
+        let (min, max) = self.room_box();
+        let size = (MARGIN * 0.5 * (max - min)).max(DVec3::splat(LEAST_PART * half));
         for wall in &walls {
-            // What is inside another half-space is not seen.
-            let others: Vec<&Wall> = walls.iter().filter(|w| w.body != wall.body).collect();
-            self.add_wall(wall, half, &others, picture);
+            // What is inside another half-space is not seen, nor what is beside the room.
+            let others = walls.iter().filter(|other| other.body != wall.body);
+            let sides = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
+            let sides = sides.filter(|side| side.dot(wall.normal).abs() < 0.5);
+            let bounds: Vec<Plane> = others
+                .map(|other| (other.centre, other.normal))
+                .chain(sides.map(|side| (centre - size * side, side)))
+                .collect();
+            self.add_wall(wall, 2.0 * half, &bounds, picture);
         }
     }
 
-    fn add_wall(&self, wall: &Wall, half: f64, others: &[&Wall], picture: &mut Picture) {
+    fn add_wall(&self, wall: &Wall, half: f64, bounds: &[Plane], picture: &mut Picture) {
         let is_selected = self.selection == Some(wall.body);
         let is_front = (self.camera.eye() - wall.centre).dot(wall.normal) > 0.0;
         let [red, green, blue] = match is_selected {
@@ -59,7 +74,7 @@ impl Session {
             colour: [red, green, blue, opacity],
             width,
         };
-        let outline = outline(wall, half, others);
+        let outline = outline(wall, half, bounds);
         let ends = outline.iter().skip(1).chain(outline.first());
         let (opacity, width) = match (is_front, is_selected) {
             (_, true) => (1.0, 2.5),
@@ -75,7 +90,7 @@ impl Session {
         // The ground has a grid of its own.
         let is_ground = wall.normal == DVec3::Y && wall.centre.y == 0.0 && self.display.grid;
         if !is_ground {
-            let grid = grid(wall, half, others);
+            let grid = grid(wall, half, bounds);
             picture.lines.extend(grid.map(|edge| line(edge, 0.4, 1.0)));
         }
         picture.panes.push(Pane {
@@ -86,14 +101,14 @@ impl Session {
 }
 
 /// The corners of what is left of a square, in order.
-fn outline(wall: &Wall, half: f64, others: &[&Wall]) -> Vec<DVec3> {
+fn outline(wall: &Wall, half: f64, bounds: &[Plane]) -> Vec<DVec3> {
     let [u, v] = wall.axes.map(|axis| half * axis);
     let square = [-u - v, u - v, u + v, v - u].map(|corner| wall.centre + corner);
-    others.iter().fold(square.into(), |corners, other| {
+    bounds.iter().fold(square.into(), |corners, bound| {
         let mut kept = Vec::with_capacity(corners.len() + 1);
         for (n, &from) in corners.iter().enumerate() {
             let to = corners[(n + 1) % corners.len()];
-            let (start, end) = (height(other, from), height(other, to));
+            let (start, end) = (height(bound, from), height(bound, to));
             if start >= 0.0 {
                 kept.push(from);
             }
@@ -109,9 +124,9 @@ fn outline(wall: &Wall, half: f64, others: &[&Wall]) -> Vec<DVec3> {
 fn grid<'a>(
     wall: &'a Wall,
     half: f64,
-    others: &'a [&'a Wall],
+    bounds: &'a [Plane],
 ) -> impl Iterator<Item = (DVec3, DVec3)> + 'a {
-    let spacing = round_below(half / CELLS);
+    let spacing = round_below(0.5 * half / CELLS);
     let [u, v] = wall.axes;
     [(u, v), (v, u)]
         .into_iter()
@@ -124,8 +139,8 @@ fn grid<'a>(
                 let at = (first.ceil() + f64::from(n)) * spacing - middle;
                 let place = wall.centre + at * across;
                 let ends = (place - half * along, place + half * along);
-                others.iter().try_fold(ends, |(from, to), other| {
-                    let (start, end) = (height(other, from), height(other, to));
+                bounds.iter().try_fold(ends, |(from, to), bound| {
+                    let (start, end) = (height(bound, from), height(bound, to));
                     let cut = from.lerp(to, start / (start - end));
                     match (start >= 0.0, end >= 0.0) {
                         (true, true) => Some((from, to)),
@@ -138,9 +153,9 @@ fn grid<'a>(
         })
 }
 
-/// How far a point is in front of a wall, m.
-fn height(wall: &Wall, point: DVec3) -> f64 {
-    (point - wall.centre).dot(wall.normal)
+/// How far a point is in front of a plane, m.
+fn height((at, normal): &Plane, point: DVec3) -> f64 {
+    (point - at).dot(*normal)
 }
 
 /// The greatest of 1, 2 and 5 times a power of ten that is not above `length`.

@@ -301,11 +301,11 @@ impl World {
             self.current.position[wall],
         );
         let bulge = self.bulge(wall).dot(normal.abs());
-        // More than is lost in rounding.
-        let slack = 16.0 * f64::EPSILON * (from.length() + to.length());
         Front {
             normal,
-            level: normal.dot(from).max(normal.dot(to)) + bulge + slack,
+            level: normal.dot(from).max(normal.dot(to)) + bulge,
+            // More than is lost in rounding.
+            slack: 16.0 * f64::EPSILON * (from.length() + to.length()),
         }
     }
 }
@@ -315,14 +315,18 @@ impl World {
 struct Front {
     normal: DVec3,
     level: f64,
+    slack: f64,
 }
 
 impl Front {
     /// Whether a box may come to it; a "no" is a proof.
     fn may_meet(&self, swept: &Swept) -> bool {
-        let (low, high) = (self.normal * swept.min, self.normal * swept.max);
-        let nearest = low.min(high).element_sum();
-        let size = low.abs().max(high.abs()).element_sum();
-        nearest - 16.0 * f64::EPSILON * size <= self.level
+        let nearest = |axis: usize| match self.normal[axis] > 0.0 {
+            true => self.normal[axis] * swept.min[axis],
+            false => self.normal[axis] * swept.max[axis],
+        };
+        let [x, y, z] = [nearest(0), nearest(1), nearest(2)];
+        let size = x.abs() + y.abs() + z.abs();
+        x + y + z - 16.0 * f64::EPSILON * size <= self.level + self.slack
     }
 }
