@@ -105,8 +105,7 @@ fn end_of_ours(scene: &Scene, collision: Collision) -> (DVec3, f64) {
     (world.velocity(0), world.kinetic_energy())
 }
 
-fn end_of_rapier(scene: &Scene) -> (DVec3, f64) {
-    let mut rapier = Rapier::new(scene);
+fn end_of_rapier(mut rapier: Rapier) -> (DVec3, f64) {
     (0..STEPS).for_each(|_| rapier.step());
     (rapier.velocity(0), rapier.kinetic_energy())
 }
@@ -137,13 +136,19 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
             watch::time(&mut group, &id("continuous"), STEPS, || continuous.clone()),
             watch::time(&mut group, &id("discrete"), STEPS, || discrete.clone()),
             watch::time(&mut group, &id("rapier"), STEPS, || Rapier::new(&scene)),
+            watch::time(&mut group, &id("rapier, edges fixed"), STEPS, || {
+                Rapier::with_internal_edges_fixed(&scene)
+            }),
         ];
-        let engines: [(&str, Of); 3] = [
+        let engines: [(&str, Of); 4] = [
             ("continuous", |scene| {
                 end_of_ours(scene, Collision::Continuous)
             }),
             ("discrete", |scene| end_of_ours(scene, Collision::Bvh)),
-            ("rapier 0.36", end_of_rapier),
+            ("rapier 0.36", |scene| end_of_rapier(Rapier::new(scene))),
+            ("rapier, edges fixed", |scene| {
+                end_of_rapier(Rapier::with_internal_edges_fixed(scene))
+            }),
         ];
         for ((name, of), seconds) in engines.into_iter().zip(times) {
             let Some((seconds, ours)) = seconds.zip(times[0]) else {

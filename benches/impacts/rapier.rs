@@ -1,8 +1,8 @@
 //! Scenes in a world of Rapier, as its documentation advises.
 //!
-//! Boxes and balls are shapes of its own, walls are thick boxes, and meshes have internal edges
-//! fixed, which brings orientation too. Its limit on speeds is lifted. Continuous detection of moving
-//! bodies is asked for with `ccd_enabled`; as one such body never sweeps another, of a pair only
+//! Boxes and balls are shapes of its own, walls are thick boxes. Meshes are as they are, which of a
+//! cube on the cow makes the least errors, or have internal edges fixed, which of the cow on itself
+//! does. Its limit on speeds is lifted. Continuous detection of moving bodies is asked for with `ccd_enabled`; as one such body never sweeps another, of a pair only
 //! the mover has it. Bodies do not sleep, so that all of them are simulated.
 
 use rapier3d_f64::prelude::*;
@@ -28,6 +28,14 @@ fn vector(v: DVec3) -> Vector {
 
 impl Rapier {
     pub(crate) fn new(scene: &Scene) -> Rapier {
+        Rapier::with_flags(scene, TriMeshFlags::empty())
+    }
+
+    pub(crate) fn with_internal_edges_fixed(scene: &Scene) -> Rapier {
+        Rapier::with_flags(scene, TriMeshFlags::FIX_INTERNAL_EDGES)
+    }
+
+    fn with_flags(scene: &Scene, flags: TriMeshFlags) -> Rapier {
         let mut world = PhysicsWorld::new();
         world.gravity = vector(scene.gravity);
         let settings = &mut world.integration_parameters;
@@ -50,7 +58,6 @@ impl Rapier {
                 Form::Cube(half) => ColliderBuilder::cuboid(*half, *half, *half),
                 Form::Mesh(mesh) => {
                     let vertices = mesh.vertices().iter().map(|v| vector(v.as_dvec3()));
-                    let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
                     let (vertices, faces) = (vertices.collect(), mesh.triangles().to_vec());
                     ColliderBuilder::trimesh_with_flags(vertices, faces, flags).expect("a mesh")
                 }

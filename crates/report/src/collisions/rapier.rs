@@ -1,6 +1,6 @@
 //! Scenes of collisions in a world of Rapier, as its documentation advises: boxes and balls are its
-//! own shapes, meshes have internal edges fixed and with that an orientation, the limit on speeds
-//! is lifted, and the mover alone has `ccd_enabled`, as one such body never sweeps another.
+//! own shapes, meshes are as they are (fixing internal edges costs the cube on the cow a quarter of
+//! its energy), the limit on speeds is lifted, and the mover alone has `ccd_enabled`, as one such body never sweeps another.
 
 use rapier3d_f64::prelude::*;
 use sim_core::DVec3;
@@ -80,9 +80,8 @@ fn world(scene: &Scene, rate: u32) -> (PhysicsWorld, [RigidBodyHandle; 2]) {
             Form::Cube(half, _) => ColliderBuilder::cuboid(*half, *half, *half),
             Form::Mesh(mesh) => {
                 let vertices = mesh.vertices().iter().map(|v| vector(v.as_dvec3()));
-                let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
                 let (vertices, faces) = (vertices.collect(), mesh.triangles().to_vec());
-                ColliderBuilder::trimesh_with_flags(vertices, faces, flags)
+                ColliderBuilder::trimesh(vertices, faces)
                     .unwrap_or_else(|error| unreachable!("{error}"))
             }
         };
