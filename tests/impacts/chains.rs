@@ -51,7 +51,6 @@ fn blocks_count_the_digits_of_pi() {
 }
 
 #[test]
-#[ignore = "points that have met meet again, from the other side"]
 fn points_count_the_digits_of_pi() {
     assert_digits_of_pi(0..5, 0.0);
 }

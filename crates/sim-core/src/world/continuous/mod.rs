@@ -37,6 +37,9 @@ pub(super) struct Continuous {
     version: Vec<u32>,
     /// What constant forces and resting contacts do to each body, m/s².
     acceleration: Vec<DVec3>,
+    /// How often each body has come to rest in this step; one that has too often stops for the rest
+    /// of it.
+    rests: Vec<u32>,
     /// Contacts whose bodies stay together for the rest of the step.
     resting: Vec<Rest>,
     events: BinaryHeap<Event>,
@@ -98,6 +101,10 @@ impl Eq for Event {}
 /// Pairs for a thread at least: less is faster done than handed over.
 #[cfg(feature = "rayon")]
 const PAIRS_A_TASK: usize = 32;
+
+/// A body that comes to rest so often in one step is wedged in, and stops for what is left of it: so
+/// a step ends whatever lies on what.
+const MOST_RESTS: u32 = 100;
 
 /// Pairs that are listed before they are sorted, and named once each.
 const MOST_NEAR: usize = 1 << 16;

@@ -80,7 +80,10 @@ impl World {
         let offset = before.1 - before.0;
         let mut normals = forms.map_or_else(Vec::new, |(a, b)| parting_normals(a, b, offset));
         normals.push(self.apart_along(i, j));
-        let grain = self.grain(i, j);
+        let grain = self.grain(i, j).max(f64::MIN_POSITIVE);
+        // Back to where they came from: a sheet has two sides.
+        let came = (self.previous.position[j] - self.previous.position[i]) - offset;
+        normals.retain(|normal| normal.dot(came) >= -8.0 * grain);
         for doubling in 0..DOUBLINGS {
             let by = 0.5 * grain * f64::from(1 << doubling);
             for &normal in &normals {

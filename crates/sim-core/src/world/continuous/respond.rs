@@ -59,6 +59,11 @@ impl World {
         }
         for event in group.iter_mut() {
             self.choose(event);
+            if event.answer != Answer::Bounce {
+                for body in [event.bodies.0, event.bodies.1] {
+                    self.continuous.rests[body] += u32::from(self.mass[body].is_finite());
+                }
+            }
         }
         let chosen = |answer| group.iter().filter(move |event| event.answer == answer);
         self.bounce_together(chosen(Answer::Bounce), time);

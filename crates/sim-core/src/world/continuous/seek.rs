@@ -144,7 +144,9 @@ impl World {
     ) -> Result<Option<Event>, (usize, Cause)> {
         let Pair { i, j, grain, .. } = pair;
         let touching = from.0 + contact.time * length;
-        let mut back = grain * length / fall;
+        // Nor less than times and their products are rounded by.
+        let mut back = (grain * length / fall).max(ULPS * f64::EPSILON * touching);
+        back = back.max(f64::MIN_POSITIVE);
         let mut time = touching;
         while time > from.0 {
             time = (touching - back).max(from.0);

@@ -15,6 +15,7 @@ use super::super::{
     stepping::{Block, Cause},
     system::Part,
 };
+use super::MOST_RESTS;
 use crate::{System, integrate::Scratch};
 
 /// Room to ask where bodies are.
@@ -35,6 +36,8 @@ impl World {
         ways.acceleration.clone_from(&self.acceleration);
         ways.since.clear();
         ways.since.resize(n, 0.0);
+        ways.rests.clear();
+        ways.rests.resize(n, 0);
         ways.version.clear();
         ways.version.resize(n, 0);
     }
@@ -65,7 +68,7 @@ impl World {
         let ways = &self.continuous;
         let (x, v) = (ways.start.position[body], ways.start.velocity[body]);
         let h = time - ways.since[body];
-        if h == 0.0 {
+        if h == 0.0 || self.is_stopped(body) {
             return Ok((x, v));
         }
         if time == self.settings.dt {
@@ -148,6 +151,12 @@ impl World {
     pub(super) fn finish_way(&mut self, bodies: Range<usize>) -> Result<(), (usize, Cause)> {
         let dt = self.settings.dt;
         match self.unit(bodies.start) {
+            _ if self.is_stopped(bodies.start) => {
+                let State { position, velocity } = &self.continuous.start;
+                let (x, v) = (&position[bodies.clone()], &velocity[bodies.clone()]);
+                self.current.position[bodies.clone()].copy_from_slice(x);
+                self.current.velocity[bodies.clone()].copy_from_slice(v);
+            }
             None => {
                 let body = bodies.start;
                 let fall = self.settings.method.fall.unwrap_or(0.0);
@@ -198,10 +207,22 @@ impl World {
         all[body - bodies.start]
     }
 
+    /// Whether a body, or one coupled to it, has come to rest too often in this step.
+    fn is_stopped(&self, body: usize) -> bool {
+        let rests = &self.continuous.rests;
+        let Some((bodies, _)) = self.unit(body) else {
+            return rests[body] > MOST_RESTS;
+        };
+        rests[bodies].iter().any(|&rests| rests > MOST_RESTS)
+    }
+
     /// How far a body's way departs from its chord, at most, m, by component.
     pub(super) fn bulge(&self, body: usize) -> DVec3 {
         let ways = &self.continuous;
         let h = self.settings.dt - ways.since[body];
+        if self.is_stopped(body) {
+            return DVec3::ZERO;
+        }
         if self.unit(body).is_none() {
             let fall = self.settings.method.fall.unwrap_or(0.0);
             return (0.25 * fall * h * h) * ways.acceleration[body].abs();
@@ -215,7 +236,8 @@ impl World {
 
     /// How far the relative way of two bodies departs from a chord, m, per square of its length, s².
     pub(super) fn bend(&self, i: usize, j: usize) -> f64 {
-        if self.unit(i).is_none() && self.unit(j).is_none() {
+        let is_free = |body| self.unit(body).is_none() && !self.is_stopped(body);
+        if is_free(i) && is_free(j) {
             let fall = self.settings.method.fall.unwrap_or(0.0);
             let push = &self.continuous.acceleration;
             let relative = push[j] - push[i];
