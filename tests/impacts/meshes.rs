@@ -198,3 +198,49 @@ fn a_peg_passes_its_channel_untouched_and_a_wider_one_does_not() {
         }
     }
 }
+
+/// A small cube passes below the cow's belly: to both sides of its lane, and above, the cow is in
+/// the way.
+#[test]
+fn a_cube_passes_between_the_legs_of_the_cow() {
+    let (cow, cube) = (builtin("cow.obj"), cuboid(Vec3::splat(0.05)));
+    let trees = [Bvh::build(&cow), Bvh::build(&cube)];
+    let bounds = cow.bounds();
+    let (low, size) = (bounds.min.as_dvec3(), 2.0 * bounds.half_extent());
+    // It is longer than it is wide.
+    let (along, across) = match size.x > size.z {
+        true => (DVec3::X, DVec3::Z),
+        false => (DVec3::Z, DVec3::X),
+    };
+    const N: usize = 24;
+    let lane = |i: usize, j: usize| {
+        let part = |k: usize| k as f64 / N as f64;
+        let place = low + along * size * part(i) + DVec3::Y * size * part(j);
+        place - across * place - 4.0 * across
+    };
+    let is_free = |i, j| first_touch(&trees[0], &trees[1], lane(i, j), 8.0 * across).is_none();
+    let free: Vec<Vec<bool>> = (0..=N)
+        .map(|i| (0..=N).map(|j| is_free(i, j)).collect())
+        .collect();
+    let is_enclosed = |i: usize, j: usize| {
+        let before = (0..i).any(|k| !free[k][j]);
+        let behind = (i + 1..=N).any(|k| !free[k][j]);
+        free[i][j] && before && behind && (j + 1..=N).any(|k| !free[i][k])
+    };
+    let lanes = (0..=N).flat_map(|i| (0..=N).map(move |j| (i, j)));
+    let enclosed: Vec<_> = lanes.filter(|&(i, j)| is_enclosed(i, j)).collect();
+    assert!(!enclosed.is_empty());
+    for (i, j) in enclosed {
+        for speed in [1.0, 30.0, 1000.0] {
+            let velocity = speed * across;
+            let bodies = [
+                mesh_body(&cow, DVec3::ZERO, DVec3::ZERO),
+                mesh_body(&cube, lane(i, j), velocity),
+            ];
+            let mut world = world(DT, &bodies);
+            let steps = (8.0 / speed / DT).ceil() as u64;
+            assert!(run(&mut world, steps).is_empty());
+            assert_eq!(world.velocity(1), velocity);
+        }
+    }
+}

@@ -51,7 +51,14 @@ fn cpu() -> String {
 }
 
 /// Crates whose versions matter.
-const CRATES: [&str; 4] = ["ode_solvers", "differential-equations", "nalgebra", "kuva"];
+const CRATES: [&str; 6] = [
+    "ode_solvers",
+    "differential-equations",
+    "rapier3d-f64",
+    "parry3d-f64",
+    "nalgebra",
+    "kuva",
+];
 
 fn versions() -> String {
     let own = format!(

@@ -6,6 +6,7 @@
 //! cargo run --release -p report -- --quick   # seconds
 //! ```
 
+mod collisions;
 mod contact;
 mod drift;
 mod hard_cases;

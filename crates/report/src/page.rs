@@ -109,6 +109,7 @@ fn tables_of(plot: &str, results: &Results) -> Vec<Table> {
         "work-precision" => vec![tables::beside_peers(results), tables::failed_runs(results)],
         "drift" => vec![tables::drift(results)],
         "stability" => vec![tables::stability(results)],
+        "collisions" => vec![tables::collisions(results), tables::bounces(results)],
         _ => Vec::new(),
     }
 }
@@ -145,8 +146,7 @@ fn contact(results: &Results) -> Markup {
              through bounding volume hierarchies; building them is not part of the time. They meet: \
              30 % closer than where they first touch; they do not: 1 % farther. The benchmarks, "
             code { "cargo bench" }
-            ", have more meshes. Collision speed against error over dt and speed is not yet \
-             measured here."
+            ", have more meshes."
         }
         (tables::contact(results).html())
     }

@@ -1,5 +1,6 @@
 //! Everything that is measured, in the order in which it is.
 
+use crate::collisions::{self, Collisions};
 use crate::contact;
 use crate::drift::{self, Drift};
 use crate::hard_cases::{self, Measured, Outcome};
@@ -14,6 +15,7 @@ pub(crate) struct Results {
     pub(crate) stability: Vec<stability::Row>,
     pub(crate) cases: Vec<Outcome>,
     pub(crate) contact: Vec<contact::Row>,
+    pub(crate) collisions: Collisions,
 }
 
 /// Measures all, and says what it is at.
@@ -35,6 +37,8 @@ pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
     });
     progress("naive against BVH");
     let contact = contact::measure(scope);
+    progress("collisions");
+    let collisions = collisions::measure(scope);
     progress("drift");
     let drifts = drift::measure(scope);
     progress("stability");
@@ -50,5 +54,6 @@ pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
         stability,
         cases,
         contact,
+        collisions,
     }
 }

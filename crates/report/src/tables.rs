@@ -22,6 +22,8 @@ pub(crate) fn all(results: &Results) -> Vec<Table> {
         matrix(results),
         hard_cases(results),
         contact(results),
+        collisions(results),
+        bounces(results),
     ]
 }
 
@@ -348,6 +350,53 @@ pub(crate) fn contact(results: &Results) -> Table {
             seconds(row.bvh),
             format!("{:.0}", row.naive / row.bvh),
             yes_or_no(row.right).into(),
+        ]);
+    }
+    table
+}
+
+/// Every run with a collision.
+pub(crate) fn collisions(results: &Results) -> Table {
+    let head = [
+        "scene",
+        "speed, m/s",
+        "rate, Hz",
+        "who",
+        "impact time, s",
+        "end, of the way",
+        "energy",
+        "time of a step",
+    ];
+    let title = "Collisions: errors and time of a step";
+    let mut table = Table::new("collisions", title, &head);
+    for scene in &results.collisions.scenes {
+        for run in &scene.runs {
+            table.rows.push(vec![
+                scene.name.into(),
+                run.speed.to_string(),
+                run.rate.to_string(),
+                run.engine.name().into(),
+                run.time.map_or("no impact".into(), short),
+                short(run.position),
+                short(run.energy),
+                seconds(run.seconds),
+            ]);
+        }
+    }
+    table
+}
+
+/// Bounces by method.
+pub(crate) fn bounces(results: &Results) -> Table {
+    let head = ["method", "dt, s", "impact time, s", "energy"];
+    let title = "Three bounces under gravity: errors by method";
+    let mut table = Table::new("bounces", title, &head);
+    for bounce in &results.collisions.bounces {
+        table.rows.push(vec![
+            bounce.method.name.into(),
+            format!("1/{:.0}", 1.0 / bounce.dt),
+            bounce.time.map_or("not three".into(), short),
+            short(bounce.energy),
         ]);
     }
     table

@@ -45,13 +45,16 @@ pub(super) fn test() -> Finding {
             world.add_force(acceleration).map(drop)
         });
     }
-    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+    // An infinite mass is one that nothing moves.
+    for bad in [0.0, -1.0, f64::NAN, f64::NEG_INFINITY] {
         let body = Body {
             mass: bad,
             ..Body::default()
         };
         tally.refused("mass", |world| world.add(body).map(drop));
         tally.refused("mass", |world| world.set_mass(0, bad));
+    }
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         tally.refused("dt", |world| {
             world.set_settings(Settings {
                 dt: bad,

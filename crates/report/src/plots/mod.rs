@@ -1,5 +1,6 @@
 //! Every plot of the page. A new one is a file here and a line in [`PLOTS`].
 
+mod collisions;
 mod drift;
 mod panel;
 mod stability;
@@ -18,7 +19,12 @@ pub(crate) struct Plot {
     pub(crate) draw: fn(&Results) -> Vec<Figure>,
 }
 
-pub(crate) static PLOTS: [&Plot; 3] = [&work_precision::PLOT, &drift::PLOT, &stability::PLOT];
+pub(crate) static PLOTS: [&Plot; 4] = [
+    &work_precision::PLOT,
+    &drift::PLOT,
+    &stability::PLOT,
+    &collisions::PLOT,
+];
 
 /// A picture with what is said of it.
 #[derive(Clone, Debug)]

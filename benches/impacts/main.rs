@@ -1,0 +1,62 @@
+//! Continuous collisions beside Rapier: time, impacts found, errors.
+//!
+//! `cargo bench -- impacts` runs all, prints tables and leaves them in `target/impacts.md`;
+//! `cargo bench -- impacts/crowd` runs a part. It fails if an answer of ours is wrong.
+
+mod crowd;
+mod galperin;
+mod one;
+mod ours;
+mod pair;
+#[expect(dead_code, reason = "the other benchmark picks whole numbers too")]
+#[path = "../collision/random.rs"]
+mod random;
+mod rapier;
+mod scene;
+#[path = "../collision/table.rs"]
+mod table;
+mod watch;
+
+use std::path::Path;
+
+use table::Table;
+
+fn main() {
+    let mut criterion = watch::criterion();
+    let tables = [
+        pair::bench(&mut criterion),
+        crowd::bench(&mut criterion),
+        one::bench(&mut criterion),
+        galperin::bench(&mut criterion),
+    ];
+    criterion.final_summary();
+    let tables = tables.iter().flatten();
+    let text: String = tables.map(|table| table.markdown() + "\n").collect();
+    // Without `--bench` all runs once, as a test.
+    if !text.is_empty() && watch::is_timed() {
+        println!("\n{text}");
+        publish(&text);
+    }
+}
+
+/// Leaves the tables in the folder that cargo builds in: this program is in its `release/deps`.
+fn publish(text: &str) {
+    let program = std::env::current_exe().expect("a program has a path");
+    let target = program.ancestors().nth(3).expect("cargo builds in target");
+    let path: &Path = &target.join("impacts.md");
+    std::fs::write(path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+}
+
+/// An error to two digits.
+fn short(error: f64) -> String {
+    match error {
+        0.0 => "0".into(),
+        error if error.is_nan() => "-".into(),
+        error => format!("{error:.1e}"),
+    }
+}
+
+/// A row of names and figures, which is what most tables here are of.
+fn row(table: &mut Table, cells: &[&str]) {
+    table.rows.push(cells.iter().map(|&c| c.into()).collect());
+}

@@ -1,0 +1,55 @@
+//! Times runs of many steps under criterion, and keeps the time of a step.
+
+use std::time::{Duration, Instant};
+
+use criterion::{BenchmarkGroup, Criterion, measurement::WallTime};
+
+pub(crate) fn criterion() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_millis(800))
+        .sample_size(10)
+        .nresamples(2000)
+        .without_plots()
+        .configure_from_args()
+}
+
+/// Without cargo bench's `--bench` criterion runs everything once, as a test.
+pub(crate) fn is_timed() -> bool {
+    std::env::args().any(|arg| arg == "--bench")
+}
+
+/// Something that steps.
+pub(crate) trait Engine {
+    fn step(&mut self);
+}
+
+/// Median time of a step over runs of `steps`, s, each from a fresh start and after a step to warm
+/// up; `None` if criterion passes it over.
+pub(crate) fn time<E: Engine>(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    id: &str,
+    steps: u32,
+    start: impl Fn() -> E,
+) -> Option<f64> {
+    let mut times = Vec::new();
+    group.bench_function(id, |bencher| {
+        bencher.iter_custom(|runs| {
+            let mut total = Duration::ZERO;
+            for _ in 0..runs {
+                let mut engine = start();
+                engine.step();
+                let clock = Instant::now();
+                for _ in 1..steps {
+                    engine.step();
+                }
+                let time = clock.elapsed();
+                times.push(time.as_secs_f64() / f64::from(steps - 1));
+                total += time;
+            }
+            total
+        });
+    });
+    times.sort_unstable_by(f64::total_cmp);
+    times.get(times.len() / 2).copied()
+}
