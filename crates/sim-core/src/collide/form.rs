@@ -205,14 +205,20 @@ fn spheres(first: f64, second: f64, offset: DVec3, motion: DVec3) -> Option<Cont
     }
     let at = offset + time * motion;
     // Points have no surface to give a normal.
-    let normal = at.try_normalize().filter(|_| sum > 0.0);
-    let normal = normal.or_else(|| Some(-motion.try_normalize()?))?;
+    let normal = unit(at).filter(|_| sum > 0.0);
+    let normal = normal.or_else(|| Some(-unit(motion)?))?;
     (dot(normal, motion) < 0.0).then(|| Contact {
         time,
         point: first * normal,
         normal,
         feature: None,
     })
+}
+
+/// Of unit length; exactly so along an axis, and whatever the length was.
+fn unit(v: DVec3) -> Option<DVec3> {
+    let scaled = v / v.abs().max_element();
+    scaled.is_finite().then(|| scaled / scaled.length())
 }
 
 /// In an order of its own, whatever the vector instructions.

@@ -144,9 +144,11 @@ impl World {
     ) -> Result<Option<Event>, (usize, Cause)> {
         let Pair { i, j, grain, .. } = pair;
         let touching = from.0 + contact.time * length;
-        // Nor less than times and their products are rounded by.
-        let mut back = (grain * length / fall).max(ULPS * f64::EPSILON * touching);
-        back = back.max(f64::MIN_POSITIVE);
+        let mut back = (grain * length / fall).max(f64::MIN_POSITIVE);
+        if self.half_extent(i).max(self.half_extent(j)) == 0.0 {
+            // Points that have passed each other by a rounding of the time do not meet.
+            back = back.max(ULPS * f64::EPSILON * touching);
+        }
         let mut time = touching;
         while time > from.0 {
             time = (touching - back).max(from.0);
