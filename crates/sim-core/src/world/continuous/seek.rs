@@ -144,7 +144,13 @@ impl World {
     ) -> Result<Option<Event>, (usize, Cause)> {
         let Pair { i, j, grain, .. } = pair;
         let touching = from.0 + contact.time * length;
-        let mut back = (grain * length / fall).max(f64::MIN_POSITIVE);
+        // Bodies that nothing presses together part at once, and need no room to stay in.
+        let room = if self.are_pressed(i, j) {
+            grain
+        } else {
+            0.25 * grain
+        };
+        let mut back = (room * length / fall).max(f64::MIN_POSITIVE);
         if self.half_extent(i).max(self.half_extent(j)) == 0.0 {
             // Points that have passed each other by a rounding of the time do not meet.
             back = back.max(ULPS * f64::EPSILON * touching);
@@ -176,6 +182,12 @@ impl World {
     fn offset_at(&self, pair: Pair, time: f64, probe: &mut Probe) -> Result<DVec3, (usize, Cause)> {
         let first = self.motion_at(pair.i, time, probe)?.0;
         Ok(self.motion_at(pair.j, time, probe)?.0 - first)
+    }
+
+    /// Whether forces may change the speed at which two bodies come together.
+    fn are_pressed(&self, i: usize, j: usize) -> bool {
+        let push = &self.continuous.acceleration;
+        self.unit(i).is_some() || self.unit(j).is_some() || push[i] != push[j]
     }
 
     fn start_of(&self, pair: Pair) -> f64 {
