@@ -1,4 +1,4 @@
-//! Rigid triangle meshes that move and collide.
+//! Rigid triangle meshes, and spheres and half-spaces, that move and collide.
 //!
 //! `no_std` with `alloc`, no I/O, no clock, no threads; `unsafe` only around vector instructions
 //! and a stack that is not zeroed. Quantities are in SI units. State is `f64`, geometry `f32`;
@@ -9,13 +9,18 @@
 //! 1. [`FixedStep`] turns the time since the last frame into whole steps of `dt`.
 //! 2. [`World::step`] keeps the state as the previous one and moves every [`Body`] under its
 //!    [`Force`]s by a [`Method`] of the table [`METHODS`], or by one of your own.
-//! 3. Each pair of bodies is asked whether their [`Mesh`]es meet: [`collide::naive`] tries every
-//!    edge against every triangle, [`collide::tree`] goes through a [`Bvh`] of each. Both
-//!    rest on the exact [`collide::predicates`] and always agree.
-//! 4. Where two meet, [`collide::touch`] finds the feature that touched first and with it the
-//!    contact normal, [`impulse::elastic`] the impulse. Velocities change, and both bodies go
-//!    back to where the step began, so that no two surfaces are ever left crossing.
-//! 5. [`World::interpolated`] gives positions between the last two states to draw.
+//! 3. With [`Collision::Continuous`], the default, each pair whose swept boxes meet is asked when it
+//!    has its first impact on its way: [`collide::touch`] finds it exactly for meshes that
+//!    translate, with the feature that touches and its normal. The earliest is answered
+//!    ([`impulse::between`], [`impulse::reflect`] where several happen at once), the two go on with
+//!    the rest of the step, and so on until none is left.
+//!    With [`Collision::Bvh`] and [`Collision::Naive`], as in the course, bodies that meet at the end
+//!    of the step exchange an impulse and go back to where it began.
+//! 4. Whether two meshes meet, [`collide::naive`] finds by every edge against every triangle,
+//!    [`collide::tree`] through a [`Bvh`] of each. Both rest on the exact [`collide::predicates`]
+//!    and always agree. No two surfaces are left crossing at the end of a step.
+//! 5. [`World::impacts`] counts impacts, [`World::step_reporting`] lists them, and
+//!    [`World::interpolated`] gives positions between the last two states to draw.
 //!
 //! ```
 //! use core::time::Duration;
@@ -49,11 +54,14 @@
 //! # Limits
 //!
 //! - Bodies translate and do not turn.
-//! - Overlap of surfaces is looked for at the end of each step. A body that is through another
-//!   within one step, or wholly inside a closed one, is not seen.
-//! - A body that is put back loses the rest of its step, along the surface too. Under a force the
-//!   work done in that step stays in its velocity: a bouncing body keeps its height under
-//!   symplectic and backward Euler, and gains some at each bounce under forward Euler and RK4.
+//! - Ways that bend under forces are searched along chords. A graze shallower than a thousandth of
+//!   the smaller body may be missed within a step; never an overlap at its end.
+//! - A contact rests for the rest of a step, over an edge too, and is looked for anew in the next.
+//! - Of bodies that a pile wedges in, some lose the rest of a step.
+//! - In the discrete modes a body that is through another within one step is not seen, and one that
+//!   is put back loses the rest of its step. Under a force the work done in that step stays in its
+//!   velocity: a bouncing body keeps its height under symplectic and backward Euler, and gains some
+//!   at each bounce under forward Euler and RK4.
 //! - Where several faces touch at a corner at once, one of them gives the normal.
 #![no_std]
 #![deny(unsafe_code)]
