@@ -318,3 +318,60 @@ fn motion_beyond_numbers_names_the_body_and_leaves_the_world_as_it_was() {
         assert!(world.position(1).is_finite() && world.previous_position(1).is_finite());
     }
 }
+
+/// A crowd of balls and cubes that fall into a pen.
+#[cfg(feature = "rayon")]
+fn crowd() -> World {
+    let cube = Arc::new(cube());
+    let mut world = World::new(Settings::default()).unwrap();
+    for normal in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::Z, DVec3::NEG_Z] {
+        let wall = Body {
+            shape: Some(crate::Shape::HalfSpace { normal }),
+            position: -10.0 * normal,
+            mass: f64::INFINITY,
+            ..Body::default()
+        };
+        world.add(wall).unwrap();
+    }
+    for i in 0..216 {
+        let (x, y, z) = (i % 6, i / 6 % 6, i / 36);
+        let place = v(f64::from(x), f64::from(y), f64::from(z)) * 1.5 - 4.0;
+        let drift = v(
+            f64::from(i % 7) - 3.0,
+            f64::from(i % 5) - 2.0,
+            f64::from(i % 3) - 1.0,
+        );
+        let mut one = body(&cube, 1.0 + f64::from(i % 4), place, 2.0 * drift);
+        if i % 2 == 0 {
+            one.shape = Some(crate::Shape::Sphere { radius: 0.5 });
+        }
+        one.restitution = 0.8;
+        world.add(one).unwrap();
+    }
+    let weight = crate::Force::Gravity {
+        acceleration: v(0.0, -9.81, 0.0),
+    };
+    world.add_force(weight).unwrap();
+    world
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let ran = [1, 2, 3, 8].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let mut world = crowd();
+            run(&mut world, 60);
+            let state: Vec<_> = (0..world.len())
+                .map(|i| (world.position(i), world.velocity(i)))
+                .collect();
+            (world.impacts(), state)
+        })
+    });
+    assert!(ran[0].0 > 100, "{}", ran[0].0);
+    assert!(ran.iter().all(|other| *other == ran[0]));
+}
