@@ -1,6 +1,6 @@
 //! Rigid triangle meshes, and spheres and half-spaces, that move and collide.
 //!
-//! `no_std` with `alloc`, no I/O, no clock, no threads; `unsafe` only around vector instructions
+//! `no_std` with `alloc`, no I/O, no clock, no threads but with feature `rayon`; `unsafe` only around vector instructions
 //! and a stack that is not zeroed. Quantities are in SI units. State is `f64`, geometry `f32`;
 //! decisions about geometry are exact.
 //!

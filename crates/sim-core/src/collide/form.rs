@@ -194,7 +194,7 @@ fn spheres(first: f64, second: f64, offset: DVec3, motion: DVec3) -> Option<Cont
     }
     let aside = offset.cross(motion);
     let depth = sum * sum * way - dot(aside, aside);
-    if depth < 0.0 {
+    if depth < 0.0 || !depth.is_finite() {
         return None;
     }
     let distance = libm::sqrt(dot(offset, offset));

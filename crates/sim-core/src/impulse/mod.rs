@@ -28,7 +28,7 @@ pub struct Exchange {
 
 /// The impulse after which two bodies of masses `m1`, `m2` (kg; one may be infinite) and velocities
 /// `v1`, `v2` (m/s) part along `normal` with the part `restitution` (0 to 1) of the speed at which
-/// they approach; `None` unless they do.
+/// they approach; `None` unless they do, and where nothing moves either.
 pub fn between(
     (m1, v1): (f64, DVec3),
     (m2, v2): (f64, DVec3),
@@ -44,6 +44,9 @@ pub fn between(
     // The heavier one's small share first, and the rest to the other: where masses differ by orders
     // of magnitude and meet again and again, no rounding of a share near one adds up.
     let (light, heavy) = (m1.min(m2), m1.max(m2));
+    if light.is_infinite() {
+        return None;
+    }
     let of_heavy = both * (light / (light + heavy));
     let of_light = both - of_heavy;
     let (first, second) = if m1 <= m2 {

@@ -21,7 +21,8 @@ use crate::{
 pub struct Impact {
     /// The step in which it happened, from 1.
     pub step: u64,
-    /// Time of the first contact on the straight way from the start of the step to its end, s.
+    /// When it happened, s; in the discrete modes, that of the first contact on the straight way from
+    /// the start of the step to its end.
     pub time: f64,
     /// The bodies.
     pub bodies: (usize, usize),

@@ -188,7 +188,8 @@ impl World {
         Ok(index)
     }
 
-    /// Steps by `dt`: moves every body, then lets those that meet bounce.
+    /// Steps by `dt`: moves every body, and lets those that meet bounce, as [`Settings::collision`]
+    /// has it.
     ///
     /// On an error every body stays where it was before the step, and the state before that is
     /// forgotten.
@@ -208,8 +209,12 @@ impl World {
     /// [`World::step`], adding each impact to a list, in the order in which they happen.
     pub fn step_reporting(&mut self, impacts: &mut Vec<Impact>) -> Result<(), StepError> {
         self.report = Some(core::mem::take(impacts));
+        let known = self.report.as_ref().map_or(0, Vec::len);
         let outcome = self.step();
         *impacts = self.report.take().unwrap_or_default();
+        if outcome.is_err() {
+            impacts.truncate(known);
+        }
         outcome
     }
 
@@ -343,6 +348,9 @@ impl World {
         self.check_body(body)?;
         error::check_mass(body, mass)?;
         self.mass[body] = mass;
+        // Immovable bodies may be in each other.
+        self.overlapping.retain(|&(i, j)| i != body && j != body);
+        self.note_overlaps_of(body);
         self.acceleration[body] = self.constant_acceleration(body);
         self.speed_scale = None;
         Ok(())

@@ -13,6 +13,8 @@
 mod part;
 mod respond;
 mod seek;
+#[cfg(test)]
+mod tests;
 mod way;
 
 use alloc::{collections::BinaryHeap, vec::Vec};
@@ -111,7 +113,7 @@ const MOST_NEAR: usize = 1 << 16;
 
 impl World {
     /// Impacts in one step after which it is given up, as without end.
-    pub const MOST_IMPACTS: u64 = 10_000_000;
+    pub const MOST_IMPACTS: u64 = 4_000_000;
 
     /// Lets bodies have their impacts on the way from the previous state to the current one.
     pub(super) fn collide_continuously(&mut self) -> Result<(), StepError> {

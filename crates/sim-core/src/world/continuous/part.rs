@@ -2,8 +2,8 @@
 //!
 //! Between steps no two bodies meet. The last bit of a position may still bring two together that
 //! slide along each other, or that have been placed exactly face to face; they are moved apart
-//! along a normal of where they touch, by units in the last place. An overlap is deeper than that
-//! and stays one.
+//! along a normal of where they touch, by units in the last place; those that have just been placed, by
+//! as much as the f32 of their vertices is rounded. An overlap is deeper than that and stays one.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -11,8 +11,8 @@ use glam::DVec3;
 use super::super::World;
 use crate::collide::parting_normals;
 
-/// Doublings of a unit in the last place, up to a few parts in 10^12, before it is an overlap.
-const DOUBLINGS: u32 = 12;
+/// Units in the last place, a few parts in 10^12, before it is an overlap.
+const MOST_GRAINS: f64 = 1024.0;
 /// Rounds in which a body that is moved out of one may get into another.
 const ROUNDS: usize = 32;
 
@@ -28,7 +28,12 @@ impl World {
         for _ in 0..ROUNDS {
             let meeting = pairs.iter().filter(|&&(i, j)| self.meet_now(i, j));
             let meeting: Vec<_> = meeting.copied().collect();
-            let parted = meeting.iter().filter(|&&(i, j)| self.part(i, j)).count();
+            let parted = meeting.iter().filter(|&&(i, j)| {
+                // Vertices are f32: what looks flush is so to their rounding.
+                let rounding = f64::from(f32::EPSILON) * (self.farthest(i) + self.farthest(j));
+                self.part(i, j, 4.0 * rounding)
+            });
+            let parted = parted.count();
             if parted == 0 {
                 break;
             }
@@ -54,7 +59,8 @@ impl World {
             for &(i, j) in &near {
                 if self.meet_now(i, j) {
                     // What rounding does not explain is answered as in the discrete mode.
-                    if round == ROUNDS || !self.part(i, j) {
+                    let most = self.grain(i, j) * MOST_GRAINS;
+                    if round == ROUNDS || !self.part(i, j, most) {
                         self.collide();
                     }
                     parted += 1;
@@ -73,8 +79,9 @@ impl World {
         self.may_collide(i, j) && self.meet_at(i, j, offset)
     }
 
-    /// Moves two bodies apart by the least that does it, if it is a rounding.
-    fn part(&mut self, i: usize, j: usize) -> bool {
+    /// Moves two bodies apart by the least that does it, but for a factor of two, if that is no more
+    /// than a length.
+    fn part(&mut self, i: usize, j: usize, most: f64) -> bool {
         let before = (self.current.position[i], self.current.position[j]);
         let forms = self.form(i).zip(self.form(j));
         let offset = before.1 - before.0;
@@ -84,8 +91,8 @@ impl World {
         // Back to where they came from: a sheet has two sides.
         let came = (self.previous.position[j] - self.previous.position[i]) - offset;
         normals.retain(|normal| normal.dot(came) >= -8.0 * grain);
-        for doubling in 0..DOUBLINGS {
-            let by = 0.5 * grain * f64::from(1 << doubling);
+        let mut by = 0.5 * grain;
+        while by <= most.max(grain) {
             for &normal in &normals {
                 self.move_current_apart((i, j), by * normal);
                 if !self.meet_now(i, j) {
@@ -93,6 +100,7 @@ impl World {
                 }
                 (self.current.position[i], self.current.position[j]) = before;
             }
+            by *= 2.0;
         }
         false
     }

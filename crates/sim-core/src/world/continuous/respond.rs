@@ -69,7 +69,7 @@ impl World {
             }
         }
         let chosen = |answer| group.iter().filter(move |event| event.answer == answer);
-        self.bounce_together(chosen(Answer::Bounce), time);
+        self.bounce_all_of(chosen(Answer::Bounce), time);
         for event in chosen(Answer::Part) {
             let grain = self.grain(event.bodies.0, event.bodies.1);
             self.move_apart(event.bodies, 2.0 * grain * event.contact.normal);
@@ -135,26 +135,46 @@ impl World {
         let pressed = (self.acceleration_there(i) - self.acceleration_there(j)).dot(normal);
         let leaving = self.pair_restitution(i, j) * closing.max(0.0);
         event.pressure = self.settings.dt * pressed;
+        // Bodies that keep a part of their speed meet without end where they are caught, until what is
+        // left moves them by a rounding.
+        let restitution = self.pair_restitution(i, j);
+        let left = self.settings.dt - self.continuous.since[i].max(self.continuous.since[j]);
+        let is_spent = restitution < 1.0 && closing > 0.0 && leaving * left <= self.grain(i, j);
         // Back after the time 2 v / a.
-        event.answer = if pressed > 0.0 && 2.0 * leaving <= SHORTEST_FLIGHT * event.pressure {
-            Answer::Rest
-        } else if closing > 0.0 {
-            Answer::Bounce
-        } else {
-            Answer::Part
-        };
+        event.answer =
+            if is_spent || pressed > 0.0 && 2.0 * leaving <= SHORTEST_FLIGHT * event.pressure {
+                Answer::Rest
+            } else if closing > 0.0 {
+                Answer::Bounce
+            } else {
+                Answer::Part
+            };
     }
 
+    /// Lets bodies bounce: those of one impact, or all that impacts of one instant tie together.
+    fn bounce_all_of<'a>(&mut self, events: impl Iterator<Item = &'a Event> + Clone, time: f64) {
+        if events.clone().nth(1).is_none() {
+            if let Some(event) = events.clone().next() {
+                let restitution = self.pair_restitution(event.bodies.0, event.bodies.1);
+                self.exchange_there(event, restitution, time);
+            }
+            return;
+        }
+        let (places, joined) = Places::of(events.clone().map(Rest::from));
+        let is_movable: Vec<bool> = places.inverse_mass(self).iter().map(|&w| w > 0.0).collect();
+        let mut of_events: Vec<(usize, &Event)> =
+            ties(&joined, &is_movable).into_iter().zip(events).collect();
+        of_events.sort_by_key(|&(tie, _)| tie);
+        for tied in of_events.chunk_by(|a, b| a.0 == b.0) {
+            match tied {
+                [(_, event)] => self.bounce_all_of(core::iter::once(*event), time),
+                _ => self.bounce_together(tied.iter().map(|&(_, event)| event), time),
+            }
+        }
+    }
+
+    /// Lets bodies bounce off each other all at once, with the least restitution of all.
     fn bounce_together<'a>(&mut self, events: impl Iterator<Item = &'a Event> + Clone, time: f64) {
-        let count = events.clone().count();
-        if count == 0 {
-            return;
-        }
-        if let (1, Some(event)) = (count, events.clone().next()) {
-            let restitution = self.pair_restitution(event.bodies.0, event.bodies.1);
-            self.exchange_there(event, restitution, time);
-            return;
-        }
         let restitution = events
             .clone()
             .map(|event| self.pair_restitution(event.bodies.0, event.bodies.1))
@@ -265,6 +285,33 @@ impl World {
         }
         reached
     }
+}
+
+/// For each contact a number that those have in common which movable bodies tie together.
+fn ties(contacts: &[Joined], is_movable: &[bool]) -> Vec<usize> {
+    let mut parent: Vec<usize> = (0..is_movable.len()).collect();
+    let root = |parent: &mut Vec<usize>, mut body: usize| {
+        while parent[body] != body {
+            parent[body] = parent[parent[body]];
+            body = parent[body];
+        }
+        body
+    };
+    for contact in contacts {
+        let (i, j) = contact.bodies;
+        if is_movable[i] && is_movable[j] {
+            let (i, j) = (root(&mut parent, i), root(&mut parent, j));
+            parent[i.max(j)] = i.min(j);
+        }
+    }
+    let movable = |contact: &Joined| match is_movable[contact.bodies.0] {
+        true => contact.bodies.0,
+        false => contact.bodies.1,
+    };
+    contacts
+        .iter()
+        .map(|contact| root(&mut parent, movable(contact)))
+        .collect()
 }
 
 /// The bodies of some contacts, once each, in order.

@@ -18,8 +18,8 @@ use crate::{
 /// Departure of a chord from its way that is looked past, in largest half extents of the smaller
 /// body.
 const FLATNESS: f64 = 1e-3;
-/// Chords in a way at most. A point has no extent, and is given so many.
-const MOST_CHORDS: f64 = 64.0;
+/// Chords in a way at most.
+const MOST_CHORDS: f64 = 4096.0;
 /// Halvings after which a time is as good as it gets.
 const DEEPEST: u32 = 64;
 /// Rounding of placed vertices, in units in the last place of the largest coordinate about, that
@@ -56,11 +56,19 @@ impl World {
         };
         let size = self.half_extent(i).min(self.half_extent(j));
         let length = end - start;
-        let ratio = pair.bend * length * length / (FLATNESS * size);
-        // 0/0 for points on straight ways.
-        let chords = libm::ceil(libm::sqrt(ratio)).clamp(1.0, MOST_CHORDS);
-        let chords = if pair.bend > 0.0 { chords } else { 1.0 };
         let mut from = (start, self.offset_at(pair, start, probe)?);
+        // A point has no extent: its way must do.
+        let size = match size > 0.0 {
+            true => size,
+            false => (self.offset_at(pair, end, probe)? - from.1).length(),
+        };
+        let ratio = libm::sqrt(pair.bend / (FLATNESS * size)) * length;
+        // 0/0 where nothing moves.
+        let chords = if ratio > 1.0 {
+            libm::ceil(ratio).min(MOST_CHORDS)
+        } else {
+            1.0
+        };
         let mut chord = 1.0;
         while chord <= chords {
             let time = if chord == chords {
@@ -212,7 +220,7 @@ impl World {
     }
 
     /// Largest coordinate of a body's shape about its origin, m.
-    fn farthest(&self, body: usize) -> f64 {
+    pub(super) fn farthest(&self, body: usize) -> f64 {
         match self.shape(body) {
             Some(Shape::Mesh(mesh)) => {
                 let bounds = mesh.bounds();

@@ -1,0 +1,151 @@
+//! What has gone wrong once.
+
+use alloc::{sync::Arc, vec::Vec};
+use glam::DVec3;
+
+use crate::{Body, Force, Method, Settings, Shape, World, test_meshes::cube};
+
+fn v(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+fn world(bodies: impl IntoIterator<Item = Body>) -> World {
+    let method = Method::named("velocity-verlet").unwrap();
+    let settings = Settings {
+        method,
+        ..Settings::default()
+    };
+    let mut world = World::new(settings).unwrap();
+    for body in bodies {
+        world.add(body).unwrap();
+    }
+    world
+}
+
+fn body(shape: impl Into<Shape>, position: DVec3, velocity: DVec3) -> Body {
+    Body {
+        shape: Some(shape.into()),
+        position,
+        velocity,
+        ..Body::default()
+    }
+}
+
+fn ball(radius: f64) -> Shape {
+    Shape::Sphere { radius }
+}
+
+fn floor() -> Body {
+    Body {
+        mass: f64::INFINITY,
+        ..body(
+            Shape::HalfSpace { normal: DVec3::Y },
+            DVec3::ZERO,
+            DVec3::ZERO,
+        )
+    }
+}
+
+#[test]
+fn bodies_in_overlap_may_become_immovable() {
+    let cube = Arc::new(cube());
+    let mut world = world([
+        body(cube.clone(), v(-0.25, 0.0, 0.0), v(-0.1, 0.0, 0.0)),
+        body(cube, v(0.25, 0.0, 0.0), v(0.1, 0.0, 0.0)),
+    ]);
+    world.step().unwrap();
+    assert_eq!(world.overlapping(), [(0, 1)]);
+    for (body, speed) in [(0, 1.0), (1, -1.0)] {
+        world.set_mass(body, f64::INFINITY).unwrap();
+        world.set_velocity(body, v(speed, 0.0, 0.0)).unwrap();
+    }
+    for _ in 0..90 {
+        world.step().unwrap();
+    }
+    assert!((world.position(0).x + 0.25 - 1.5).abs() < 0.01);
+    // And movable again while they are in each other, where they may part.
+    world.set_position(1, v(1.5, 0.25, 0.0)).unwrap();
+    world.set_mass(1, 1.0).unwrap();
+    world.set_velocity(1, v(9.0, 0.0, 0.0)).unwrap();
+    assert_eq!(world.overlapping(), [(0, 1)]);
+    for _ in 0..60 {
+        world.step().unwrap();
+    }
+    assert!(world.overlapping().is_empty() && world.position(1).x > 10.0);
+}
+
+#[test]
+fn impacts_at_the_same_time_elsewhere_are_none_of_ours() {
+    let pair = |x: f64, restitution: f64| {
+        [-1.0, 1.0].map(|side| Body {
+            restitution,
+            ..body(ball(0.5), v(x, side, 0.0), v(0.0, -8.0 * side, 0.0))
+        })
+    };
+    let mut world = world(pair(-32.0, 1.0).into_iter().chain(pair(32.0, 0.0)));
+    let mut impacts = Vec::new();
+    for _ in 0..60 {
+        world.step_reporting(&mut impacts).unwrap();
+    }
+    assert_eq!(impacts.len(), 2);
+    assert_eq!(impacts[0].time, impacts[1].time);
+    let speeds = [0, 1, 2, 3].map(|i| world.velocity(i).y);
+    assert_eq!(speeds, [-8.0, 8.0, 0.0, 0.0]);
+}
+
+#[test]
+fn what_looks_flush_stands() {
+    let cube = Arc::new(cube());
+    for depth in [1e-9, 1e-8] {
+        for shape in [ball(0.5), Shape::Mesh(cube.clone())] {
+            let start = v(0.0, 0.5 - depth, 0.0);
+            let mut world = world([floor(), body(shape, start, DVec3::ZERO)]);
+            let acceleration = v(0.0, -9.81, 0.0);
+            world.add_force(Force::Gravity { acceleration }).unwrap();
+            for _ in 0..600 {
+                world.step().unwrap();
+            }
+            assert!(world.overlapping().is_empty());
+            assert!((world.position(1).y - 0.5).abs() < 2.0 * depth + 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_failed_step_reports_nothing() {
+    let bodies = [
+        body(ball(0.5), v(-1.0, 0.0, 0.0), v(9.0, 0.0, 0.0)),
+        body(ball(0.5), v(0.1, 0.0, 0.0), DVec3::ZERO),
+        Body {
+            velocity: v(0.0, 9e99, 0.0),
+            force: v(0.0, 1e100, 0.0),
+            mass: 1e-3,
+            ..body(ball(0.5), v(50.0, 0.0, 0.0), DVec3::ZERO)
+        },
+    ];
+    let mut world = world(bodies);
+    let mut impacts = Vec::new();
+    for _ in 0..60 {
+        if world.step_reporting(&mut impacts).is_err() {
+            break;
+        }
+    }
+    assert_eq!(impacts.len() as u64, world.impacts());
+}
+
+#[test]
+fn inelastic_rows_come_to_an_end() {
+    let row = (0..30).map(|i| Body {
+        restitution: 0.3,
+        ..body(
+            ball(0.5),
+            v(0.0, 1.0 + 1.5 * f64::from(i), 0.0),
+            v(0.0, -10.0, 0.0),
+        )
+    });
+    let mut world = world([floor()].into_iter().chain(row));
+    for _ in 0..600 {
+        world.step().unwrap();
+    }
+    assert!(world.impacts() < 1_000_000, "{}", world.impacts());
+}
