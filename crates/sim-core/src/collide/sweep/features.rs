@@ -112,10 +112,16 @@ impl View {
     /// Heights of corners above a triangle's plane, and `way` times what the motion adds to them,
     /// unless the corners stay on one side until a time.
     #[inline(always)]
-    fn heights(&self, of: &Triangle, others: &Triangle, way: f64, until: f64) -> Option<Heights> {
-        let [a, b, c] = of.corners;
+    fn heights(
+        &self,
+        [a, b, c]: [DVec3; 3],
+        others: [DVec3; 3],
+        way: f64,
+        until: f64,
+    ) -> Option<Heights> {
         let normal = (b - a).cross(c - a);
-        let heights = others.corners.map(|p| normal.dot(p - a));
+        let [p, q, r] = others;
+        let heights = [normal.dot(p - a), normal.dot(q - a), normal.dot(r - a)];
         let fall = normal.dot(self.motion);
         let [h, i, j] = heights;
         let stays = |lowest: f64, fall: f64| {
@@ -196,16 +202,17 @@ impl Search<'_> {
     pub(super) fn try_triangles(&mut self, (leaf, i): (&Node, usize), (other, j): (&Node, usize)) {
         let wide = |[a, b, c]: [Vec3; 3]| [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
         let (s, t) = (self.first.triangles(leaf), self.second.triangles(other));
-        let first = self.view.triangle(wide(s.corners(i)));
+        let corners = wide(s.corners(i));
         let [a, b, c] = wide(t.corners(j));
         let placed = [a + self.offset, b + self.offset, c + self.offset];
-        let second = self.view.triangle(placed);
-        let Some(above_first) = self.view.heights(&first, &second, 1.0, self.horizon) else {
+        let Some(above_first) = self.view.heights(corners, placed, 1.0, self.horizon) else {
             return;
         };
-        let Some(above_second) = self.view.heights(&second, &first, -1.0, self.horizon) else {
+        let Some(above_second) = self.view.heights(placed, corners, -1.0, self.horizon) else {
             return;
         };
+        // Most pairs have been found apart by now.
+        let (first, second) = (self.view.triangle(corners), self.view.triangle(placed));
         let Some(of_first) = self.view.sides(&first, &second) else {
             return;
         };
