@@ -20,7 +20,7 @@ impl Bvh {
             if code & LEAF != 0 {
                 let triangles = self.triangles(node);
                 for v in node.lanes().flat_map(|lane| triangles.corners(lane)) {
-                    let along = dot(v.as_dvec3(), direction);
+                    let along = v.as_dvec3().dot(direction);
                     if along < least {
                         (least, low, high) = (along, v, v);
                     } else if along == least {
@@ -34,8 +34,8 @@ impl Bvh {
                     Vec3::from_array(axes.map(|axis| axis[lane])).as_dvec3()
                 };
                 let (centre, half) = (of(&node.boxes.centre), of(&node.boxes.half));
-                let (middle, reach) = (dot(centre, direction), dot(half, direction.abs()));
-                let size = dot(centre.abs(), direction.abs()) + reach;
+                let (middle, reach) = (centre.dot(direction), half.dot(direction.abs()));
+                let size = centre.abs().dot(direction.abs()) + reach;
                 if middle - reach - 8.0 * f64::EPSILON * size <= least {
                     stack[waiting] = node.child[lane];
                     waiting += 1;
@@ -44,11 +44,6 @@ impl Bvh {
         }
         (least, 0.5 * (low.as_dvec3() + high.as_dvec3()))
     }
-}
-
-/// In an order of its own, whatever the vector instructions.
-fn dot(a: DVec3, b: DVec3) -> f64 {
-    a.x * b.x + a.y * b.y + a.z * b.z
 }
 
 #[cfg(test)]
@@ -63,11 +58,11 @@ mod tests {
             for i in 0..200 {
                 let angle = f64::from(i);
                 let out = DVec3::new(libm::cos(angle), libm::sin(angle), 0.02 * (angle - 100.0));
-                let corners = mesh.vertices().iter().map(|v| dot(v.as_dvec3(), out));
+                let corners = mesh.vertices().iter().map(|v| v.as_dvec3().dot(out));
                 let expected = corners.fold(f64::INFINITY, f64::min);
                 let (least, at) = tree.least_along(out);
                 assert_eq!(least, expected);
-                assert!((dot(at, out) - least).abs() < 1e-6);
+                assert!((at.dot(out) - least).abs() < 1e-6);
             }
         }
         let (least, at) = Bvh::build(&cube()).least_along(DVec3::Y);

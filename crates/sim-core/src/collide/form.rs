@@ -71,10 +71,10 @@ pub(crate) fn meet(first: Form<'_>, second: Form<'_>, offset: DVec3) -> bool {
         (Form::Mesh(first), Form::Mesh(second)) => tree::intersect(first, second, offset),
         (Form::Mesh(mesh), Form::Sphere(radius)) => ball_meets(mesh, offset, radius),
         (Form::Sphere(first), Form::Sphere(second)) => {
-            dot(offset, offset) <= (first + second) * (first + second)
+            offset.dot(offset) <= (first + second) * (first + second)
         }
         (Form::HalfSpace(_), Form::HalfSpace(_)) => false,
-        (Form::HalfSpace(normal), other) => dot(normal, offset) - reach(other, normal).0 <= 0.0,
+        (Form::HalfSpace(normal), other) => normal.dot(offset) - reach(other, normal).0 <= 0.0,
         (first, second) => meet(second, first, -offset),
     }
 }
@@ -165,8 +165,8 @@ fn reach(shape: Form<'_>, normal: DVec3) -> (f64, DVec3) {
 }
 
 fn plane(normal: DVec3, other: Form<'_>, offset: DVec3, motion: DVec3) -> Option<Contact> {
-    let approach = -dot(normal, motion);
-    let height = dot(normal, offset);
+    let approach = -normal.dot(motion);
+    let height = normal.dot(offset);
     // Most shapes at most times are farther than they move.
     if approach <= 0.0 {
         return None;
@@ -180,7 +180,7 @@ fn plane(normal: DVec3, other: Form<'_>, offset: DVec3, motion: DVec3) -> Option
     let at = offset + time * motion + corner;
     Some(Contact {
         time,
-        point: at - dot(normal, at) * normal,
+        point: at - normal.dot(at) * normal,
         normal,
         feature: None,
     })
@@ -188,16 +188,16 @@ fn plane(normal: DVec3, other: Form<'_>, offset: DVec3, motion: DVec3) -> Option
 
 fn spheres(first: f64, second: f64, offset: DVec3, motion: DVec3) -> Option<Contact> {
     let sum = first + second;
-    let (approach, way) = (-dot(offset, motion), dot(motion, motion));
+    let (approach, way) = (-offset.dot(motion), motion.dot(motion));
     if approach <= 0.0 {
         return None;
     }
     let aside = offset.cross(motion);
-    let depth = sum * sum * way - dot(aside, aside);
+    let depth = sum * sum * way - aside.dot(aside);
     if depth < 0.0 || !depth.is_finite() {
         return None;
     }
-    let distance = libm::sqrt(dot(offset, offset));
+    let distance = libm::sqrt(offset.dot(offset));
     let gap = (distance - sum) * (distance + sum);
     let time = (gap / (approach + libm::sqrt(depth))).max(0.0);
     if time > 1.0 {
@@ -207,7 +207,7 @@ fn spheres(first: f64, second: f64, offset: DVec3, motion: DVec3) -> Option<Cont
     // Points have no surface to give a normal.
     let normal = unit(at).filter(|_| sum > 0.0);
     let normal = normal.or_else(|| Some(-unit(motion)?))?;
-    (dot(normal, motion) < 0.0).then(|| Contact {
+    (normal.dot(motion) < 0.0).then(|| Contact {
         time,
         point: first * normal,
         normal,
@@ -219,9 +219,4 @@ fn spheres(first: f64, second: f64, offset: DVec3, motion: DVec3) -> Option<Cont
 fn unit(v: DVec3) -> Option<DVec3> {
     let scaled = v / v.abs().max_element();
     scaled.is_finite().then(|| scaled / scaled.length())
-}
-
-/// In an order of its own, whatever the vector instructions.
-fn dot(a: DVec3, b: DVec3) -> f64 {
-    a.x * b.x + a.y * b.y + a.z * b.z
 }

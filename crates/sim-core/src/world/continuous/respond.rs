@@ -133,11 +133,11 @@ impl World {
         let ((i, j), normal) = (event.bodies, event.contact.normal);
         let closing = (self.velocity_there(i) - self.velocity_there(j)).dot(normal);
         let pressed = (self.acceleration_there(i) - self.acceleration_there(j)).dot(normal);
-        let leaving = self.pair_restitution(i, j) * closing.max(0.0);
+        let restitution = self.pair_restitution(i, j);
+        let leaving = restitution * closing.max(0.0);
         event.pressure = self.settings.dt * pressed;
         // Bodies that keep a part of their speed meet without end where they are caught, until what is
         // left moves them by a rounding.
-        let restitution = self.pair_restitution(i, j);
         let left = self.settings.dt - self.continuous.since[i].max(self.continuous.since[j]);
         let is_spent = restitution < 1.0 && closing > 0.0 && leaving * left <= self.grain(i, j);
         // Back after the time 2 v / a.
@@ -155,8 +155,7 @@ impl World {
     fn bounce_all_of<'a>(&mut self, events: impl Iterator<Item = &'a Event> + Clone, time: f64) {
         if events.clone().nth(1).is_none() {
             if let Some(event) = events.clone().next() {
-                let restitution = self.pair_restitution(event.bodies.0, event.bodies.1);
-                self.exchange_there(event, restitution, time);
+                self.exchange_there(event, time);
             }
             return;
         }
@@ -197,8 +196,9 @@ impl World {
     }
 
     /// Exchanges the impulse of one impact.
-    fn exchange_there(&mut self, event: &Event, restitution: f64, time: f64) {
+    fn exchange_there(&mut self, event: &Event, time: f64) {
         let (i, j) = event.bodies;
+        let restitution = self.pair_restitution(i, j);
         let before = (self.velocity_there(i), self.velocity_there(j));
         let time = self.time() + time;
         let after = self.exchange((i, j), &event.contact, before, restitution, time);

@@ -46,14 +46,13 @@ impl World {
         j: usize,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
-        let since = &self.continuous.since;
-        let (start, end) = (since[i].max(since[j]), self.settings.dt);
         let pair = Pair {
             i,
             j,
             bend: self.bend(i, j),
             grain: self.grain(i, j),
         };
+        let (start, end) = (self.start_of(pair), self.settings.dt);
         let size = self.half_extent(i).min(self.half_extent(j));
         let length = end - start;
         let mut from = (start, self.offset_at(pair, start, probe)?);
@@ -109,13 +108,10 @@ impl World {
             && self.is_closing(pair, contact.normal, probe);
         if is_straight || is_there {
             let time = if is_there { 0.0 } else { contact.time };
-            return self.settle(
-                pair,
-                from,
-                (length, fall),
-                Contact { time, ..contact },
-                probe,
-            );
+            let contact = Contact { time, ..contact };
+            return self
+                .settle(pair, from, (length, fall), contact, probe)
+                .map(Some);
         }
         // Within this of the chord's impact lies the way's, unless it slips past.
         let time = from.0 + contact.time * length;
@@ -149,7 +145,7 @@ impl World {
         (length, fall): (f64, f64),
         contact: Contact,
         probe: &mut Probe,
-    ) -> Result<Option<Event>, (usize, Cause)> {
+    ) -> Result<Event, (usize, Cause)> {
         let Pair { i, j, grain, .. } = pair;
         let touching = from.0 + contact.time * length;
         // Bodies that nothing presses together part at once, and need no room to stay in.
@@ -174,7 +170,7 @@ impl World {
         }
         let (place, _) = self.motion_at(i, time, probe)?;
         let ways = &self.continuous;
-        Ok(Some(Event {
+        Ok(Event {
             time,
             bodies: (i, j),
             versions: (ways.version[i], ways.version[j]),
@@ -184,7 +180,7 @@ impl World {
                 point: place + contact.point,
                 ..contact
             },
-        }))
+        })
     }
 
     fn offset_at(&self, pair: Pair, time: f64, probe: &mut Probe) -> Result<DVec3, (usize, Cause)> {

@@ -75,9 +75,7 @@ impl World {
             return Ok((self.current.position[body], self.current.velocity[body]));
         }
         let Some((bodies, is_coupled)) = self.unit(body) else {
-            let fall = self.settings.method.fall.unwrap_or(0.0);
-            let a = ways.acceleration[body];
-            return Ok((x + h * (v + fall * h * a), v + h * a));
+            return Ok(self.on_parabola(body, h));
         };
         probe.state.position.resize(self.len(), DVec3::ZERO);
         probe.state.velocity.resize(self.len(), DVec3::ZERO);
@@ -89,6 +87,17 @@ impl World {
             &mut probe.scratch,
         )?;
         Ok((probe.state.position[body], probe.state.velocity[body]))
+    }
+
+    /// Position and velocity of a body on a parabola, some time after its way has started.
+    fn on_parabola(&self, body: usize, h: f64) -> (DVec3, DVec3) {
+        let ways = &self.continuous;
+        let (x, v) = (ways.start.position[body], ways.start.velocity[body]);
+        let (a, fall) = (
+            ways.acceleration[body],
+            self.settings.method.fall.unwrap_or(0.0),
+        );
+        (x + h * (v + fall * h * a), v + h * a)
     }
 
     /// Steps coupled bodies, or one, from the start of their way to a time.
@@ -159,12 +168,8 @@ impl World {
             }
             None => {
                 let body = bodies.start;
-                let fall = self.settings.method.fall.unwrap_or(0.0);
-                let ways = &self.continuous;
-                let (x, v) = (ways.start.position[body], ways.start.velocity[body]);
-                let (h, a) = (dt - ways.since[body], ways.acceleration[body]);
-                self.current.position[body] = x + h * (v + fall * h * a);
-                self.current.velocity[body] = v + h * a;
+                let (x, v) = self.on_parabola(body, dt - self.continuous.since[body]);
+                (self.current.position[body], self.current.velocity[body]) = (x, v);
             }
             Some((bodies, is_coupled)) => {
                 let mut current = mem::take(&mut self.current);
@@ -216,7 +221,8 @@ impl World {
         rests[bodies].iter().any(|&rests| rests > MOST_RESTS)
     }
 
-    /// How far a body's way departs from its chord, at most, m, by component.
+    /// How far a body's way departs from its chord, m, by component: at most so on a parabola, about so
+    /// where the method makes the way, but not where it turns round and back within a step.
     pub(super) fn bulge(&self, body: usize) -> DVec3 {
         let ways = &self.continuous;
         let h = self.settings.dt - ways.since[body];
