@@ -2,6 +2,7 @@
 
 mod agree;
 mod oracle;
+mod rational;
 
 use agree::assert_same;
 use proptest::prelude::*;

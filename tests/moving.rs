@@ -3,6 +3,7 @@
 #[path = "moving_oracle/borders.rs"]
 mod borders;
 mod moving_oracle;
+mod rational;
 
 use moving_oracle::brute::{brute_force, placed};
 use moving_oracle::inputs::{

@@ -7,42 +7,18 @@
 pub(crate) mod brute;
 pub(crate) mod inputs;
 
-use num_rational::BigRational;
 use proptest::prelude::*;
 use sim_core::DVec3;
 
-pub(crate) type Q = BigRational;
-type Point = [Q; 3];
-
-pub(crate) fn rational(x: f64) -> Q {
-    Q::from_float(x).expect("numbers are finite")
-}
+use crate::rational::{Point, cross, dot, sub, zero};
+pub(crate) use crate::rational::{Q, rational};
 
 fn point(p: DVec3) -> Point {
     p.to_array().map(rational)
 }
 
-fn zero() -> Q {
-    Q::from_integer(0.into())
-}
-
 fn add(a: &Point, b: &Point) -> Point {
     [0, 1, 2].map(|i| &a[i] + &b[i])
-}
-
-fn sub(a: &Point, b: &Point) -> Point {
-    [0, 1, 2].map(|i| &a[i] - &b[i])
-}
-
-fn dot(a: &Point, b: &Point) -> Q {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-fn cross(a: &Point, b: &Point) -> Point {
-    [0, 1, 2].map(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        &a[j] * &b[k] - &a[k] * &b[j]
-    })
 }
 
 /// Times from 0 to 1 that are left.

@@ -3,38 +3,16 @@
 //! The library asks for signs of orientations; here the segment is cut down by the triangle's
 //! plane and half-planes, and what is left of its parameter interval decides.
 
-use num_rational::BigRational;
 use sim_core::DVec3;
 
-type Q = BigRational;
-type Point = [Q; 3];
+use crate::rational::{self, Point, Q, cross, dot, sub, zero};
 
 fn rational(p: DVec3) -> Point {
-    p.to_array()
-        .map(|x| Q::from_float(x).expect("coordinates are finite"))
-}
-
-fn zero() -> Q {
-    Q::from_integer(0.into())
+    p.to_array().map(rational::rational)
 }
 
 fn one() -> Q {
     Q::from_integer(1.into())
-}
-
-fn sub(a: &Point, b: &Point) -> Point {
-    [0, 1, 2].map(|i| &a[i] - &b[i])
-}
-
-fn dot(a: &Point, b: &Point) -> Q {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-fn cross(a: &Point, b: &Point) -> Point {
-    [0, 1, 2].map(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        &a[j] * &b[k] - &a[k] * &b[j]
-    })
 }
 
 fn is_zero(a: &Point) -> bool {

@@ -17,6 +17,7 @@ use super::{
 };
 use crate::bvh::Bvh;
 use crate::collide::{
+    Side,
     solid::each_in_box,
     touch::Feature,
     triple::{Difference, Time, direction, sign},
@@ -40,8 +41,12 @@ impl Search<'_> {
         }
         // What touches a vertex has not been looked at.
         match contact.feature {
-            Feature::FaceVertex { .. } => self.visit_first(contact, &mut fan, |_| true),
-            Feature::VertexFace { .. } => self.visit_second(contact, &mut fan, |_| true),
+            Feature::FaceVertex { .. } => {
+                self.visit_around(Side::First, contact, &mut fan, |_| true)
+            }
+            Feature::VertexFace { .. } => {
+                self.visit_around(Side::Second, contact, &mut fan, |_| true)
+            }
             Feature::EdgeEdge { .. } => true,
         };
         fan.is_all()
@@ -72,54 +77,38 @@ impl Search<'_> {
         let of_first = is_on(self.first, first, contact.spots[0]);
         let of_second = is_on(self.second, second, contact.spots[1]);
         match contact.feature {
-            Feature::FaceVertex { .. } => self.visit_second(contact, fan, of_second),
-            Feature::VertexFace { .. } => self.visit_first(contact, fan, of_first),
+            Feature::FaceVertex { .. } => self.visit_around(Side::Second, contact, fan, of_second),
+            Feature::VertexFace { .. } => self.visit_around(Side::First, contact, fan, of_first),
             Feature::EdgeEdge { .. } => {
-                self.visit_first(contact, fan, of_first)
-                    && self.visit_second(contact, fan, of_second)
+                self.visit_around(Side::First, contact, fan, of_first)
+                    && self.visit_around(Side::Second, contact, fan, of_second)
             }
         }
     }
 
-    /// Adds the directions along which the first mesh leads away from a contact, reversed, and tells
-    /// whether something holds for all its triangles there.
-    fn visit_first(
+    /// Adds the directions along which a mesh leads away from a contact, those of the first one
+    /// reversed, and tells whether something holds for all its triangles there.
+    fn visit_around(
         &self,
+        side: Side,
         contact: &Candidate,
         fan: &mut Fan,
         mut holds: impl FnMut([DVec3; 3]) -> bool,
     ) -> bool {
         let mut all = true;
-        each_at(
-            self.first,
-            DVec3::ZERO,
-            contact.spots[0],
-            |corners, from| {
-                all = all && holds(corners);
-                away(corners, from).for_each(|(p, q)| fan.add(Difference(p, q)));
-            },
-        );
-        all
-    }
-
-    /// Adds the directions along which the second mesh leads away from a contact, and tells whether
-    /// something holds for all its triangles there.
-    fn visit_second(
-        &self,
-        contact: &Candidate,
-        fan: &mut Fan,
-        mut holds: impl FnMut([DVec3; 3]) -> bool,
-    ) -> bool {
-        let mut all = true;
-        each_at(
-            self.second,
-            self.offset,
-            contact.spots[1],
-            |corners, from| {
-                all = all && holds(corners);
-                away(corners, from).for_each(|(p, q)| fan.add(Difference(q, p)));
-            },
-        );
+        let (mesh, offset, spot) = match side {
+            Side::First => (self.first, DVec3::ZERO, contact.spots[0]),
+            Side::Second => (self.second, self.offset, contact.spots[1]),
+        };
+        each_at(mesh, offset, spot, |corners, from| {
+            all = all && holds(corners);
+            away(corners, from).for_each(|(p, q)| {
+                fan.add(match side {
+                    Side::First => Difference(p, q),
+                    Side::Second => Difference(q, p),
+                });
+            });
+        });
         all
     }
 }
