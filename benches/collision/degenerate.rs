@@ -7,7 +7,7 @@ use sim_core::{DQuat, DVec3, Mesh, Vec3};
 use crate::meshes::{Shape, Solid, Solids};
 use crate::placements::Placement;
 use crate::random::Random;
-use crate::rationals;
+use crate::truth;
 
 /// Two solids where they touch, overlap, or are apart by little.
 pub(crate) struct Degenerate {
@@ -127,7 +127,7 @@ fn triangles() -> Vec<Degenerate> {
             }
             * scale;
         let corners = [&first, &second].map(|mesh| mesh.corners(0).map(|v| v.as_dvec3()));
-        let meet = rationals::triangles_meet(corners[0], corners[1].map(|v| v + offset));
+        let meet = truth::triangles_meet(corners[0], corners[1].map(|v| v + offset));
         placements.push(Degenerate {
             first: Rc::new(Solid::of(first)),
             second: Rc::new(Solid::of(second)),

@@ -24,11 +24,13 @@ mod peers;
 mod placements;
 mod plot;
 mod random;
-mod rationals;
+#[path = "../../tests/rational/mod.rs"]
+mod rational;
 mod rays;
 mod report;
 mod sweep;
 mod table;
+mod truth;
 
 use crate::meshes::Solids;
 
