@@ -29,7 +29,7 @@ fn only_the_step_and_names_must_be_there() {
         (scene.name.as_str(), scene.title.as_str()),
         ("test", "test")
     );
-    assert_eq!((scene.dt, scene.method.name), (0.5, "symplectic-euler"));
+    assert_eq!((scene.dt, scene.method.name), (0.5, "velocity-verlet"));
     assert_eq!(scene.collision, Collision::Continuous);
     let body = SceneBody::new("a".into(), mesh("cube.obj"));
     assert_eq!((body.mass, body.restitution), (1.0, 1.0));

@@ -22,7 +22,7 @@ pub mod tree;
 mod triple;
 
 pub use ball::{BallTouch, ball_meets, ball_touch};
-pub(crate) use broad::{Broad, Swept};
+pub(crate) use broad::{Broad, Front, Swept};
 pub(crate) use form::{Contact, Form, first_contact, meet, parting_normals};
 pub use hit::{Hit, Side};
 pub use pairs::Level;

@@ -24,7 +24,7 @@ use glam::DVec3;
 use super::{StepError, World, state::State, stepping::Cause};
 use crate::{
     Shape,
-    collide::{Broad, Contact, Swept},
+    collide::{Broad, Contact, Front, Swept},
 };
 use respond::{Answer, Rest};
 use way::Probe;
@@ -148,8 +148,7 @@ impl World {
         broad.each_pair(|i, j| near.push((i, j)));
         for &wall in &walls {
             let front = self.front(wall);
-            let reaching = broad.boxes().iter().filter(|swept| front.may_meet(swept));
-            near.extend(reaching.map(|&Swept { body, .. }| (wall.min(body), wall.max(body))));
+            broad.each_before(&front, |body| near.push((wall.min(body), wall.max(body))));
         }
         near.retain(|&(i, j)| self.may_collide(i, j));
         let count = near.len();
@@ -316,26 +315,5 @@ impl World {
             // More than is lost in rounding.
             slack: 16.0 * f64::EPSILON * (from.length() + to.length()),
         }
-    }
-}
-
-/// A plane, in front of which a half-space stays.
-#[derive(Clone, Copy)]
-struct Front {
-    normal: DVec3,
-    level: f64,
-    slack: f64,
-}
-
-impl Front {
-    /// Whether a box may come to it; a "no" is a proof.
-    fn may_meet(&self, swept: &Swept) -> bool {
-        let nearest = |axis: usize| match self.normal[axis] > 0.0 {
-            true => self.normal[axis] * swept.min[axis],
-            false => self.normal[axis] * swept.max[axis],
-        };
-        let [x, y, z] = [nearest(0), nearest(1), nearest(2)];
-        let size = x.abs() + y.abs() + z.abs();
-        x + y + z - 16.0 * f64::EPSILON * size <= self.level + self.slack
     }
 }

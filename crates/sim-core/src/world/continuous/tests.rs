@@ -151,3 +151,20 @@ fn inelastic_rows_come_to_an_end() {
     }
     assert!(world.impacts() < 1_000_000, "{}", world.impacts());
 }
+
+#[test]
+fn elastic_bounces_keep_their_height_by_default() {
+    let mut world = world([floor(), body(ball(0.5), v(0.0, 5.5, 0.0), DVec3::ZERO)]);
+    let acceleration = v(0.0, -9.81, 0.0);
+    world.add_force(Force::Gravity { acceleration }).unwrap();
+    let energy = |world: &World| {
+        let height = world.position(1).y - 0.5;
+        0.5 * world.velocity(1).length_squared() + 9.81 * height
+    };
+    let start = energy(&world);
+    for _ in 0..60_000 {
+        world.step().unwrap();
+        assert!((energy(&world) / start - 1.0).abs() < 1e-11);
+    }
+    assert_eq!(world.impacts(), 495);
+}

@@ -3,87 +3,20 @@
 //! Boxes are sorted along a curve that keeps neighbours together (Morton 1966, "A computer oriented
 //! geodetic data base and a new technique in file sequencing"). Eight in a row have a box around them,
 //! eight of these another, and so on: a tree without a pointer, made afresh in each step in less time
-//! than it takes to ask it. Boxes that are replaced after that are few, and kept aside.
+//! than it takes to ask it. A box that is replaced after that widens those around it.
+
+mod volume;
 
 use alloc::vec::Vec;
 use glam::DVec3;
 
-/// A box around something that moves, and whose it is.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Swept {
-    pub(crate) min: DVec3,
-    pub(crate) max: DVec3,
-    pub(crate) body: usize,
-}
-
-impl Swept {
-    const NOWHERE: Swept = Swept {
-        min: DVec3::INFINITY,
-        max: DVec3::NEG_INFINITY,
-        body: usize::MAX,
-    };
-
-    fn meets(&self, other: &Swept) -> bool {
-        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
-    }
-}
+pub(crate) use volume::{Front, Swept};
+use volume::{Row, WIDTH};
 
 /// So many boxes are faster swept along an axis: sorted by their lower ends, a box can only meet
 /// those that begin before it ends (Baraff 1992, "Dynamic simulation of non-penetrating rigid
 /// bodies", sec. 2.1.3).
 const FEW: usize = 512;
-
-/// Boxes in a box.
-const WIDTH: usize = 8;
-
-/// Boxes side by side, by axis, so that a few instructions take all.
-#[derive(Clone, Copy, Debug)]
-struct Row {
-    min: [[f64; WIDTH]; 3],
-    max: [[f64; WIDTH]; 3],
-}
-
-impl Row {
-    fn of(boxes: &[Swept]) -> Row {
-        let mut row = Row {
-            min: [[f64::INFINITY; WIDTH]; 3],
-            max: [[f64::NEG_INFINITY; WIDTH]; 3],
-        };
-        for (lane, swept) in boxes.iter().enumerate() {
-            for axis in 0..3 {
-                row.min[axis][lane] = swept.min[axis];
-                row.max[axis][lane] = swept.max[axis];
-            }
-        }
-        row
-    }
-
-    /// A bit for each that meets a box.
-    #[inline(always)]
-    fn meeting(&self, of: &Swept) -> u32 {
-        let mut apart = [false; WIDTH];
-        for axis in 0..3 {
-            let (low, high) = (of.min[axis], of.max[axis]);
-            let ends = self.min[axis].iter().zip(&self.max[axis]);
-            for (apart, (&min, &max)) in apart.iter_mut().zip(ends) {
-                *apart |= (min > high) | (max < low);
-            }
-        }
-        let bits = apart.iter().enumerate();
-        bits.fold(0, |bits, (lane, &apart)| bits | u32::from(!apart) << lane)
-    }
-
-    /// The box around all.
-    fn around(&self) -> Swept {
-        let least = |x: &[f64; WIDTH]| x.iter().copied().fold(f64::INFINITY, f64::min);
-        let greatest = |x: &[f64; WIDTH]| x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Swept {
-            min: DVec3::from_array(self.min.each_ref().map(least)),
-            max: DVec3::from_array(self.max.each_ref().map(greatest)),
-            body: usize::MAX,
-        }
-    }
-}
 
 /// Boxes in order.
 #[derive(Clone, Debug, Default)]
@@ -93,17 +26,15 @@ pub(crate) struct Broad {
     sorted: Vec<Swept>,
     /// Rows of the sorted boxes, of the boxes around those, and so on to one.
     levels: Vec<Vec<Row>>,
-    aside: Vec<Swept>,
     /// The axis along which the boxes are sorted, if it is not the curve.
     sweep: Option<usize>,
-    /// For each body its place among the sorted, or after those among the others.
+    /// For each body its place among the sorted.
     place: Vec<usize>,
 }
 
 impl Broad {
     /// Takes boxes in the place of all others.
     pub(crate) fn fill(&mut self, boxes: impl Iterator<Item = Swept>) {
-        self.aside.clear();
         self.boxes.clear();
         self.boxes.extend(boxes);
         self.sort();
@@ -152,20 +83,24 @@ impl Broad {
             Some(axis) => ordered(swept.min[axis]),
             None => curve((centre(swept) - low) * cells),
         };
-        self.keys.clear();
-        self.keys.extend(self.boxes.iter().map(key).zip(0..));
-        self.keys.sort_unstable();
+        let count = self.boxes.len();
+        if self.keys.len() == count && self.sweep.is_some() {
+            // In the order of last time, which is nearly this one.
+            for (at, place) in &mut self.keys {
+                *at = key(&self.boxes[*place as usize]);
+            }
+            insert(&mut self.keys);
+        } else {
+            self.keys.clear();
+            self.keys.extend(self.boxes.iter().map(key).zip(0..));
+            self.keys.sort_unstable();
+        }
         self.sorted.clear();
         let in_order = self
             .keys
             .iter()
             .map(|&(_, place)| self.boxes[place as usize]);
         self.sorted.extend(in_order);
-    }
-
-    /// The boxes as filled.
-    pub(crate) fn boxes(&self) -> &[Swept] {
-        &self.boxes
     }
 
     /// Each pair of bodies whose boxes meet, the lower one first; as filled, without replacements.
@@ -181,51 +116,60 @@ impl Broad {
                 continue;
             }
             let own = place / WIDTH;
-            self.each_row(first, own, (self.levels.len(), 0), &mut |row| {
+            let select = |row: &Row| row.meeting(first);
+            self.each_row(&select, own, (self.levels.len(), 0), &mut |row| {
                 let after = if row == own {
                     u32::MAX << (place % WIDTH + 1)
                 } else {
                     u32::MAX
                 };
-                self.each_in_row(row, first, after, &mut found);
+                self.each_in_row(row, &select, after, &mut found);
             });
         }
     }
 
     /// Replaces the box of a body.
     pub(crate) fn replace(&mut self, swept: Swept) {
-        let place = self.place[swept.body];
-        match place.checked_sub(self.sorted.len()) {
-            Some(aside) => self.aside[aside] = swept,
-            None => {
-                // Meets nothing any more, but keeps its place in the order.
-                self.levels[0][place / WIDTH].max[0][place % WIDTH] = f64::NEG_INFINITY;
-                self.place[swept.body] = self.sorted.len() + self.aside.len();
-                self.aside.push(swept);
-            }
+        let mut place = self.place[swept.body];
+        for (depth, level) in self.levels.iter_mut().enumerate() {
+            let row = &mut level[place / WIDTH];
+            let wide = row.lane(place % WIDTH).with(&swept);
+            row.set(place % WIDTH, if depth == 0 { &swept } else { &wide });
+            place /= WIDTH;
         }
     }
 
     /// Each other body whose box meets a box.
     pub(crate) fn each_partner(&self, of: &Swept, mut found: impl FnMut(usize)) {
-        let mut found = |other| {
-            if other != of.body {
-                found(other);
-            }
-        };
-        self.each_row(of, 0, (self.levels.len(), 0), &mut |row| {
-            self.each_in_row(row, of, u32::MAX, &mut found);
-        });
-        for other in self.aside.iter().filter(|other| other.meets(of)) {
-            found(other.body);
-        }
+        self.each(
+            |row| row.meeting(of),
+            |body| {
+                if body != of.body {
+                    found(body);
+                }
+            },
+        );
     }
 
-    /// Each row of sorted boxes, from one on, whose box meets a box, within a row of a level. Level 0
-    /// are the rows of sorted boxes themselves.
+    /// Each body whose box may come to a plane.
+    pub(crate) fn each_before(&self, front: &Front, found: impl FnMut(usize)) {
+        self.each(|row| row.reaching(front), found);
+    }
+
+    /// Each body whose box is among those of a row that something selects, and so are those around
+    /// it.
+    fn each(&self, select: impl Fn(&Row) -> u32, mut found: impl FnMut(usize)) {
+        let top = (self.levels.len(), 0);
+        self.each_row(&select, 0, top, &mut |row| {
+            self.each_in_row(row, &select, u32::MAX, &mut found);
+        });
+    }
+
+    /// Each row of sorted boxes, from one on, that is in a selected box, within a row of a level.
+    /// Level 0 are the rows of sorted boxes themselves.
     fn each_row(
         &self,
-        of: &Swept,
+        select: &impl Fn(&Row) -> u32,
         from: usize,
         (level, index): (usize, usize),
         found: &mut impl FnMut(usize),
@@ -233,29 +177,52 @@ impl Broad {
         if level <= 1 {
             return found(index);
         }
-        let row = &self.levels[level - 1][index];
         // How many rows of sorted boxes are in one of these.
         let inside = WIDTH.pow(level as u32 - 2);
-        let mut meeting = row.meeting(of);
-        while meeting != 0 {
-            let child = index * WIDTH + meeting.trailing_zeros() as usize;
-            meeting &= meeting - 1;
+        let mut selected = select(&self.levels[level - 1][index]);
+        while selected != 0 {
+            let child = index * WIDTH + selected.trailing_zeros() as usize;
+            selected &= selected - 1;
             if (child + 1) * inside > from {
-                self.each_row(of, from, (level - 1, child), found);
+                self.each_row(select, from, (level - 1, child), found);
             }
         }
     }
 
-    /// Some bodies of a row, those whose box meets one.
-    fn each_in_row(&self, row: usize, of: &Swept, which: u32, found: &mut impl FnMut(usize)) {
+    /// Some bodies of a row, those whose box is selected.
+    #[inline(always)]
+    fn each_in_row(
+        &self,
+        row: usize,
+        select: &impl Fn(&Row) -> u32,
+        which: u32,
+        found: &mut impl FnMut(usize),
+    ) {
         let Some(boxes) = self.levels[0].get(row) else {
             return;
         };
-        let mut meeting = boxes.meeting(of) & which;
-        while meeting != 0 {
-            let place = row * WIDTH + meeting.trailing_zeros() as usize;
-            meeting &= meeting - 1;
+        let mut selected = select(boxes) & which;
+        while selected != 0 {
+            let place = row * WIDTH + selected.trailing_zeros() as usize;
+            selected &= selected - 1;
             found(self.sorted[place].body);
+        }
+    }
+}
+
+/// Sorts keys that are nearly sorted; others at last as any.
+fn insert(keys: &mut [(u64, u32)]) {
+    let mut moves = 8 * keys.len();
+    for i in 1..keys.len() {
+        let (key, mut place) = (keys[i], i);
+        while place > 0 && keys[place - 1] > key {
+            keys[place] = keys[place - 1];
+            place -= 1;
+        }
+        keys[place] = key;
+        moves = moves.saturating_sub(i - place);
+        if moves == 0 {
+            return keys.sort_unstable();
         }
     }
 }
