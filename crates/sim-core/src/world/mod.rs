@@ -124,9 +124,7 @@ impl Settings {
 impl Default for Settings {
     /// 60 Hz, velocity Verlet, continuous collisions; a tolerance of 1e-9.
     ///
-    /// Verlet is exact in free fall, in a part of a step as in the whole, so that bodies keep their
-    /// energy through any number of elastic impacts. Under symplectic and backward Euler an impact
-    /// at the speed `v` loses about `2 g dt / v` of it.
+    /// Verlet costs what symplectic Euler does in free fall, and is exact there.
     fn default() -> Settings {
         Settings {
             dt: 1.0 / 60.0,

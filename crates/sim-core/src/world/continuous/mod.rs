@@ -37,8 +37,12 @@ pub(super) struct Continuous {
     since: Vec<f64>,
     /// How often a body's way has changed in this step; an impact of an older way is void.
     version: Vec<u32>,
-    /// What constant forces and resting contacts do to each body, m/s².
+    /// What forces do to each body all along its way, m/s²: constant ones, or under a method of
+    /// first order all of them; and that together with what resting contacts do.
+    given: Vec<DVec3>,
     acceleration: Vec<DVec3>,
+    /// How long before that of its way a body's velocity is the one that the method keeps, s.
+    lag: f64,
     /// How often each body has come to rest in this step; one that has too often stops for the rest
     /// of it.
     rests: Vec<u32>,

@@ -68,6 +68,29 @@ impl World {
                 }
             }
         }
+        #[cfg(feature = "std")]
+        {
+            extern crate std;
+            if std::env::var("DBG").is_ok() {
+                for e in group.iter() {
+                    if e.bodies.1 == 21 || e.bodies.0 == 21 {
+                        let (i, j) = e.bodies;
+                        std::println!(
+                            "{time:.3e} {:?} {:?} p {:.2e} n {:?} rel {:?} rests {:?} a {:?} {:?} feat {:?}",
+                            e.bodies,
+                            e.answer,
+                            e.pressure,
+                            e.contact.normal,
+                            self.velocity_there(i) - self.velocity_there(j),
+                            (self.continuous.rests[i], self.continuous.rests[j]),
+                            self.continuous.acceleration[i],
+                            self.continuous.acceleration[j],
+                            e.contact.feature
+                        );
+                    }
+                }
+            }
+        }
         let chosen = |answer| group.iter().filter(move |event| event.answer == answer);
         self.bounce_all_of(chosen(Answer::Bounce), time);
         for event in chosen(Answer::Part) {
@@ -136,19 +159,26 @@ impl World {
         let restitution = self.pair_restitution(i, j);
         let leaving = restitution * closing.max(0.0);
         event.pressure = self.settings.dt * pressed;
+        let lasting = restitution * (closing - self.unfelt(event.pressure)).max(0.0);
         // Bodies that keep a part of their speed meet without end where they are caught, until what is
         // left moves them by a rounding.
         let left = self.settings.dt - self.continuous.since[i].max(self.continuous.since[j]);
         let is_spent = restitution < 1.0 && closing > 0.0 && leaving * left <= self.grain(i, j);
         // Back after the time 2 v / a.
         event.answer =
-            if is_spent || pressed > 0.0 && 2.0 * leaving <= SHORTEST_FLIGHT * event.pressure {
+            if is_spent || pressed > 0.0 && 2.0 * lasting <= SHORTEST_FLIGHT * event.pressure {
                 Answer::Rest
             } else if closing > 0.0 {
                 Answer::Bounce
             } else {
                 Answer::Part
             };
+    }
+
+    /// The speed at which bodies close that lie on each other, as forces that close them by a speed in
+    /// a step make it: none, but for the lag of a method's velocities.
+    fn unfelt(&self, pressure: f64) -> f64 {
+        pressure * (self.continuous.lag / self.settings.dt).abs()
     }
 
     /// Lets bodies bounce: those of one impact, or all that impacts of one instant tie together.
@@ -233,7 +263,8 @@ impl World {
         for ((rest, joined), given) in here.iter().zip(&joined).zip(given) {
             let speeds = (-joined.opening(&before), joined.opening(&velocity));
             let event = group.iter().find(|event| event.bodies == rest.bodies);
-            if let Some(event) = event.filter(|event| speeds.0 > SLIGHTEST * event.pressure) {
+            let is_impact = |pressure: f64| speeds.0 - self.unfelt(pressure) > SLIGHTEST * pressure;
+            if let Some(event) = event.filter(|event| is_impact(event.pressure)) {
                 let time = self.time() + time;
                 self.note_impact(event.bodies, &event.contact, given, speeds, time);
             }
@@ -249,7 +280,7 @@ impl World {
 
         // Nor do forces close them.
         for body in bodies {
-            self.continuous.acceleration[body] = self.acceleration[body];
+            self.continuous.acceleration[body] = self.continuous.given[body];
         }
         let (places, joined) = Places::of(here.iter().copied());
         let mut acceleration: Vec<DVec3> = Vec::with_capacity(places.bodies.len());

@@ -4,6 +4,14 @@
 //! the step's end, as its method makes it: the state at any time in between is that after a step of
 //! the method of just that length. For a body under a constant acceleration that is a parabola, and
 //! free; for others each question is a step of the method, of all bodies that are coupled.
+//!
+//! A first-order method is another one for each length of its steps, and a step in two parts is not
+//! the whole: a ball that it lets fall would lose a part of its height at each bounce. But what it
+//! makes of a constant acceleration `a`, `x + dt (v + fall dt a)`, are points of one parabola, on
+//! which the velocity is `u = v + lag a` with a *lag* of `(fall - 1/2) dt`. So symplectic and
+//! backward Euler keep the velocity of half a step before, forward Euler that of half a step after.
+//! Ways go along that parabola with `u`, impacts change `u` and `v` by the same, and no bounce takes
+//! anything, whenever it comes. Under other forces `a` is the mean over the step.
 
 use alloc::vec;
 use core::{mem, ops::Range};
@@ -30,10 +38,29 @@ impl World {
     pub(super) fn start_ways(&mut self) {
         let n = self.len();
         let sections = self.plan.as_ref().map_or(0, |plan| plan.sections.len());
-        self.continuous.is_free = sections == 0 && self.settings.method.fall.is_some();
+        let method = self.settings.method;
+        let is_first_order = method.order == 1 && method.fall.is_some();
+        self.continuous.is_free = is_first_order || sections == 0 && method.fall.is_some();
+        self.continuous.lag = match method.fall {
+            Some(fall) if is_first_order => (fall - 0.5) * self.settings.dt,
+            _ => 0.0,
+        };
         let ways = &mut self.continuous;
         ways.start.clone_from(&self.previous);
-        ways.acceleration.clone_from(&self.acceleration);
+        ways.given.clone_from(&self.acceleration);
+        if is_first_order && let Some(plan) = &self.plan {
+            let forced = plan.sections.iter();
+            for body in forced.flat_map(|section| section.bodies.clone()) {
+                let change = self.current.velocity[body] - self.previous.velocity[body];
+                ways.given[body] = change / self.settings.dt;
+            }
+        }
+        if ways.lag != 0.0 {
+            for (v, &a) in ways.start.velocity.iter_mut().zip(&ways.given) {
+                *v += ways.lag * a;
+            }
+        }
+        ways.acceleration.clone_from(&ways.given);
         ways.since.clear();
         ways.since.resize(n, 0.0);
         ways.rests.clear();
@@ -57,8 +84,8 @@ impl World {
         }
     }
 
-    /// Position and velocity of a body at a time from the start of its way to the end of the step,
-    /// s from the step's start.
+    /// Position and velocity of a body on its way at a time from the way's start to the end of the
+    /// step, s from the step's start.
     pub(super) fn motion_at(
         &self,
         body: usize,
@@ -72,7 +99,8 @@ impl World {
             return Ok((x, v));
         }
         if time == self.settings.dt {
-            return Ok((self.current.position[body], self.current.velocity[body]));
+            let v = self.current.velocity[body] + ways.lag * ways.acceleration[body];
+            return Ok((self.current.position[body], v));
         }
         let Some((bodies, is_coupled)) = self.unit(body) else {
             return Ok(self.on_parabola(body, h));
@@ -93,11 +121,8 @@ impl World {
     fn on_parabola(&self, body: usize, h: f64) -> (DVec3, DVec3) {
         let ways = &self.continuous;
         let (x, v) = (ways.start.position[body], ways.start.velocity[body]);
-        let (a, fall) = (
-            ways.acceleration[body],
-            self.settings.method.fall.unwrap_or(0.0),
-        );
-        (x + h * (v + fall * h * a), v + h * a)
+        let a = ways.acceleration[body];
+        (x + h * (v + 0.5 * h * a), v + h * a)
     }
 
     /// Steps coupled bodies, or one, from the start of their way to a time.
@@ -161,15 +186,17 @@ impl World {
         let dt = self.settings.dt;
         match self.unit(bodies.start) {
             _ if self.is_stopped(bodies.start) => {
-                let State { position, velocity } = &self.continuous.start;
-                let (x, v) = (&position[bodies.clone()], &velocity[bodies.clone()]);
-                self.current.position[bodies.clone()].copy_from_slice(x);
-                self.current.velocity[bodies.clone()].copy_from_slice(v);
+                let ways = &self.continuous;
+                for body in bodies.clone() {
+                    self.current.position[body] = ways.start.position[body];
+                    self.current.velocity[body] = self.kept(body, ways.start.velocity[body]);
+                }
             }
             None => {
                 let body = bodies.start;
                 let (x, v) = self.on_parabola(body, dt - self.continuous.since[body]);
-                (self.current.position[body], self.current.velocity[body]) = (x, v);
+                self.current.position[body] = x;
+                self.current.velocity[body] = self.kept(body, v);
             }
             Some((bodies, is_coupled)) => {
                 let mut current = mem::take(&mut self.current);
@@ -186,6 +213,11 @@ impl World {
             Some(first) => Err((bodies.start + first, Cause::Range)),
             None => Ok(()),
         }
+    }
+
+    /// The velocity that the method keeps where a body's way has another one.
+    fn kept(&self, body: usize, on_way: DVec3) -> DVec3 {
+        on_way - self.continuous.lag * self.continuous.acceleration[body]
     }
 
     /// What forces and resting contacts do to a body where its way starts, m/s².
@@ -230,8 +262,7 @@ impl World {
             return DVec3::ZERO;
         }
         if self.unit(body).is_none() {
-            let fall = self.settings.method.fall.unwrap_or(0.0);
-            return (0.25 * fall * h * h) * ways.acceleration[body].abs();
+            return (0.125 * h * h) * ways.acceleration[body].abs();
         }
         // Of a parabola the sum is four times the bulge.
         let chord = self.current.position[body] - ways.start.position[body];
@@ -244,10 +275,9 @@ impl World {
     pub(super) fn bend(&self, i: usize, j: usize) -> f64 {
         let is_free = |body| self.unit(body).is_none() && !self.is_stopped(body);
         if is_free(i) && is_free(j) {
-            let fall = self.settings.method.fall.unwrap_or(0.0);
             let push = &self.continuous.acceleration;
             let relative = push[j] - push[i];
-            return 0.25 * fall * relative.length();
+            return 0.125 * relative.length();
         }
         let of = |body: usize| {
             let h = self.settings.dt - self.continuous.since[body];
