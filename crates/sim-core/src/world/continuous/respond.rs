@@ -68,29 +68,6 @@ impl World {
                 }
             }
         }
-        #[cfg(feature = "std")]
-        {
-            extern crate std;
-            if std::env::var("DBG").is_ok() {
-                for e in group.iter() {
-                    if e.bodies.1 == 21 || e.bodies.0 == 21 {
-                        let (i, j) = e.bodies;
-                        std::println!(
-                            "{time:.3e} {:?} {:?} p {:.2e} n {:?} rel {:?} rests {:?} a {:?} {:?} feat {:?}",
-                            e.bodies,
-                            e.answer,
-                            e.pressure,
-                            e.contact.normal,
-                            self.velocity_there(i) - self.velocity_there(j),
-                            (self.continuous.rests[i], self.continuous.rests[j]),
-                            self.continuous.acceleration[i],
-                            self.continuous.acceleration[j],
-                            e.contact.feature
-                        );
-                    }
-                }
-            }
-        }
         let chosen = |answer| group.iter().filter(move |event| event.answer == answer);
         self.bounce_all_of(chosen(Answer::Bounce), time);
         for event in chosen(Answer::Part) {
