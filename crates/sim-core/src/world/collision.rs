@@ -160,27 +160,28 @@ impl World {
     fn exchange_now(&mut self, (i, j): (usize, usize), contact: &Contact, time: f64) {
         let before = (self.current.velocity[i], self.current.velocity[j]);
         let restitution = self.pair_restitution(i, j);
-        let after = self.exchange((i, j), contact, before, restitution, time);
+        let masses = (self.mass[i], self.mass[j]);
+        let after = self.exchange((i, j), contact, (masses, before), restitution, time);
         (self.current.velocity[i], self.current.velocity[j]) = after;
     }
 
-    /// The velocities of two bodies after they have parted by a restitution, if they approach. The
-    /// contact's point is in the world.
+    /// The velocities of two bodies after they have parted by a restitution, if they approach, from
+    /// their masses and velocities before. The contact's point is in the world.
     pub(super) fn exchange(
         &mut self,
-        (i, j): (usize, usize),
+        bodies: (usize, usize),
         contact: &Contact,
-        (v1, v2): (DVec3, DVec3),
+        ((m1, m2), (v1, v2)): ((f64, f64), (DVec3, DVec3)),
         restitution: f64,
         time: f64,
     ) -> (DVec3, DVec3) {
-        let ((m1, m2), normal) = ((self.mass[i], self.mass[j]), contact.normal);
+        let normal = contact.normal;
         let Some(given) = impulse::between((m1, v1), (m2, v2), normal, restitution) else {
             return (v1, v2);
         };
         let after = (v1 + given.change.0 * normal, v2 + given.change.1 * normal);
         let speeds = ((v1 - v2).dot(normal), (after.1 - after.0).dot(normal));
-        self.note_impact((i, j), contact, given.impulse, speeds, time);
+        self.note_impact(bodies, contact, given.impulse, speeds, time);
         after
     }
 

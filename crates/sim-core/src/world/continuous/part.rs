@@ -106,25 +106,26 @@ impl World {
     }
 
     fn move_current_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
-        let (first, second) = self.shares(i, j);
+        let (first, second) = shares(self.mass[i].is_finite(), self.mass[j].is_finite());
         self.current.position[i] -= first * by;
         self.current.position[j] += second * by;
     }
 
     /// Moves the starts of two ways apart.
     pub(super) fn move_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
-        let (first, second) = self.shares(i, j);
+        let (first, second) = shares(self.is_moved(i), self.is_moved(j));
         let position = &mut self.continuous.start.position;
         position[i] -= first * by;
         position[j] += second * by;
     }
+}
 
-    /// Parts of a displacement that two bodies take: immovable ones none.
-    fn shares(&self, i: usize, j: usize) -> (f64, f64) {
-        match (self.mass[i].is_finite(), self.mass[j].is_finite()) {
-            (true, true) => (0.5, 0.5),
-            (true, false) => (1.0, 0.0),
-            (false, _) => (0.0, 1.0),
-        }
+/// Parts of a displacement that two bodies take, of which one may stay where it is.
+fn shares(first_moves: bool, second_moves: bool) -> (f64, f64) {
+    match (first_moves, second_moves) {
+        (true, true) => (0.5, 0.5),
+        (true, false) => (1.0, 0.0),
+        (false, true) => (0.0, 1.0),
+        (false, false) => (0.0, 0.0),
     }
 }

@@ -64,7 +64,7 @@ impl World {
             self.choose(event);
             if event.answer != Answer::Bounce {
                 for body in [event.bodies.0, event.bodies.1] {
-                    self.continuous.rests[body] += u32::from(self.mass[body].is_finite());
+                    self.continuous.rests[body] += u32::from(self.is_moved(body));
                 }
             }
         }
@@ -109,7 +109,8 @@ impl World {
         Ok(())
     }
 
-    /// Lets new ways start for two bodies and those coupled to them. Immovable ones stay on theirs.
+    /// Lets new ways start for two bodies and those coupled to them. What nothing moves stays on its
+    /// own.
     fn renew(
         &mut self,
         (i, j): (usize, usize),
@@ -117,16 +118,33 @@ impl World {
         renewed: &mut Vec<usize>,
     ) -> Result<(), (usize, Cause)> {
         for body in [i, j] {
-            if self.mass[body].is_finite() {
+            if self.is_moved(body) {
                 renewed.extend(self.restart_at(body, time)?);
             }
         }
         Ok(())
     }
 
-    /// Velocity of a body at the time of an impact.
+    /// Velocity of a body at the time of an impact. One that has stopped stands as if it were
+    /// immovable, and keeps its own for the next step.
     fn velocity_there(&self, body: usize) -> DVec3 {
-        self.continuous.start.velocity[body]
+        match self.is_stopped(body) {
+            true => DVec3::ZERO,
+            false => self.continuous.start.velocity[body],
+        }
+    }
+
+    /// Mass of a body in an impact.
+    fn mass_there(&self, body: usize) -> f64 {
+        match self.is_stopped(body) {
+            true => f64::INFINITY,
+            false => self.mass[body],
+        }
+    }
+
+    /// Whether impacts change the way of a body.
+    pub(super) fn is_moved(&self, body: usize) -> bool {
+        self.mass_there(body).is_finite()
     }
 
     fn choose(&self, event: &mut Event) {
@@ -186,7 +204,7 @@ impl World {
             .map(|event| self.pair_restitution(event.bodies.0, event.bodies.1))
             .fold(1.0, f64::min);
         let (places, joined) = Places::of(events.clone().map(Rest::from));
-        let mut velocity = places.take(&self.continuous.start.velocity);
+        let mut velocity = places.velocities(self);
         let before = velocity.clone();
         let given = reflect(
             &joined,
@@ -194,7 +212,7 @@ impl World {
             &mut velocity,
             restitution,
         );
-        places.put(&velocity, &mut self.continuous.start.velocity);
+        places.put(&velocity, self);
         for ((event, joined), given) in events.zip(&joined).zip(given) {
             let speeds = (-joined.opening(&before), joined.opening(&velocity));
             let time = self.time() + time;
@@ -207,10 +225,14 @@ impl World {
         let (i, j) = event.bodies;
         let restitution = self.pair_restitution(i, j);
         let before = (self.velocity_there(i), self.velocity_there(j));
+        let moving = ((self.mass_there(i), self.mass_there(j)), before);
         let time = self.time() + time;
-        let after = self.exchange((i, j), &event.contact, before, restitution, time);
-        let velocity = &mut self.continuous.start.velocity;
-        (velocity[i], velocity[j]) = after;
+        let after = self.exchange((i, j), &event.contact, moving, restitution, time);
+        for (body, velocity) in [(i, after.0), (j, after.1)] {
+            if self.is_moved(body) {
+                self.continuous.start.velocity[body] = velocity;
+            }
+        }
     }
 
     /// Lets bodies in resting contact move on together: those of some impacts, and all that rest on
@@ -233,10 +255,10 @@ impl World {
         // No contact closes any more; those that open are contacts no longer.
         let (places, joined) = Places::of(here.iter().copied());
         let inverse_mass = places.inverse_mass(self);
-        let mut velocity = places.take(&self.continuous.start.velocity);
+        let mut velocity = places.velocities(self);
         let before = velocity.clone();
         let given = project(&joined, &inverse_mass, &mut velocity);
-        places.put(&velocity, &mut self.continuous.start.velocity);
+        places.put(&velocity, self);
         for ((rest, joined), given) in here.iter().zip(&joined).zip(given) {
             let speeds = (-joined.opening(&before), joined.opening(&velocity));
             let event = group.iter().find(|event| event.bodies == rest.bodies);
@@ -276,7 +298,7 @@ impl World {
 
     /// The movable bodies of some pairs, and all that resting contacts tie to them.
     fn reached(&self, pairs: impl Iterator<Item = (usize, usize)>, resting: &[Rest]) -> Vec<bool> {
-        let is_movable = |body: usize| self.mass[body].is_finite();
+        let is_movable = |body: usize| self.is_moved(body);
         let mut reached = vec![false; self.len()];
         for body in pairs.flat_map(|(i, j)| [i, j]) {
             reached[body] = is_movable(body);
@@ -347,17 +369,20 @@ impl Places {
     fn inverse_mass(&self, world: &World) -> Vec<f64> {
         self.bodies
             .iter()
-            .map(|&body| 1.0 / world.mass[body])
+            .map(|&body| 1.0 / world.mass_there(body))
             .collect()
     }
 
-    fn take(&self, column: &[DVec3]) -> Vec<DVec3> {
-        self.bodies.iter().map(|&body| column[body]).collect()
+    fn velocities(&self, world: &World) -> Vec<DVec3> {
+        let bodies = self.bodies.iter();
+        bodies.map(|&body| world.velocity_there(body)).collect()
     }
 
-    fn put(&self, values: &[DVec3], column: &mut [DVec3]) {
-        for (&body, &value) in self.bodies.iter().zip(values) {
-            column[body] = value;
+    fn put(&self, velocities: &[DVec3], world: &mut World) {
+        for (&body, &velocity) in self.bodies.iter().zip(velocities) {
+            if world.is_moved(body) {
+                world.continuous.start.velocity[body] = velocity;
+            }
         }
     }
 }

@@ -222,6 +222,9 @@ impl World {
 
     /// What forces and resting contacts do to a body where its way starts, m/s².
     pub(super) fn acceleration_there(&self, body: usize) -> DVec3 {
+        if self.is_stopped(body) {
+            return DVec3::ZERO;
+        }
         let Some((bodies, is_coupled)) = self.unit(body) else {
             return self.continuous.acceleration[body];
         };
@@ -245,7 +248,7 @@ impl World {
     }
 
     /// Whether a body, or one coupled to it, has come to rest too often in this step.
-    fn is_stopped(&self, body: usize) -> bool {
+    pub(super) fn is_stopped(&self, body: usize) -> bool {
         let rests = &self.continuous.rests;
         let Some((bodies, _)) = self.unit(body) else {
             return rests[body] > MOST_RESTS;
