@@ -129,7 +129,7 @@ impl World {
     }
 
     /// Exchanges an impulse along the normal of the feature that touched first.
-    fn bounce(&mut self, i: usize, j: usize) {
+    pub(super) fn bounce(&mut self, i: usize, j: usize) {
         self.need_bvh(i);
         self.need_bvh(j);
         let (start, end) = (&self.previous.position, &self.current.position);

@@ -154,7 +154,23 @@ pub enum StepError {
         /// Steps taken.
         steps: u32,
     },
-    /// Impacts without end, as of a body between two walls that close on it.
+    /// A body between two immovable ones that move towards each other has no room left.
+    #[error(
+        "step {step}: body {body} is squeezed between bodies {} and {}, which nothing stops: stop \
+         one of them, give it a finite mass, or, should there be room for it, lower dt",
+        between.0, between.1
+    )]
+    Squeezed {
+        /// Index of the body.
+        body: usize,
+        /// Those between which it is, or others on their way.
+        between: (usize, usize),
+        /// The step that failed, from 1.
+        step: u64,
+        /// Title of the method.
+        method: &'static str,
+    },
+    /// Impacts without end.
     #[error(
         "step {step}: body {body} has an impact after {impacts} others in the step; lower dt, or \
          part what it is caught between"
@@ -179,6 +195,7 @@ impl StepError {
             | StepError::Unstable { body, .. }
             | StepError::NotConverged { body, .. }
             | StepError::TooManySteps { body, .. }
+            | StepError::Squeezed { body, .. }
             | StepError::TooManyImpacts { body, .. } => body,
         }
     }

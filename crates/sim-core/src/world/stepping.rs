@@ -273,6 +273,12 @@ impl World {
                 method,
                 stable_dt,
             },
+            Cause::Squeezed(between) => StepError::Squeezed {
+                body,
+                between,
+                step,
+                method,
+            },
             Cause::Impacts => StepError::TooManyImpacts {
                 body,
                 step,
@@ -317,6 +323,8 @@ pub(super) struct Block<'a> {
 /// Why a step failed at a body.
 pub(super) enum Cause {
     Range,
+    /// No room is left between these bodies.
+    Squeezed((usize, usize)),
     /// More impacts than [`World::MOST_IMPACTS`].
     Impacts,
     Growth,

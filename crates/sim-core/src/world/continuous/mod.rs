@@ -13,6 +13,7 @@
 mod part;
 mod respond;
 mod seek;
+mod squeeze;
 #[cfg(test)]
 mod tests;
 mod way;
@@ -27,6 +28,7 @@ use crate::{
     collide::{Broad, Contact, Front, Swept},
 };
 use respond::{Answer, Rest};
+use squeeze::Squeeze;
 use way::Probe;
 
 /// What a step with continuous collision needs beside the state; empty while there is none.
@@ -124,12 +126,14 @@ impl World {
         let before = (self.impacts, self.last_impact.clone());
         self.part_touching();
         self.start_ways();
-        let done = self.seek_all().and_then(|()| self.answer_all());
+        let done = self
+            .seek_all()
+            .and_then(|()| self.answer_all())
+            .and_then(|()| self.part_near());
         if let Err((body, cause)) = done {
             (self.impacts, self.last_impact) = before;
             return Err(self.failed(body, cause));
         }
-        self.part_near();
         self.part_overlapping();
         Ok(())
     }
@@ -201,6 +205,7 @@ impl World {
     fn answer_all(&mut self) -> Result<(), (usize, Cause)> {
         self.continuous.resting.clear();
         let mut answered = 0;
+        let mut squeeze = Squeeze::default();
         let mut group = mem::take(&mut self.continuous.group);
         while let Some(first) = self.next_event(f64::INFINITY) {
             let time = first.time;
@@ -215,6 +220,7 @@ impl World {
             if answered > World::MOST_IMPACTS {
                 return Err((group[0].bodies.1, Cause::Impacts));
             }
+            self.watch(&group, &mut squeeze)?;
             self.answer(&mut group, time)?;
             if self.continuous.near.len() > MOST_NEAR {
                 self.continuous.near.sort_unstable();

@@ -6,9 +6,10 @@
 //! as much as the f32 of their vertices is rounded. An overlap is deeper than that and stays one.
 
 use alloc::vec::Vec;
+use core::mem;
 use glam::DVec3;
 
-use super::super::World;
+use super::super::{World, stepping::Cause};
 use crate::collide::parting_normals;
 
 /// Units in the last place, a few parts in 10^12, before it is an overlap.
@@ -16,15 +17,35 @@ const MOST_GRAINS: f64 = 1024.0;
 /// Rounds in which a body that is moved out of one may get into another.
 const ROUNDS: usize = 32;
 
+/// Beside what a body has been put back to its place at the start of the step.
+#[derive(Clone, Copy)]
+enum Frame {
+    Still,
+    /// An immovable body that may have moved.
+    Of(usize),
+}
+
+/// Who has been put back, and how.
+#[derive(Default)]
+struct Back {
+    with: Vec<Option<Frame>>,
+}
+
+impl Back {
+    fn of(&self, body: usize) -> Option<Frame> {
+        self.with.get(body).copied().flatten()
+    }
+}
+
 impl World {
     /// Moves apart those that touch without overlap since they were placed.
     pub(super) fn part_touching(&mut self) {
-        if !core::mem::take(&mut self.continuous.placed) || self.overlapping.is_empty() {
+        if !mem::take(&mut self.continuous.placed) || self.overlapping.is_empty() {
             return;
         }
         let moved = self.current.clone();
         self.current.clone_from(&self.previous);
-        let mut pairs = core::mem::take(&mut self.overlapping);
+        let mut pairs = mem::take(&mut self.overlapping);
         for _ in 0..ROUNDS {
             let meeting = pairs.iter().filter(|&&(i, j)| self.meet_now(i, j));
             let meeting: Vec<_> = meeting.copied().collect();
@@ -49,19 +70,20 @@ impl World {
     }
 
     /// Makes sure that no two bodies meet that came near in the step.
-    pub(super) fn part_near(&mut self) {
-        let mut near = core::mem::take(&mut self.continuous.near);
+    pub(super) fn part_near(&mut self) -> Result<(), (usize, Cause)> {
+        let mut near = mem::take(&mut self.continuous.near);
         near.sort_unstable();
         near.dedup();
+        let mut back = Back::default();
         let mut round = 0;
         loop {
             let mut parted = 0;
             for &(i, j) in &near {
                 if self.meet_now(i, j) {
-                    // What rounding does not explain is answered as in the discrete mode.
                     let most = self.grain(i, j) * MOST_GRAINS;
-                    if round == ROUNDS || !self.part(i, j, most) {
-                        self.collide();
+                    let is_back = back.of(i).or(back.of(j)).is_some();
+                    if is_back || round == ROUNDS || !self.part(i, j, most) {
+                        self.put_back((i, j), &mut back)?;
                     }
                     parted += 1;
                 }
@@ -72,6 +94,7 @@ impl World {
             }
         }
         self.continuous.near = near;
+        Ok(())
     }
 
     fn meet_now(&mut self, i: usize, j: usize) -> bool {
@@ -103,6 +126,59 @@ impl World {
             by *= 2.0;
         }
         false
+    }
+
+    /// What rounding does not explain is answered as in the discrete mode: an impulse is exchanged,
+    /// and bodies go back to where the step began, where nothing met; so does all that they meet
+    /// there. Immovable ones go on, and take what they meet along.
+    fn put_back(&mut self, pair: (usize, usize), back: &mut Back) -> Result<(), (usize, Cause)> {
+        back.with.resize(self.len(), None);
+        let mut pairs = alloc::vec![pair];
+        while let Some((i, j)) = pairs.pop() {
+            if !self.meet_now(i, j) {
+                continue;
+            }
+            self.bounce(i, j);
+            let frame = |body: usize| match self.mass[body].is_finite() {
+                true => back.of(body),
+                false => Some(Frame::Of(body)),
+            };
+            let frame = match (frame(i), frame(j)) {
+                (Some(one), Some(other)) if self.moves_of(one) != self.moves_of(other) => {
+                    let body = if self.mass[i].is_finite() { i } else { j };
+                    let wall = |frame, body| {
+                        if let Frame::Of(wall) = frame {
+                            wall
+                        } else {
+                            body
+                        }
+                    };
+                    let (one, other) = (wall(one, i), wall(other, j));
+                    let between = (one.min(other), one.max(other));
+                    return Err((body, Cause::Squeezed(between)));
+                }
+                (Some(frame), _) | (None, Some(frame)) => frame,
+                (None, None) => Frame::Still,
+            };
+            for body in [i, j] {
+                if self.mass[body].is_finite() && back.of(body).is_none() {
+                    back.with[body] = Some(frame);
+                    let start = self.previous.position[body];
+                    self.current.position[body] = start + self.moves_of(frame);
+                    let others = self.solid.iter().filter(|&&other| other != body);
+                    pairs.extend(others.map(|&other| (body.min(other), body.max(other))));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// How far what bodies have been put back beside has moved in the step.
+    fn moves_of(&self, frame: Frame) -> DVec3 {
+        match frame {
+            Frame::Still => DVec3::ZERO,
+            Frame::Of(wall) => self.current.position[wall] - self.previous.position[wall],
+        }
     }
 
     fn move_current_apart(&mut self, (i, j): (usize, usize), by: DVec3) {

@@ -3,7 +3,7 @@
 use alloc::{sync::Arc, vec::Vec};
 use glam::DVec3;
 
-use crate::{Body, Force, METHODS, Method, Settings, Shape, World, test_meshes::cube};
+use crate::{Body, Force, METHODS, Method, Settings, Shape, StepError, World, test_meshes::cube};
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -180,5 +180,57 @@ fn no_method_loses_height_at_a_bounce() {
         }
         let error = (energy(&world) / start - 1.0).abs();
         assert!(error < 1e-12, "{}: {error:e}", method.name);
+    }
+}
+
+/// A cube between two slabs that come from both sides and do not stop.
+fn squeezed(restitution: f64) -> World {
+    let cube = Arc::new(cube());
+    let slab = |side: f64| Body {
+        mass: f64::INFINITY,
+        ..body(cube.clone(), v(1.25 * side, 0.0, 0.0), v(-side, 0.0, 0.0))
+    };
+    let caught = Body {
+        restitution,
+        ..body(cube.clone(), v(0.1, 0.0, 0.0), v(0.3, 0.0, 0.0))
+    };
+    world([slab(-1.0), slab(1.0), caught])
+}
+
+#[test]
+fn what_is_squeezed_is_named_soon() {
+    for restitution in [1.0, 0.5, 0.0] {
+        let mut world = squeezed(restitution);
+        let error = (0..60).find_map(|_| world.step().err()).unwrap();
+        let StepError::Squeezed { body, between, .. } = error else {
+            panic!("{restitution}: {error}");
+        };
+        assert_eq!((body, between), (2, (0, 1)), "{restitution}");
+        // There is room until the end of the 15th step.
+        assert!((14..=15).contains(&world.steps()), "{restitution}");
+        assert!(world.impacts() < 100_000, "{restitution}");
+    }
+}
+
+/// What rounding should never bring about: bodies that meet at a step's end.
+#[test]
+fn what_is_put_back_leaves_immovable_bodies_where_they_are() {
+    let cube = Arc::new(cube());
+    let lift = Body {
+        mass: f64::INFINITY,
+        ..body(cube.clone(), v(0.0, 0.0, 0.0), v(0.0, 1.0, 0.0))
+    };
+    let on_it =
+        [1.0, 2.0].map(|level| body(cube.clone(), v(0.0, 1.25 * level, 0.0), v(0.0, -1.0, 0.0)));
+    let mut world = world([lift].into_iter().chain(on_it));
+    world.step().unwrap();
+    world.current.position[0].y += 0.5;
+    world.current.position[1].y -= 0.5;
+    let lifted = world.current.position[0];
+    world.continuous.near = alloc::vec![(0, 1)];
+    assert!(world.part_near().is_ok());
+    assert_eq!(world.position(0), lifted);
+    for (i, j) in [(0, 1), (1, 2), (0, 2)] {
+        assert!(!world.meet(i, j), "{i} and {j}");
     }
 }
