@@ -205,13 +205,6 @@ impl Search<'_> {
         let corners = wide(s.corners(i));
         let [a, b, c] = wide(t.corners(j));
         let placed = [a + self.offset, b + self.offset, c + self.offset];
-        let s = Names::of(s.face[i], self.first.topology());
-        let t = Names::of(t.face[j], self.second.topology());
-        let owns = |of: [bool; 3]| of.contains(&true);
-        let has_edges = owns(s.owns_edge) && owns(t.owns_edge);
-        if !(has_edges || owns(s.owns_vertex) || owns(t.owns_vertex)) {
-            return;
-        }
         let Some(above_first) = self.view.heights(corners, placed, 1.0, self.horizon) else {
             return;
         };
@@ -226,15 +219,11 @@ impl Search<'_> {
         let Some(of_second) = self.view.sides(&second, &first) else {
             return;
         };
-        if owns(t.owns_vertex) {
-            self.try_vertices((&first, &s), (&second, &t), &above_first, &of_first, 1.0);
-        }
-        if owns(s.owns_vertex) {
-            self.try_vertices((&second, &t), (&first, &s), &above_second, &of_second, -1.0);
-        }
-        if has_edges {
-            self.try_edges((&first, &s, &of_first), (&second, &t, &of_second));
-        }
+        let s = Names::of(s.face[i], self.first.topology());
+        let t = Names::of(t.face[j], self.second.topology());
+        self.try_vertices((&first, &s), (&second, &t), &above_first, &of_first, 1.0);
+        self.try_vertices((&second, &t), (&first, &s), &above_second, &of_second, -1.0);
+        self.try_edges((&first, &s, &of_first), (&second, &t, &of_second));
     }
 
     /// The corners of one triangle against another one; `way` is 1 where the corners move, else -1.
