@@ -167,8 +167,6 @@ pub enum StepError {
         between: (usize, usize),
         /// The step that failed, from 1.
         step: u64,
-        /// Title of the method.
-        method: &'static str,
     },
     /// Impacts without end.
     #[error(

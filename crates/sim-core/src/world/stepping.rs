@@ -277,7 +277,6 @@ impl World {
                 body,
                 between,
                 step,
-                method,
             },
             Cause::Impacts => StepError::TooManyImpacts {
                 body,

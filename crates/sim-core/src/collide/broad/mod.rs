@@ -22,6 +22,8 @@ const FEW: usize = 512;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Broad {
     boxes: Vec<Swept>,
+    /// Place on the axis or curve of each box, and its own, in order. No two are the same, so that the
+    /// order does not depend on that of the last time.
     keys: Vec<(u64, u32)>,
     sorted: Vec<Swept>,
     /// Rows of the sorted boxes, of the boxes around those, and so on to one.
@@ -287,25 +289,54 @@ mod tests {
     #[test]
     fn pairs_and_partners_are_those_of_brute_force() {
         for count in [0, 1, 2, 3, 10, 300, 600] {
-            let mut all = boxes(count, 7 + count as u64);
             let mut broad = Broad::default();
-            broad.fill(all.iter().copied());
-            let mut pairs = vec![];
-            broad.each_pair(|i, j| pairs.push((i, j)));
-            pairs.sort_unstable();
-            let mut expected = vec![];
-            for j in 0..count {
-                expected.extend((0..j).filter(|&i| all[i].meets(&all[j])).map(|i| (i, j)));
+            let mut all = vec![];
+            // Unordered, a little on, and in quite another order.
+            for (seed, by) in [(7, 0.0), (7, 0.1), (8, 0.0)] {
+                all = boxes(count, seed + count as u64);
+                for (i, swept) in all.iter_mut().enumerate() {
+                    let by = by * DVec3::splat((i % 7) as f64 - 3.0);
+                    (swept.min, swept.max) = (swept.min + by, swept.max + by);
+                }
+                broad.fill(all.iter().copied());
+                let mut pairs = vec![];
+                broad.each_pair(|i, j| pairs.push((i, j)));
+                pairs.sort_unstable();
+                let mut expected = vec![];
+                for j in 0..count {
+                    expected.extend((0..j).filter(|&i| all[i].meets(&all[j])).map(|i| (i, j)));
+                }
+                expected.sort_unstable();
+                assert_eq!(pairs, expected);
+                assert!(count < 300 || pairs.len() > 100);
             }
-            expected.sort_unstable();
-            assert_eq!(pairs, expected);
-            assert!(count < 300 || pairs.len() > 100);
             // Some move, one of them twice.
             for (step, new) in boxes(count, 99).into_iter().enumerate() {
                 if step % 3 == 0 || step == 1 {
                     let body = if step == 1 { 0 } else { new.body };
                     all[body] = Swept { body, ..new };
                     broad.replace(all[body]);
+                }
+            }
+            for (normal, level) in [(DVec3::X, 2.0), (DVec3::new(0.0, -0.6, 0.8), -3.0)] {
+                let front = Front {
+                    normal,
+                    level,
+                    slack: 0.0,
+                };
+                let mut reaching = vec![];
+                broad.each_before(&front, |body| reaching.push(body));
+                reaching.sort_unstable();
+                // As box by box; and no box with a corner behind the plane is left out.
+                let expected = all.iter().filter(|swept| front.may_meet(swept));
+                assert_eq!(reaching, expected.map(|o| o.body).collect::<Vec<_>>());
+                for swept in &all {
+                    let nearest = (0..8).map(|i| {
+                        let end = |axis: usize| [swept.min, swept.max][i >> axis & 1][axis];
+                        normal.dot(DVec3::new(end(0), end(1), end(2)))
+                    });
+                    let is_behind = nearest.fold(f64::INFINITY, f64::min) <= level - 1e-9;
+                    assert!(!is_behind || reaching.contains(&swept.body));
                 }
             }
             for of in &all {

@@ -31,6 +31,15 @@ struct Back {
     with: Vec<Option<Frame>>,
 }
 
+impl Frame {
+    fn wall(self) -> Option<usize> {
+        match self {
+            Frame::Still => None,
+            Frame::Of(wall) => Some(wall),
+        }
+    }
+}
+
 impl Back {
     fn of(&self, body: usize) -> Option<Frame> {
         self.with.get(body).copied().flatten()
@@ -146,14 +155,7 @@ impl World {
             let frame = match (frame(i), frame(j)) {
                 (Some(one), Some(other)) if self.moves_of(one) != self.moves_of(other) => {
                     let body = if self.mass[i].is_finite() { i } else { j };
-                    let wall = |frame, body| {
-                        if let Frame::Of(wall) = frame {
-                            wall
-                        } else {
-                            body
-                        }
-                    };
-                    let (one, other) = (wall(one, i), wall(other, j));
+                    let (one, other) = (one.wall().unwrap_or(i), other.wall().unwrap_or(j));
                     let between = (one.min(other), one.max(other));
                     return Err((body, Cause::Squeezed(between)));
                 }
@@ -175,10 +177,9 @@ impl World {
 
     /// How far what bodies have been put back beside has moved in the step.
     fn moves_of(&self, frame: Frame) -> DVec3 {
-        match frame {
-            Frame::Still => DVec3::ZERO,
-            Frame::Of(wall) => self.current.position[wall] - self.previous.position[wall],
-        }
+        frame.wall().map_or(DVec3::ZERO, |wall| {
+            self.current.position[wall] - self.previous.position[wall]
+        })
     }
 
     fn move_current_apart(&mut self, (i, j): (usize, usize), by: DVec3) {

@@ -41,10 +41,8 @@ impl World {
         let method = self.settings.method;
         let is_first_order = method.order == 1 && method.fall.is_some();
         self.continuous.is_free = is_first_order || sections == 0 && method.fall.is_some();
-        self.continuous.lag = match method.fall {
-            Some(fall) if is_first_order => (fall - 0.5) * self.settings.dt,
-            _ => 0.0,
-        };
+        // Zero from the second order on.
+        self.continuous.lag = method.fall.map_or(0.0, |fall| fall - 0.5) * self.settings.dt;
         let ways = &mut self.continuous;
         ways.start.clone_from(&self.previous);
         ways.given.clone_from(&self.acceleration);
@@ -117,7 +115,8 @@ impl World {
         Ok((probe.state.position[body], probe.state.velocity[body]))
     }
 
-    /// Position and velocity of a body on a parabola, some time after its way has started.
+    /// Position and velocity of a body on a parabola, some time after its way has started. Methods of
+    /// higher order have no other one, and those of first order have their lag.
     fn on_parabola(&self, body: usize, h: f64) -> (DVec3, DVec3) {
         let ways = &self.continuous;
         let (x, v) = (ways.start.position[body], ways.start.velocity[body]);
