@@ -4,6 +4,7 @@ use alloc::{vec, vec::Vec};
 use core::array;
 use glam::{Mat4, Vec3A, Vec4};
 
+use super::cuboid::Cuboid;
 use super::grid::Grid;
 use super::short::SHORT;
 use super::slabs::{self, Below, Slabs};
@@ -99,6 +100,7 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
         slabs: tree.slabs,
         triangles: tree.triangles,
         topology: mesh.topology().clone(),
+        cuboid: Cuboid::of(mesh),
         depth,
     }
 }

@@ -1,6 +1,7 @@
 //! Bounding volume hierarchy over the triangles of a mesh.
 
 mod build;
+mod cuboid;
 mod grid;
 mod node;
 mod ray;
@@ -12,6 +13,7 @@ mod support;
 use alloc::{sync::Arc, vec::Vec};
 
 use crate::{Aabb, Mesh, mesh::Topology};
+pub(crate) use cuboid::Cuboid;
 pub(crate) use node::{Boxes, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
 pub use ray::RayHit;
 pub(crate) use slabs::Slabs;
@@ -33,6 +35,8 @@ pub struct Bvh {
     triangles: Vec<Triangles>,
     /// Of the mesh, which shares it.
     topology: Arc<Topology>,
+    /// What the mesh is, if it is one.
+    cuboid: Option<Cuboid>,
     depth: usize,
 }
 
@@ -138,6 +142,10 @@ impl Bvh {
     #[inline(always)]
     pub(crate) fn triangles(&self, leaf: &Node) -> &Triangles {
         &self.triangles[leaf.triangles as usize]
+    }
+
+    pub(crate) fn cuboid(&self) -> Option<&Cuboid> {
+        self.cuboid.as_ref()
     }
 
     pub(crate) fn topology(&self) -> &Topology {

@@ -6,6 +6,7 @@
 mod apart;
 mod ball;
 mod broad;
+mod cuboids;
 mod expansion;
 mod form;
 mod hit;

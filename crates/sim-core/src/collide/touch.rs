@@ -26,6 +26,7 @@
 use glam::DVec3;
 
 use super::{
+    cuboids,
     placement::is_in_range,
     snap,
     sweep::{Kind, Search},
@@ -83,6 +84,11 @@ pub struct Touch {
 /// number or beyond 1e100 m leaves the meshes apart.
 pub fn first_touch(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> Option<Touch> {
     let (offset, motion) = in_range(offset, motion)?;
+    if let Some((first, second)) = first.cuboid().zip(second.cuboid())
+        && let Ok(touch) = cuboids::first_touch(first, second, offset, motion)
+    {
+        return touch;
+    }
     Search::run(Kind::Entering, (first, second), offset, motion).best()
 }
 

@@ -257,7 +257,7 @@ impl Time {
 }
 
 /// The quotient of two sums, in [0, 1], as [`Time::rounded_down`] has it.
-fn floor_of_quotient(over: &[f64], under: &[f64]) -> f64 {
+pub(super) fn floor_of_quotient(over: &[f64], under: &[f64]) -> f64 {
     let (Some(&least), Some(&most)) = (under.first(), under.last()) else {
         return 0.0;
     };

@@ -120,16 +120,20 @@ impl Candidate {
         if one.is_some() && one == two {
             return Ordering::Equal;
         }
-        let (n, m, motion) = (self.normal(), other.normal(), self.time.motion);
-        if n == m {
-            return Ordering::Equal;
-        }
-        let along = motion / motion.abs().max_element();
-        let toward = along.to_array().into_iter().find(|&x| x != 0.0);
-        let flip = toward.unwrap_or(1.0);
-        // One zero is as good as the other.
-        let cmp = |x: f64, y: f64| (x + 0.0).total_cmp(&(y + 0.0));
-        let keys = (0..3).map(|axis| cmp(n[axis] * flip, m[axis] * flip));
-        cmp(n.dot(along), m.dot(along)).then_with(|| keys.fold(Ordering::Equal, Ordering::then))
+        opposing_cmp(self.normal(), other.normal(), self.time.motion)
     }
+}
+
+/// The order of two normals, the one that opposes a motion most first.
+pub(in crate::collide) fn opposing_cmp(n: DVec3, m: DVec3, motion: DVec3) -> Ordering {
+    if n == m {
+        return Ordering::Equal;
+    }
+    let along = motion / motion.abs().max_element();
+    let toward = along.to_array().into_iter().find(|&x| x != 0.0);
+    let flip = toward.unwrap_or(1.0);
+    // One zero is as good as the other.
+    let cmp = |x: f64, y: f64| (x + 0.0).total_cmp(&(y + 0.0));
+    let keys = (0..3).map(|axis| cmp(n[axis] * flip, m[axis] * flip));
+    cmp(n.dot(along), m.dot(along)).then_with(|| keys.fold(Ordering::Equal, Ordering::then))
 }

@@ -17,6 +17,7 @@ use super::{pairs::TILE, touch::Touch};
 use crate::bvh::{Bvh, LEAF, WIDTH};
 use boxes::Moving;
 use candidate::Candidate;
+pub(super) use candidate::opposing_cmp;
 use features::View;
 
 /// Which contacts count.

@@ -1,0 +1,307 @@
+//! The first contact of two boxes that translate.
+//!
+//! Along each axis two boxes come to overlap at one time and cease to at another. They touch when
+//! the last axis comes to overlap, if no other one has ceased to by then. So much is told in a few
+//! hundred instructions. To their triangles, face against face is the worst that can happen, since
+//! most features touch at once. The answers are those of [`super::sweep`] to the last bit, but for
+//! axes whose times are two that round to one: here the first of them counts.
+
+use core::cmp::Ordering::{self, Equal, Greater, Less};
+use glam::DVec3;
+
+use super::{
+    Side,
+    expansion::{Expansion, two_sum},
+    sweep::opposing_cmp,
+    touch::{Feature, Touch},
+    triple::{Difference, floor_of_quotient, sign},
+};
+use crate::bvh::Cuboid;
+
+/// It takes triangles to tell.
+#[derive(Debug)]
+pub(super) struct Untold;
+
+/// The first entering contact of two boxes ([`super::touch::first_touch`]), unless they overlap at
+/// the start, or no corner touches a face.
+pub(super) fn first_touch(
+    first: &Cuboid,
+    second: &Cuboid,
+    offset: DVec3,
+    motion: DVec3,
+) -> Result<Option<Touch>, Untold> {
+    let pair = Pair {
+        first: Placed {
+            cuboid: first,
+            ends: first.ends,
+        },
+        second: Placed {
+            cuboid: second,
+            ends: second.ends.map(|end| end + offset),
+        },
+        motion,
+    };
+    let [low, high] = pair.second.ends;
+    // Far away a box may be placed as a sheet.
+    if !low.cmplt(high).all() || (0..3).all(|axis| pair.overlaps(axis)) {
+        return Err(Untold);
+    }
+    let axes = (0..3).filter(|&axis| pair.enters_along(axis));
+    let normal = |axis: usize| -motion[axis].signum() * DVec3::AXES[axis];
+    let Some(axis) = axes.min_by(|&i, &j| opposing_cmp(normal(i), normal(j), motion)) else {
+        return Ok(None);
+    };
+    let time = pair.time(axis);
+    let of_first = pair.first_in_face(axis, Side::First);
+    let of_second = || pair.first_in_face(axis, Side::Second);
+    let (feature, at) = of_first.or_else(of_second).ok_or(Untold)?;
+    let drift = match feature {
+        Feature::FaceVertex { .. } => motion,
+        _ => DVec3::ZERO,
+    };
+    Ok(Some(Touch {
+        time,
+        point: at + time * drift,
+        normal: normal(axis),
+        feature,
+    }))
+}
+
+/// A box, and where its low and its high corner are.
+struct Placed<'a> {
+    cuboid: &'a Cuboid,
+    ends: [DVec3; 2],
+}
+
+struct Pair<'a> {
+    first: Placed<'a>,
+    second: Placed<'a>,
+    /// Of the second one.
+    motion: DVec3,
+}
+
+impl Pair<'_> {
+    /// Whether the insides overlap along an axis at the start.
+    fn overlaps(&self, axis: usize) -> bool {
+        let ends = |placed: &Placed<'_>| placed.ends.map(|end| end[axis]);
+        let ([low, high], [others_low, others_high]) = (ends(&self.first), ends(&self.second));
+        low < others_high && others_low < high
+    }
+
+    /// The ends of the boxes that come to touch along an axis, 0 for the low one.
+    fn touching_ends(&self, axis: usize) -> (usize, usize) {
+        if self.motion[axis] > 0.0 {
+            (0, 1)
+        } else {
+            (1, 0)
+        }
+    }
+
+    /// Way along an axis until the boxes touch along it, m, negative if they have; exactly, as
+    /// rounded and what rounding took.
+    fn gap(&self, axis: usize) -> (f64, f64) {
+        let (of_first, of_second) = self.touching_ends(axis);
+        let (a, b) = (
+            self.first.ends[of_first][axis],
+            self.second.ends[of_second][axis],
+        );
+        if self.motion[axis] > 0.0 {
+            two_sum(a, -b)
+        } else {
+            two_sum(b, -a)
+        }
+    }
+
+    /// When they touch along an axis, rounded down.
+    fn time(&self, axis: usize) -> f64 {
+        let (gap, lost) = self.gap(axis);
+        let mut terms = Expansion::<2>::ZERO;
+        terms.add(lost);
+        terms.add(gap);
+        floor_of_quotient(terms.terms(), &[self.motion[axis].abs()])
+    }
+
+    /// Whether the boxes, within the motion, touch along an axis and by that enter each other.
+    fn enters_along(&self, axis: usize) -> bool {
+        let (way, (gap, lost)) = (self.motion[axis].abs(), self.gap(axis));
+        if way == 0.0 || gap < 0.0 || gap > way || (gap == way && lost > 0.0) {
+            return false;
+        }
+        let others = (0..3).filter(|&other| other != axis);
+        others.into_iter().all(|other| {
+            let motion = self.motion[other];
+            let below = self.height(axis, other, (0, 1));
+            let above = self.height(axis, other, (1, 0));
+            (below == Less || below == Equal && motion > 0.0)
+                && (above == Greater || above == Equal && motion < 0.0)
+        })
+    }
+
+    /// Whether, when the boxes touch along `axis`, an end of the first is above one of the second along
+    /// another axis.
+    fn height(&self, axis: usize, along: usize, (end, others): (usize, usize)) -> Ordering {
+        let apart = two_sum(
+            self.first.ends[end][along],
+            -self.second.ends[others][along],
+        );
+        // The time is the gap over the way.
+        let way = self.motion[axis].abs();
+        compare((apart, way), (self.gap(axis), self.motion[along]))
+    }
+
+    /// Of the corners of one box that come to the other's face along an axis, the first one by the
+    /// order of features, and where it is at the start.
+    fn first_in_face(&self, axis: usize, side: Side) -> Option<(Feature, DVec3)> {
+        let ends = self.touching_ends(axis);
+        let (own, end, other, others_end) = match side {
+            Side::First => (&self.first, ends.0, &self.second, ends.1),
+            Side::Second => (&self.second, ends.1, &self.first, ends.0),
+        };
+        let is_inside = |corner: usize| {
+            (0..3).filter(|&along| along != axis).all(|along| {
+                let end = corner >> along & 1;
+                let (over_low, over_high) = match side {
+                    Side::First => ((end, 0), (end, 1)),
+                    Side::Second => ((1, end), (0, end)),
+                };
+                self.height(axis, along, over_low) != Less
+                    && self.height(axis, along, over_high) != Greater
+            })
+        };
+        let corners = (0..8).filter(|&corner| corner >> axis & 1 == end && is_inside(corner));
+        let features = corners.map(|corner| {
+            let at = Cuboid::corner(&own.ends, corner);
+            let vertex = own.cuboid.vertices[corner];
+            let face = other.triangle_met(axis, others_end, at, self.motion);
+            let feature = match side {
+                Side::First => Feature::VertexFace { vertex, face },
+                Side::Second => Feature::FaceVertex { face, vertex },
+            };
+            (feature, at)
+        });
+        features.min_by_key(|&(feature, _)| feature)
+    }
+}
+
+impl Placed<'_> {
+    /// The triangle of a face that a point, which moves into the face, comes to; the lower one on the
+    /// diagonal.
+    fn triangle_met(&self, axis: usize, end: usize, point: DVec3, motion: DVec3) -> u32 {
+        let face = &self.cuboid.faces[axis][end];
+        let at = |corner: usize| Cuboid::corner(&self.ends, corner);
+        let of_first = face.corners[0];
+        let next = 1 << ((axis + 1) % 3);
+        let from = at(of_first ^ next);
+        let diagonal = Difference(at(face.corners[1] ^ next), from);
+        let side = |x: DVec3| sign([diagonal, motion.into(), Difference(from, x)]);
+        match side(point) {
+            Equal => face.triangles[0].min(face.triangles[1]),
+            side_of_it if side_of_it == side(at(of_first)) => face.triangles[0],
+            _ => face.triangles[1],
+        }
+    }
+}
+
+/// `p s` against `q r`, exactly; `p` and `q` are two numbers that sum.
+fn compare((p, s): ((f64, f64), f64), (q, r): ((f64, f64), f64)) -> Ordering {
+    let (one, other) = (p.0 * s, q.0 * r);
+    // Two roundings of each product, and one of the difference.
+    let slack = 4.0 * f64::EPSILON * (one.abs() + other.abs());
+    let difference = one - other;
+    if difference.abs() > slack {
+        return if difference > 0.0 { Greater } else { Less };
+    }
+    let mut sum = Expansion::<8>::ZERO;
+    for (x, y) in [(p.0, s), (p.1, s), (-q.0, r), (-q.1, r)] {
+        sum.add_product(x, y);
+    }
+    sum.sign()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Mesh;
+    use crate::bvh::Bvh;
+    use crate::collide::sweep::{Kind, Search};
+    use crate::test_meshes::cube;
+    use alloc::format;
+    use glam::DQuat;
+
+    struct Random(u64);
+
+    impl Random {
+        fn up_to(&mut self, most: i64) -> f64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            ((self.0 >> 1) as i64 % (2 * most + 1) - most) as f64
+        }
+
+        fn three(&mut self, most: i64) -> DVec3 {
+            DVec3::new(self.up_to(most), self.up_to(most), self.up_to(most))
+        }
+
+        /// A box, with some of its diagonals turned and its triangles in some order.
+        fn cuboid(&mut self, size: DVec3) -> Bvh {
+            let unit = cube().transformed(DQuat::IDENTITY, size).unwrap();
+            let mut triangles = unit.triangles().to_vec();
+            for pair in triangles.chunks_exact_mut(2) {
+                if self.up_to(1) > 0.0 {
+                    let ([a, b, c], d) = (pair[0], pair[1][2]);
+                    (pair[0], pair[1]) = ([a, b, d], [b, c, d]);
+                }
+            }
+            for i in 0..triangles.len() {
+                let j = self.up_to(11).abs() as usize;
+                triangles.swap(i, j);
+            }
+            Bvh::build(&Mesh::new(unit.vertices().to_vec(), triangles).unwrap())
+        }
+    }
+
+    #[test]
+    fn boxes_touch_as_their_triangles_do() {
+        let mut random = Random(0x9e37_79b9_7f4a_7c15);
+        let (mut touches, mut misses, mut untold, mut others) = (0, 0, 0, 0);
+        for round in 0..60_000 {
+            let sizes = [(); 2].map(|()| random.three(2).abs() + 1.0);
+            let (first, second) = (random.cuboid(sizes[0]), random.cuboid(sizes[1]));
+            let offset = 0.5 * random.three(8);
+            let aim = if round % 2 == 0 { -1.5 } else { 0.0 };
+            let motion = aim * offset + 0.5 * random.three(8);
+            // A lattice on which much is tied; near it; and anything.
+            let noise = match round % 3 {
+                0 => 0.0,
+                1 => 1e-15,
+                _ => 0.1,
+            };
+            let offset = offset + noise * random.three(1 << 20) / f64::from(1 << 20);
+            let motion = motion + noise * random.three(1 << 20) / f64::from(1 << 20);
+            let (a, b) = (first.cuboid().unwrap(), second.cuboid().unwrap());
+            let expected = Search::run(Kind::Entering, (&first, &second), offset, motion).best();
+            match first_touch(a, b, offset, motion) {
+                Err(Untold) => untold += 1,
+                Ok(found) => {
+                    let where_ = || format!("{sizes:?} {offset} {motion}");
+                    assert_eq!(
+                        found.map(|t| t.time),
+                        expected.map(|t| t.time),
+                        "{}",
+                        where_()
+                    );
+                    let is_same = found == expected;
+                    assert!(
+                        is_same || noise == 1e-15,
+                        "{found:?} {expected:?} {}",
+                        where_()
+                    );
+                    others += u32::from(!is_same);
+                    touches += u32::from(found.is_some());
+                    misses += u32::from(found.is_none());
+                }
+            }
+        }
+        assert!(touches > 20_000 && misses > 20_000 && untold < 10_000 && others < 100);
+    }
+}
