@@ -96,5 +96,6 @@ pub use glam::{DMat3, DQuat, DVec3, Vec3};
 pub use integrate::{Failure, Jacobians, METHODS, Method, Scratch, Step, Stepper, System};
 pub use mesh::{Mesh, MeshError, Repairs};
 pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
+pub(crate) use shape::Extent;
 pub use shape::Shape;
 pub use world::{Collision, Impact, Settings, StepError, World, WorldError};

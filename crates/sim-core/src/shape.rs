@@ -33,10 +33,42 @@ impl Shape {
     }
 }
 
+/// How far a shape reaches about its origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Extent {
+    /// Low and high corner of the box around it, m; zero where no box holds it.
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
+    /// Largest half extent, m.
+    pub(crate) half: f64,
+    /// Largest coordinate of what is placed with it, m.
+    pub(crate) farthest: f64,
+}
+
 impl Shape {
-    /// Whether a box can hold it.
-    pub(crate) fn is_bounded(&self) -> bool {
-        !matches!(self, Shape::HalfSpace { .. })
+    pub(crate) fn extent(&self) -> Extent {
+        match self {
+            Shape::Mesh(mesh) => {
+                let bounds = mesh.bounds();
+                let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+                Extent {
+                    low,
+                    high,
+                    half: bounds.half_extent().max_element(),
+                    farthest: low.abs().max(high.abs()).max_element(),
+                }
+            }
+            &Shape::Sphere { radius } => Extent {
+                low: DVec3::splat(-radius),
+                high: DVec3::splat(radius),
+                half: radius,
+                farthest: radius,
+            },
+            Shape::HalfSpace { .. } => Extent {
+                half: f64::INFINITY,
+                ..Extent::default()
+            },
+        }
     }
 }
 

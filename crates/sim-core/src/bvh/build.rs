@@ -1,6 +1,6 @@
 //! Building a BVH top down: first over cells of triangles, and below over triangles.
 
-use alloc::{vec, vec::Vec};
+use alloc::{boxed::Box, vec, vec::Vec};
 use core::array;
 use glam::{Mat4, Vec3A, Vec4};
 
@@ -100,7 +100,7 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
         slabs: tree.slabs,
         triangles: tree.triangles,
         topology: mesh.topology().clone(),
-        cuboid: Cuboid::of(mesh),
+        cuboid: Cuboid::of(mesh).map(Box::new),
         depth,
     }
 }

@@ -77,6 +77,17 @@ impl Cuboid {
         })
     }
 
+    /// [`super::Bvh::least_along`].
+    pub(super) fn least_along(&self, direction: DVec3) -> (f64, DVec3) {
+        let [low, high] = self.ends;
+        let (forward, along) = (direction.cmpgt(DVec3::ZERO), direction.cmpeq(DVec3::ZERO));
+        let end = DVec3::select(forward, low, high);
+        (
+            end.dot(direction),
+            DVec3::select(along, 0.5 * (low + high), end),
+        )
+    }
+
     /// Where a corner is, with low and high corner at `ends`.
     pub(crate) fn corner(ends: &[DVec3; 2], corner: usize) -> DVec3 {
         DVec3::from_array([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]))

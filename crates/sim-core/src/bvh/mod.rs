@@ -10,7 +10,7 @@ mod slabs;
 mod split;
 mod support;
 
-use alloc::{sync::Arc, vec::Vec};
+use alloc::{boxed::Box, sync::Arc, vec::Vec};
 
 use crate::{Aabb, Mesh, mesh::Topology};
 pub(crate) use cuboid::Cuboid;
@@ -36,7 +36,7 @@ pub struct Bvh {
     /// Of the mesh, which shares it.
     topology: Arc<Topology>,
     /// What the mesh is, if it is one.
-    cuboid: Option<Cuboid>,
+    cuboid: Option<Box<Cuboid>>,
     depth: usize,
 }
 
@@ -145,7 +145,7 @@ impl Bvh {
     }
 
     pub(crate) fn cuboid(&self) -> Option<&Cuboid> {
-        self.cuboid.as_ref()
+        self.cuboid.as_deref()
     }
 
     pub(crate) fn topology(&self) -> &Topology {

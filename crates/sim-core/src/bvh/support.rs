@@ -8,6 +8,9 @@ impl Bvh {
     /// The least `v · direction` (m, rounded once a product and a sum) of all corners of triangles,
     /// and the middle of the corners that have it.
     pub(crate) fn least_along(&self, direction: DVec3) -> (f64, DVec3) {
+        if let Some(cuboid) = self.cuboid() {
+            return cuboid.least_along(direction);
+        }
         let mut least = f64::INFINITY;
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let mut stack = [0; (WIDTH - 1) * MAX_DEPTH + 1];

@@ -10,7 +10,6 @@ use core::cmp::Ordering::{self, Equal, Greater, Less};
 use glam::DVec3;
 
 use super::{
-    Side,
     expansion::{Expansion, two_sum},
     sweep::opposing_cmp,
     touch::{Feature, Touch},
@@ -46,14 +45,13 @@ pub(super) fn first_touch(
     if !low.cmplt(high).all() || (0..3).all(|axis| pair.overlaps(axis)) {
         return Err(Untold);
     }
-    let axes = (0..3).filter(|&axis| pair.enters_along(axis));
-    let normal = |axis: usize| -motion[axis].signum() * DVec3::AXES[axis];
-    let Some(axis) = axes.min_by(|&i, &j| opposing_cmp(normal(i), normal(j), motion)) else {
+    let entries = (0..3).filter_map(|axis| pair.entry(axis));
+    let Some(entry) = entries.min_by(|a, b| opposing_cmp(a.normal(), b.normal(), motion)) else {
         return Ok(None);
     };
-    let time = pair.time(axis);
-    let of_first = pair.first_in_face(axis, Side::First);
-    let of_second = || pair.first_in_face(axis, Side::Second);
+    let time = entry.time();
+    let of_first = pair.first_of_first(&entry);
+    let of_second = || pair.first_of_second(&entry);
     let (feature, at) = of_first.or_else(of_second).ok_or(Untold)?;
     let drift = match feature {
         Feature::FaceVertex { .. } => motion,
@@ -62,7 +60,7 @@ pub(super) fn first_touch(
     Ok(Some(Touch {
         time,
         point: at + time * drift,
-        normal: normal(axis),
+        normal: entry.normal(),
         feature,
     }))
 }
@@ -80,6 +78,31 @@ struct Pair<'a> {
     motion: DVec3,
 }
 
+/// How two boxes come to touch along an axis.
+struct Entry {
+    axis: usize,
+    /// Way until then, m, as rounded and what rounding took.
+    gap: (f64, f64),
+    /// Motion along the axis, m.
+    motion: f64,
+    /// Which ends touch, of the first box and of the second, 0 for the low one.
+    ends: (usize, usize),
+}
+
+impl Entry {
+    /// When, rounded down.
+    fn time(&self) -> f64 {
+        let mut terms = Expansion::<2>::ZERO;
+        terms.add(self.gap.1);
+        terms.add(self.gap.0);
+        floor_of_quotient(terms.terms(), &[self.motion.abs()])
+    }
+
+    fn normal(&self) -> DVec3 {
+        -self.motion.signum() * DVec3::AXES[self.axis]
+    }
+}
+
 impl Pair<'_> {
     /// Whether the insides overlap along an axis at the start.
     fn overlaps(&self, axis: usize) -> bool {
@@ -88,99 +111,87 @@ impl Pair<'_> {
         low < others_high && others_low < high
     }
 
-    /// The ends of the boxes that come to touch along an axis, 0 for the low one.
-    fn touching_ends(&self, axis: usize) -> (usize, usize) {
-        if self.motion[axis] > 0.0 {
-            (0, 1)
-        } else {
-            (1, 0)
+    /// How the boxes touch along an axis within the motion, if by that they enter each other.
+    fn entry(&self, axis: usize) -> Option<Entry> {
+        let motion = self.motion[axis];
+        let [first, second] = [&self.first, &self.second].map(|placed| placed.ends);
+        let (ends, gap) = match motion > 0.0 {
+            true => ((0, 1), two_sum(first[0][axis], -second[1][axis])),
+            false => ((1, 0), two_sum(second[0][axis], -first[1][axis])),
+        };
+        let way = motion.abs();
+        if way == 0.0 || gap.0 < 0.0 || gap.0 > way || (gap.0 == way && gap.1 > 0.0) {
+            return None;
         }
-    }
-
-    /// Way along an axis until the boxes touch along it, m, negative if they have; exactly, as
-    /// rounded and what rounding took.
-    fn gap(&self, axis: usize) -> (f64, f64) {
-        let (of_first, of_second) = self.touching_ends(axis);
-        let (a, b) = (
-            self.first.ends[of_first][axis],
-            self.second.ends[of_second][axis],
-        );
-        if self.motion[axis] > 0.0 {
-            two_sum(a, -b)
-        } else {
-            two_sum(b, -a)
-        }
-    }
-
-    /// When they touch along an axis, rounded down.
-    fn time(&self, axis: usize) -> f64 {
-        let (gap, lost) = self.gap(axis);
-        let mut terms = Expansion::<2>::ZERO;
-        terms.add(lost);
-        terms.add(gap);
-        floor_of_quotient(terms.terms(), &[self.motion[axis].abs()])
-    }
-
-    /// Whether the boxes, within the motion, touch along an axis and by that enter each other.
-    fn enters_along(&self, axis: usize) -> bool {
-        let (way, (gap, lost)) = (self.motion[axis].abs(), self.gap(axis));
-        if way == 0.0 || gap < 0.0 || gap > way || (gap == way && lost > 0.0) {
-            return false;
-        }
-        let others = (0..3).filter(|&other| other != axis);
-        others.into_iter().all(|other| {
-            let motion = self.motion[other];
-            let below = self.height(axis, other, (0, 1));
-            let above = self.height(axis, other, (1, 0));
+        let entry = Entry {
+            axis,
+            gap,
+            motion,
+            ends,
+        };
+        let enters = (0..3).filter(|&along| along != axis).all(|along| {
+            let motion = self.motion[along];
+            let below = self.height(&entry, along, 0, 1);
+            let above = self.height(&entry, along, 1, 0);
             (below == Less || below == Equal && motion > 0.0)
                 && (above == Greater || above == Equal && motion < 0.0)
-        })
+        });
+        enters.then_some(entry)
     }
 
-    /// Whether, when the boxes touch along `axis`, an end of the first is above one of the second along
-    /// another axis.
-    fn height(&self, axis: usize, along: usize, (end, others): (usize, usize)) -> Ordering {
-        let apart = two_sum(
-            self.first.ends[end][along],
-            -self.second.ends[others][along],
-        );
+    /// Whether along an axis, when the boxes touch, an end of the first is above one of the second.
+    fn height(&self, entry: &Entry, along: usize, end: usize, others_end: usize) -> Ordering {
+        let end = self.first.ends[end][along];
+        let apart = two_sum(end, -self.second.ends[others_end][along]);
         // The time is the gap over the way.
-        let way = self.motion[axis].abs();
-        compare((apart, way), (self.gap(axis), self.motion[along]))
+        compare((apart, entry.motion.abs()), (entry.gap, self.motion[along]))
     }
 
-    /// Of the corners of one box that come to the other's face along an axis, the first one by the
-    /// order of features, and where it is at the start.
-    fn first_in_face(&self, axis: usize, side: Side) -> Option<(Feature, DVec3)> {
-        let ends = self.touching_ends(axis);
-        let (own, end, other, others_end) = match side {
-            Side::First => (&self.first, ends.0, &self.second, ends.1),
-            Side::Second => (&self.second, ends.1, &self.first, ends.0),
-        };
-        let is_inside = |corner: usize| {
-            (0..3).filter(|&along| along != axis).all(|along| {
-                let end = corner >> along & 1;
-                let (over_low, over_high) = match side {
-                    Side::First => ((end, 0), (end, 1)),
-                    Side::Second => ((1, end), (0, end)),
-                };
-                self.height(axis, along, over_low) != Less
-                    && self.height(axis, along, over_high) != Greater
-            })
-        };
-        let corners = (0..8).filter(|&corner| corner >> axis & 1 == end && is_inside(corner));
+    /// Of the first one's corners that come into the other's face, the first one as a feature, and
+    /// where it is at the start.
+    fn first_of_first(&self, entry: &Entry) -> Option<(Feature, DVec3)> {
+        let (own, other) = (&self.first, &self.second);
+        let corners = corners_within(entry.axis, entry.ends.0, |along, end| {
+            self.height(entry, along, end, 0) != Less
+                && self.height(entry, along, end, 1) != Greater
+        });
+        let corner = corners.min_by_key(|&corner| own.cuboid.vertices[corner])?;
+        let at = Cuboid::corner(&own.ends, corner);
+        let vertex = own.cuboid.vertices[corner];
+        let face = other.triangle_met(entry.axis, entry.ends.1, at, self.motion);
+        Some((Feature::VertexFace { vertex, face }, at))
+    }
+
+    /// The same of the second one's corners.
+    fn first_of_second(&self, entry: &Entry) -> Option<(Feature, DVec3)> {
+        let (own, other) = (&self.second, &self.first);
+        let corners = corners_within(entry.axis, entry.ends.1, |along, end| {
+            self.height(entry, along, 0, end) != Greater
+                && self.height(entry, along, 1, end) != Less
+        });
         let features = corners.map(|corner| {
             let at = Cuboid::corner(&own.ends, corner);
             let vertex = own.cuboid.vertices[corner];
-            let face = other.triangle_met(axis, others_end, at, self.motion);
-            let feature = match side {
-                Side::First => Feature::VertexFace { vertex, face },
-                Side::Second => Feature::FaceVertex { face, vertex },
-            };
-            (feature, at)
+            let face = other.triangle_met(entry.axis, entry.ends.0, at, self.motion);
+            (Feature::FaceVertex { face, vertex }, at)
         });
         features.min_by_key(|&(feature, _)| feature)
     }
+}
+
+/// The corners at one end of an axis whose ends along the others are within.
+fn corners_within(
+    axis: usize,
+    end: usize,
+    is_within: impl Fn(usize, usize) -> bool,
+) -> impl Iterator<Item = usize> {
+    let ends = [0, 1, 2].map(|along| {
+        [0, 1].map(|of| match along == axis {
+            true => of == end,
+            false => is_within(along, of),
+        })
+    });
+    (0..8).filter(move |&corner| (0..3).all(|along| ends[along][corner >> along & 1]))
 }
 
 impl Placed<'_> {

@@ -16,7 +16,7 @@ use core::ops::RangeInclusive;
 use glam::DVec3;
 
 use crate::{
-    Body, Bvh, Force, Mesh, Shape,
+    Body, Bvh, Extent, Force, Mesh, Shape,
     collide::Form,
     integrate::{Method, Scratch},
 };
@@ -87,6 +87,7 @@ pub struct World {
 #[derive(Clone, Debug)]
 struct Solid {
     shape: Shape,
+    extent: Extent,
     bvh: Option<Arc<Bvh>>,
 }
 
@@ -410,18 +411,28 @@ impl World {
         };
         let known = self.solids.iter().position(|solid| same(&solid.shape));
         known.unwrap_or_else(|| {
-            self.solids.push(Solid { shape, bvh: None });
+            self.solids.push(Solid {
+                extent: shape.extent(),
+                shape,
+                bvh: None,
+            });
             self.solids.len() - 1
         }) as u32
     }
 
     fn need_bvh(&mut self, body: usize) {
         if let Some(shape) = self.shape[body] {
-            let Solid { shape, bvh } = &mut self.solids[shape as usize];
+            let Solid { shape, bvh, .. } = &mut self.solids[shape as usize];
             if let (Shape::Mesh(mesh), None) = (shape, &bvh) {
                 *bvh = Some(Arc::new(Bvh::build(mesh)));
             }
         }
+    }
+
+    /// How far a body's shape reaches about its position.
+    fn extent(&self, body: usize) -> Extent {
+        self.solid_of(body)
+            .map_or_else(Extent::default, |solid| solid.extent)
     }
 
     /// A body's shape for questions about pairs; a mesh has one once its tree is built.

@@ -17,12 +17,53 @@ impl Swept {
         body: usize::MAX,
     };
 
-    /// Most are found apart along the first axis or two.
     #[inline(always)]
     pub(super) fn meets(&self, other: &Swept) -> bool {
-        let meet =
-            |axis: usize| self.min[axis] <= other.max[axis] && other.min[axis] <= self.max[axis];
-        meet(0) && meet(1) && meet(2)
+        self.meets_along([0, 1, 2], other)
+    }
+
+    /// Whether they overlap along some axes. By the widest gap, as branches would often be mispredicted.
+    #[inline(always)]
+    pub(super) fn meets_along<const N: usize>(&self, axes: [usize; N], other: &Swept) -> bool {
+        let gap = axes.into_iter().fold(f64::NEG_INFINITY, |gap, axis| {
+            let (before, after) = (
+                self.begin(axis) - other.end(axis),
+                other.begin(axis) - self.end(axis),
+            );
+            greater(gap, greater(before, after))
+        });
+        gap <= 0.0
+    }
+
+    /// Its low end along an axis; of an array, as an index into a vector is a match.
+    #[inline(always)]
+    pub(super) fn begin(&self, axis: usize) -> f64 {
+        let min: &[f64; 3] = self.min.as_ref();
+        min[axis]
+    }
+
+    #[inline(always)]
+    pub(super) fn end(&self, axis: usize) -> f64 {
+        let max: &[f64; 3] = self.max.as_ref();
+        max[axis]
+    }
+
+    /// Whether a box lies within it.
+    #[inline(always)]
+    pub(super) fn holds(&self, other: &Swept) -> bool {
+        let inside = |axis: usize| {
+            (self.begin(axis) <= other.begin(axis)) & (other.end(axis) <= self.end(axis))
+        };
+        inside(0) & inside(1) & inside(2)
+    }
+
+    /// With a margin all around.
+    pub(super) fn grown_by(&self, margin: DVec3) -> Swept {
+        Swept {
+            min: self.min - margin,
+            max: self.max + margin,
+            body: self.body,
+        }
     }
 
     pub(super) fn with(&self, other: &Swept) -> Swept {
@@ -42,6 +83,7 @@ pub(crate) struct Front {
     pub(crate) level: f64,
     /// More than is lost in rounding.
     pub(crate) slack: f64,
+    pub(crate) body: usize,
 }
 
 impl Front {
@@ -108,9 +150,8 @@ impl Row {
     /// A bit for each that meets a box.
     #[inline(always)]
     pub(super) fn meeting(&self, of: &Swept) -> u32 {
-        // The widest gap along an axis; of numbers that differ it is not zero.
+        // The widest gap along an axis.
         let mut gaps = [f64::NEG_INFINITY; WIDTH];
-        let greater = |x: f64, y: f64| if x > y { x } else { y };
         for axis in 0..3 {
             let (low, high) = (of.min[axis], of.max[axis]);
             let (min, max) = (&self.min[axis], &self.max[axis]);
@@ -144,8 +185,48 @@ impl Row {
     }
 }
 
+/// One instruction, as `f64::max` is not. A difference of numbers that differ is not zero.
+#[inline(always)]
+fn greater(x: f64, y: f64) -> f64 {
+    if x > y { x } else { y }
+}
+
 #[inline(always)]
 fn bits(lanes: [bool; WIDTH]) -> u32 {
     let lanes = lanes.iter().enumerate();
     lanes.fold(0, |bits, (lane, &is)| bits | u32::from(is) << lane)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_box_with_a_corner_behind_a_plane_is_passed_over() {
+        let swept = Swept {
+            min: DVec3::new(-0.1, 0.2, 0.3),
+            max: DVec3::new(0.4, 0.5, 0.9),
+            body: 0,
+        };
+        for normal in [DVec3::X, DVec3::NEG_X, DVec3::new(0.0, -0.6, 0.8)] {
+            let corners = (0..8).map(|i| {
+                let end = |axis: usize| [swept.min, swept.max][i >> axis & 1][axis];
+                normal.dot(DVec3::new(end(0), end(1), end(2)))
+            });
+            let nearest = corners.fold(f64::INFINITY, f64::min);
+            let may_meet = |level: f64| {
+                let slack = 0.0;
+                let front = Front {
+                    normal,
+                    level,
+                    slack,
+                    body: 1,
+                };
+                let row = Row::of(&[swept]).reaching(&front);
+                assert_eq!(front.may_meet(&swept), row == 1);
+                front.may_meet(&swept)
+            };
+            assert!(may_meet(nearest) && may_meet(nearest + 0.1) && !may_meet(nearest - 1e-9));
+        }
+    }
 }

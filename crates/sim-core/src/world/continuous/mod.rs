@@ -25,7 +25,7 @@ use glam::DVec3;
 
 use super::{StepError, World, state::State, stepping::Cause};
 use crate::{
-    Shape,
+    Extent, Shape,
     collide::{Broad, Contact, Front, Swept},
 };
 use respond::{Answer, Rest};
@@ -47,8 +47,8 @@ pub(super) struct Continuous {
     acceleration: Vec<DVec3>,
     /// How long before that of its way a body's velocity is the one that the method keeps, s.
     lag: f64,
-    /// How often each body has come to rest in this step; one that has too often stops for the rest
-    /// of it.
+    /// How often each body has come to rest in this step, once one has; one that has too often stops
+    /// for the rest of it.
     rests: Vec<u32>,
     /// Contacts whose bodies stay together for the rest of the step.
     resting: Vec<Rest>,
@@ -56,8 +56,6 @@ pub(super) struct Continuous {
     /// Pairs that have come near in this step.
     near: Vec<(usize, usize)>,
     broad: Broad,
-    /// Half-spaces, which no box holds.
-    walls: Vec<usize>,
     probe: Probe,
     renewed_motion: Vec<(DVec3, DVec3)>,
     /// Bodies whose ways are new, and bodies that may come near one of them.
@@ -143,27 +141,17 @@ impl World {
     /// Seeks the first impact of every pair that may have one.
     fn seek_all(&mut self) -> Result<(), (usize, Cause)> {
         let mut broad = mem::take(&mut self.continuous.broad);
-        let mut walls = mem::take(&mut self.continuous.walls);
         let mut near = mem::take(&mut self.continuous.near);
-        let is_wall = |&body: &usize| matches!(self.shape(body), Some(Shape::HalfSpace { .. }));
-        walls.clear();
-        walls.extend(self.solid.iter().copied().filter(is_wall));
         broad.fill(
-            self.solid
-                .iter()
-                .filter(|&body| !is_wall(body))
-                .map(|&body| self.swept(body)),
+            &self.solid,
+            |body| self.swept(body),
+            |body| self.front(body),
         );
         near.clear();
         broad.each_pair(|i, j| near.push((i, j)));
-        for &wall in &walls {
-            let front = self.front(wall);
-            broad.each_before(&front, |body| near.push((wall.min(body), wall.max(body))));
-        }
         near.retain(|&(i, j)| self.may_collide(i, j));
         let count = near.len();
         self.continuous.broad = broad;
-        self.continuous.walls = walls;
         self.continuous.near = near;
         self.continuous.events.clear();
         for place in 0..count {
@@ -249,23 +237,25 @@ impl World {
         None
     }
 
+    /// Takes what a body sweeps on its new way in the place of what it swept.
+    fn replace(&mut self, body: usize) {
+        if let Some(front) = self.front(body) {
+            self.continuous.broad.replace_front(front);
+        } else if self.shape[body].is_some() {
+            let swept = self.swept(body);
+            self.continuous.broad.replace(swept);
+        }
+    }
+
     /// Seeks the next impacts of a body whose way is new. Of two such, the pair is sought once.
     fn seek_from(&mut self, body: usize, renewed: &[usize]) -> Result<(), (usize, Cause)> {
-        let Some(is_bounded) = self.shape(body).map(Shape::is_bounded) else {
+        if self.shape(body).is_none() {
             return Ok(());
-        };
+        }
         let mut partners = mem::take(&mut self.continuous.partners);
         partners.clear();
-        if is_bounded {
-            let swept = self.swept(body);
-            let ways = &self.continuous;
-            ways.broad
-                .each_partner(&swept, |other| partners.push(other));
-            let walls = ways.walls.iter().copied();
-            partners.extend(walls.filter(|&wall| self.front(wall).may_meet(&swept)));
-        } else {
-            partners.extend(self.solid.iter().filter(|&&other| other != body));
-        }
+        let broad = &self.continuous.broad;
+        broad.each_partner(body, |other| partners.push(other));
         for &other in &partners {
             if !self.may_collide(body, other) || (other < body && renewed.contains(&other)) {
                 continue;
@@ -291,41 +281,38 @@ impl World {
             self.continuous.start.position[body],
             self.current.position[body],
         );
-        let (low, high) = match self.shape(body) {
-            Some(Shape::Mesh(mesh)) => {
-                let bounds = mesh.bounds();
-                (bounds.min.as_dvec3(), bounds.max.as_dvec3())
-            }
-            Some(&Shape::Sphere { radius }) => (DVec3::splat(-radius), DVec3::splat(radius)),
-            Some(Shape::HalfSpace { .. }) | None => (DVec3::ZERO, DVec3::ZERO),
-        };
-        let bulge = self.bulge(body);
-        let (min, max) = (from.min(to) + low - bulge, from.max(to) + high + bulge);
+        let Extent {
+            low,
+            high,
+            farthest,
+            ..
+        } = self.extent(body);
         // More than is lost in rounding, here and where vertices are placed.
-        let slack = 8.0 * f64::EPSILON * (from.abs() + to.abs() + low.abs() + high.abs());
+        let size = from.abs() + to.abs() + 2.0 * farthest;
+        let reach = self.bulge(body) + 8.0 * f64::EPSILON * size;
         Swept {
-            min: min - slack,
-            max: max + slack,
+            min: from.min(to) + low - reach,
+            max: from.max(to) + high + reach,
             body,
         }
     }
 
-    /// The farthest that the plane of a half-space comes on its way.
-    fn front(&self, wall: usize) -> Front {
-        let normal = match self.shape(wall) {
-            Some(&Shape::HalfSpace { normal }) => normal,
-            _ => DVec3::ZERO,
+    /// The farthest that the plane of a body comes on its way, if it is a half-space.
+    fn front(&self, wall: usize) -> Option<Front> {
+        let &Shape::HalfSpace { normal } = self.shape(wall)? else {
+            return None;
         };
         let (from, to) = (
             self.continuous.start.position[wall],
             self.current.position[wall],
         );
         let bulge = self.bulge(wall).dot(normal.abs());
-        Front {
+        Some(Front {
             normal,
+            body: wall,
             level: normal.dot(from).max(normal.dot(to)) + bulge,
             // More than is lost in rounding.
             slack: 16.0 * f64::EPSILON * (from.length() + to.length()),
-        }
+        })
     }
 }

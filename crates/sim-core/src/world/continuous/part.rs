@@ -60,7 +60,8 @@ impl World {
             let meeting: Vec<_> = meeting.copied().collect();
             let parted = meeting.iter().filter(|&&(i, j)| {
                 // Vertices are f32: what looks flush is so to their rounding.
-                let rounding = f64::from(f32::EPSILON) * (self.farthest(i) + self.farthest(j));
+                let rounding =
+                    f64::from(f32::EPSILON) * (self.extent(i).farthest + self.extent(j).farthest);
                 self.part(i, j, 4.0 * rounding)
             });
             let parted = parted.count();

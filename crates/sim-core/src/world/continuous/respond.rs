@@ -63,6 +63,7 @@ impl World {
         for event in group.iter_mut() {
             self.choose(event);
             if event.answer != Answer::Bounce {
+                self.continuous.rests.resize(self.len(), 0);
                 for body in [event.bodies.0, event.bodies.1] {
                     self.continuous.rests[body] += u32::from(self.is_moved(body));
                 }
@@ -97,10 +98,7 @@ impl World {
             self.finish_way(bodies)?;
         }
         for &body in &renewed {
-            if self.shape(body).is_some_and(|shape| shape.is_bounded()) {
-                let swept = self.swept(body);
-                self.continuous.broad.replace(swept);
-            }
+            self.replace(body);
         }
         for &body in &renewed {
             self.seek_from(body, &renewed)?;

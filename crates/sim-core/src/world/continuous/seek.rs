@@ -10,10 +10,7 @@ use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
 use super::{Event, Probe, respond::Answer};
-use crate::{
-    collide::{Contact, first_contact, snap},
-    shape::Shape,
-};
+use crate::collide::{Contact, first_contact, snap};
 
 /// Departure of a chord from its way that is looked past, in largest half extents of the smaller
 /// body.
@@ -53,7 +50,7 @@ impl World {
             grain: self.grain(i, j),
         };
         let (start, end) = (self.start_of(pair), self.settings.dt);
-        let size = self.half_extent(i).min(self.half_extent(j));
+        let size = self.extent(i).half.min(self.extent(j).half);
         let length = end - start;
         let mut from = (start, self.offset_at(pair, start, probe)?);
         // A point has no extent: its way must do.
@@ -155,7 +152,7 @@ impl World {
             0.25 * grain
         };
         let mut back = (room * length / fall).max(f64::MIN_POSITIVE);
-        if self.half_extent(i).max(self.half_extent(j)) == 0.0 {
+        if self.extent(i).half.max(self.extent(j).half) == 0.0 {
             // Points that have passed each other by a rounding of the time do not meet.
             back = back.max(ULPS * f64::EPSILON * touching);
         }
@@ -211,29 +208,7 @@ impl World {
     /// What the rounding of positions and placed vertices may be, m.
     pub(super) fn grain(&self, i: usize, j: usize) -> f64 {
         let at = &self.current.position;
-        let far = |body: usize| at[body].abs().max_element() + self.farthest(body);
+        let far = |body: usize| at[body].abs().max_element() + self.extent(body).farthest;
         ULPS * f64::EPSILON * (far(i) + far(j))
-    }
-
-    /// Largest coordinate of a body's shape about its origin, m.
-    pub(super) fn farthest(&self, body: usize) -> f64 {
-        match self.shape(body) {
-            Some(Shape::Mesh(mesh)) => {
-                let bounds = mesh.bounds();
-                f64::from(bounds.min.abs().max(bounds.max.abs()).max_element())
-            }
-            Some(&Shape::Sphere { radius }) => radius,
-            Some(Shape::HalfSpace { .. }) | None => 0.0,
-        }
-    }
-
-    /// Largest half extent of a body's shape, m.
-    fn half_extent(&self, body: usize) -> f64 {
-        match self.shape(body) {
-            Some(Shape::Mesh(mesh)) => mesh.bounds().half_extent().max_element(),
-            Some(&Shape::Sphere { radius }) => radius,
-            Some(Shape::HalfSpace { .. }) => f64::INFINITY,
-            None => 0.0,
-        }
     }
 }

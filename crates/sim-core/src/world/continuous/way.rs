@@ -62,17 +62,22 @@ impl World {
         ways.since.clear();
         ways.since.resize(n, 0.0);
         ways.rests.clear();
-        ways.rests.resize(n, 0);
         ways.version.clear();
         ways.version.resize(n, 0);
     }
 
     /// The bodies that must be stepped with one, and whether they are coupled; `None` where its
     /// way is a parabola.
+    #[inline(always)]
     pub(super) fn unit(&self, body: usize) -> Option<(Range<usize>, bool)> {
-        if self.continuous.is_free {
-            return None;
+        match self.continuous.is_free {
+            true => None,
+            false => self.unit_among_forced(body),
         }
+    }
+
+    #[inline(never)]
+    fn unit_among_forced(&self, body: usize) -> Option<(Range<usize>, bool)> {
         let sections = self.plan.as_ref().map_or(&[][..], |plan| &plan.sections);
         let section = sections.get(sections.partition_point(|s| s.bodies.end <= body));
         match section.filter(|section| section.bodies.contains(&body)) {
@@ -247,7 +252,13 @@ impl World {
     }
 
     /// Whether a body, or one coupled to it, has come to rest too often in this step.
+    #[inline(always)]
     pub(super) fn is_stopped(&self, body: usize) -> bool {
+        !self.continuous.rests.is_empty() && self.rests_too_often(body)
+    }
+
+    #[inline(never)]
+    fn rests_too_often(&self, body: usize) -> bool {
         let rests = &self.continuous.rests;
         let Some((bodies, _)) = self.unit(body) else {
             return rests[body] > MOST_RESTS;
@@ -257,6 +268,7 @@ impl World {
 
     /// How far a body's way departs from its chord, m, by component: at most so on a parabola, about so
     /// where the method makes the way, but not where it turns round and back within a step.
+    #[inline(always)]
     pub(super) fn bulge(&self, body: usize) -> DVec3 {
         let ways = &self.continuous;
         let h = self.settings.dt - ways.since[body];
