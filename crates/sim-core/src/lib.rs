@@ -75,6 +75,7 @@ mod body;
 pub mod bvh;
 mod clock;
 pub mod collide;
+mod expansion;
 mod force;
 pub mod impulse;
 mod integrate;

@@ -10,12 +10,14 @@ use core::cmp::Ordering::{self, Equal, Greater, Less};
 use glam::DVec3;
 
 use super::{
-    expansion::{Expansion, two_sum},
     sweep::opposing_cmp,
     touch::{Feature, Touch},
     triple::{Difference, floor_of_quotient, sign},
 };
-use crate::bvh::Cuboid;
+use crate::{
+    bvh::Cuboid,
+    expansion::{Expansion, two_sum},
+};
 
 /// It takes triangles to tell.
 #[derive(Debug)]

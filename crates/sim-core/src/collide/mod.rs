@@ -7,7 +7,6 @@ mod apart;
 mod ball;
 mod broad;
 mod cuboids;
-mod expansion;
 mod form;
 mod hit;
 pub mod moving;

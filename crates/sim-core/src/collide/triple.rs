@@ -4,10 +4,8 @@
 use core::cmp::Ordering;
 use glam::DVec3;
 
-use super::{
-    expansion::{Expansion, two_product, two_sum},
-    plane::{Cross, Estimate},
-};
+use super::plane::{Cross, Estimate};
+use crate::expansion::{Expansion, two_product, two_sum};
 
 /// A vector `0 - 1` without rounding.
 #[derive(Clone, Copy, Debug)]

@@ -14,6 +14,7 @@ mod together;
 
 use glam::DVec3;
 
+use crate::expansion::two_sum;
 pub use together::{Joined, project, reflect};
 
 /// What two bodies exchange.
@@ -22,42 +23,60 @@ pub struct Exchange {
     /// On the second body along the normal, and on the first against it, N s per length of the
     /// normal.
     pub impulse: f64,
-    /// What that changes of the first body's velocity and of the second's, in normals.
-    pub change: (f64, f64),
+    /// Velocities of the first body and of the second after it, m/s.
+    pub after: (DVec3, DVec3),
 }
 
 /// The impulse after which two bodies of masses `m1`, `m2` (kg; one may be infinite) and velocities
 /// `v1`, `v2` (m/s) part along `normal` with the part `restitution` (0 to 1) of the speed at which
 /// they approach; `None` unless they do, and where nothing moves either.
+///
+/// Along an axis, velocities are rounded once. What differences lose is kept ([`two_sum`]): bodies
+/// that meet millions of times lose it the same way again and again.
 pub fn between(
     (m1, v1): (f64, DVec3),
     (m2, v2): (f64, DVec3),
     normal: DVec3,
     restitution: f64,
 ) -> Option<Exchange> {
-    let parting = (v2 - v1).dot(normal);
+    let (relative, lost) = sum(v2, -v1);
+    let parting = relative.dot(normal);
     if parting >= 0.0 || parting.is_nan() {
         return None;
     }
     // Divided by n·n, an elastic exchange conserves energy however `normal` was rounded.
-    let both = -(1.0 + restitution) * parting / normal.length_squared();
+    let factor = -(1.0 + restitution) / normal.length_squared();
+    let (both, lost) = (factor * parting, factor * lost.dot(normal));
     // The heavier one's small share first, and the rest to the other: where masses differ by orders
     // of magnitude and meet again and again, no rounding of a share near one adds up.
     let (light, heavy) = (m1.min(m2), m1.max(m2));
     if light.is_infinite() {
         return None;
     }
-    let of_heavy = both * (light / (light + heavy));
-    let of_light = both - of_heavy;
-    let (first, second) = if m1 <= m2 {
-        (of_light, of_heavy)
-    } else {
-        (of_heavy, of_light)
+    let share = light / (light + heavy);
+    let of_heavy = (both * share, lost * share);
+    let (of_light, rest) = two_sum(both, -of_heavy.0);
+    let of_light = (of_light, rest + (lost - of_heavy.1));
+    let (first, second) = match m1 <= m2 {
+        true => (of_light, of_heavy),
+        false => (of_heavy, of_light),
     };
     Some(Exchange {
-        impulse: light * of_light,
-        change: (-first, second),
+        impulse: light * of_light.0,
+        after: (changed(v1, first, -normal), changed(v2, second, normal)),
     })
+}
+
+/// `v + by normal`, with `by` a sum of two.
+fn changed(v: DVec3, by: (f64, f64), normal: DVec3) -> DVec3 {
+    let (sum, lost) = sum(v, by.0 * normal);
+    sum + (lost + by.1 * normal)
+}
+
+/// A sum by components, and what rounding took.
+fn sum(u: DVec3, v: DVec3) -> (DVec3, DVec3) {
+    let [x, y, z] = [0, 1, 2].map(|axis| two_sum(u[axis], v[axis]));
+    (DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1))
 }
 
 #[cfg(test)]
@@ -69,8 +88,8 @@ mod tests {
         for (m1, m2) in [(1.0, 1.0), (1.0, 3.0), (2.0, 1e3), (1.0, 1e12), (1e6, 1e-6)] {
             let (u1, u2) = (10.0, -4.0);
             let n = DVec3::X;
-            let change = between((m1, u1 * n), (m2, u2 * n), n, 1.0).unwrap().change;
-            let (w1, w2) = (u1 + change.0, u2 + change.1);
+            let after = between((m1, u1 * n), (m2, u2 * n), n, 1.0).unwrap().after;
+            let (w1, w2) = (after.0.x, after.1.x);
             let exact1 = ((m1 - m2) * u1 + 2.0 * m2 * u2) / (m1 + m2);
             let exact2 = ((m2 - m1) * u2 + 2.0 * m1 * u1) / (m1 + m2);
             assert!(
@@ -89,8 +108,7 @@ mod tests {
         let (m1, v1) = (2.0, DVec3::new(1.0, 2.0, -0.5));
         let (m2, v2) = (0.7, DVec3::new(-3.0, 0.25, 1.0));
         for n in [DVec3::new(1.0, 0.3, 0.1), DVec3::new(2e3, -1e2, 7.0)] {
-            let change = between((m1, v1), (m2, v2), n, 1.0).unwrap().change;
-            let (w1, w2) = (v1 + change.0 * n, v2 + change.1 * n);
+            let (w1, w2) = between((m1, v1), (m2, v2), n, 1.0).unwrap().after;
             let energy = |a: DVec3, b: DVec3| m1 * a.length_squared() + m2 * b.length_squared();
             assert!((energy(w1, w2) / energy(v1, v2) - 1.0).abs() < 1e-15);
             assert!((m1 * w1 + m2 * w2 - m1 * v1 - m2 * v2).length() < 1e-14);
@@ -113,7 +131,7 @@ mod tests {
         let wall = (f64::INFINITY, DVec3::new(-3.0, 0.0, 0.0));
         for e in [0.0, 0.25, 1.0] {
             let given = between((2.0, DVec3::X), wall, DVec3::X, e).unwrap();
-            assert_eq!(given.change, (-4.0 - e * 4.0, 0.0));
+            assert_eq!(given.after, (DVec3::NEG_X * (3.0 + e * 4.0), wall.1));
             assert_eq!(given.impulse, 8.0 + e * 8.0);
         }
     }

@@ -179,7 +179,7 @@ impl World {
         let Some(given) = impulse::between((m1, v1), (m2, v2), normal, restitution) else {
             return (v1, v2);
         };
-        let after = (v1 + given.change.0 * normal, v2 + given.change.1 * normal);
+        let after = given.after;
         let speeds = ((v1 - v2).dot(normal), (after.1 - after.0).dot(normal));
         self.note_impact(bodies, contact, given.impulse, speeds, time);
         after

@@ -7,25 +7,25 @@ use core::cmp::Ordering;
 
 /// A sum of at most `N` terms, exact as long as nothing over- or underflows.
 #[derive(Clone)]
-pub(super) struct Expansion<const N: usize> {
+pub(crate) struct Expansion<const N: usize> {
     /// The first `len` do not overlap, grow, and are not zero.
     terms: [f64; N],
     len: usize,
 }
 
 impl<const N: usize> Expansion<N> {
-    pub(super) const ZERO: Expansion<N> = Expansion {
+    pub(crate) const ZERO: Expansion<N> = Expansion {
         terms: [0.0; N],
         len: 0,
     };
 
-    pub(super) fn terms(&self) -> &[f64] {
+    pub(crate) fn terms(&self) -> &[f64] {
         &self.terms[..self.len]
     }
 
     /// Adds a number; at most `N` times but for zeros (Shewchuk's GROW-EXPANSION, without the zeros).
     #[inline]
-    pub(super) fn add(&mut self, x: f64) {
+    pub(crate) fn add(&mut self, x: f64) {
         if x == 0.0 {
             return;
         }
@@ -47,13 +47,13 @@ impl<const N: usize> Expansion<N> {
 
     /// Adds a product of two numbers, as two terms.
     #[inline(always)]
-    pub(super) fn add_product(&mut self, x: f64, y: f64) {
+    pub(crate) fn add_product(&mut self, x: f64, y: f64) {
         let (high, low) = two_product(x, y);
         self.add(low);
         self.add(high);
     }
 
-    pub(super) fn sign(&self) -> Ordering {
+    pub(crate) fn sign(&self) -> Ordering {
         match self.terms().last() {
             Some(&largest) if largest > 0.0 => Ordering::Greater,
             Some(_) => Ordering::Less,
@@ -62,14 +62,14 @@ impl<const N: usize> Expansion<N> {
     }
 
     /// To within some units in the last place: each term is below the lowest digit of the next.
-    pub(super) fn rounded(&self) -> f64 {
+    pub(crate) fn rounded(&self) -> f64 {
         self.terms().iter().sum()
     }
 }
 
 /// `x + y` as a rounded sum and what rounding took.
 #[inline(always)]
-pub(super) fn two_sum(x: f64, y: f64) -> (f64, f64) {
+pub(crate) fn two_sum(x: f64, y: f64) -> (f64, f64) {
     let sum = x + y;
     let of_y = sum - x;
     let of_x = sum - of_y;
@@ -78,7 +78,7 @@ pub(super) fn two_sum(x: f64, y: f64) -> (f64, f64) {
 
 /// `x y` as a rounded product and what rounding took; `x` and `y` up to 2^990.
 #[inline(always)]
-pub(super) fn two_product(x: f64, y: f64) -> (f64, f64) {
+pub(crate) fn two_product(x: f64, y: f64) -> (f64, f64) {
     let product = x * y;
     let ((a, b), (c, d)) = (halves(x), halves(y));
     (product, b * d - (((product - a * c) - b * c) - a * d))
