@@ -291,7 +291,7 @@ pub(crate) static CASES: [Case; 29] = [
     case(
         21,
         "far from the origin",
-        "as at the origin: velocities to the bit, positions to a rounding of two steps and two units in the last place",
+        "as at the origin: velocities to the bit, positions to two units in the last place there",
         Test::Tried(impacts::pairs::far_away),
     ),
     case(

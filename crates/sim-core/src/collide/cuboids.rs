@@ -67,6 +67,19 @@ pub(super) fn first_touch(
     }))
 }
 
+/// Whether the surfaces of two boxes share a point, the second one displaced by `offset`, m.
+pub(super) fn meet(first: &Cuboid, second: &Cuboid, offset: DVec3) -> bool {
+    let [low, high] = first.ends;
+    let [others_low, others_high] = second.ends.map(|end| end + offset);
+    let is_inside = |[low, high]: [DVec3; 2], [others_low, others_high]: [DVec3; 2]| {
+        others_low.cmplt(low).all() && high.cmplt(others_high).all()
+    };
+    low.cmple(others_high).all()
+        && others_low.cmple(high).all()
+        && !is_inside([low, high], [others_low, others_high])
+        && !is_inside([others_low, others_high], [low, high])
+}
+
 /// A box, and where its low and its high corner are.
 struct Placed<'a> {
     cuboid: &'a Cuboid,
@@ -236,7 +249,10 @@ mod tests {
     use super::*;
     use crate::Mesh;
     use crate::bvh::Bvh;
-    use crate::collide::sweep::{Kind, Search};
+    use crate::collide::{
+        sweep::{Kind, Search},
+        tree,
+    };
     use crate::test_meshes::cube;
     use alloc::format;
     use glam::DQuat;
@@ -292,6 +308,7 @@ mod tests {
             let offset = offset + noise * random.three(1 << 20) / f64::from(1 << 20);
             let motion = motion + noise * random.three(1 << 20) / f64::from(1 << 20);
             let (a, b) = (first.cuboid().unwrap(), second.cuboid().unwrap());
+            assert_eq!(meet(a, b, offset), tree::intersect(&first, &second, offset));
             let expected = Search::run(Kind::Entering, (&first, &second), offset, motion).best();
             match first_touch(a, b, offset, motion) {
                 Err(Untold) => untold += 1,

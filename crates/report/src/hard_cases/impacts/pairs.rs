@@ -196,5 +196,5 @@ pub(in super::super) fn far_away() -> Tried {
     } else {
         figure
     };
-    Ok(Finding::within(figure, 4.0, why))
+    Ok(Finding::within(figure, 2.0, why))
 }

@@ -149,7 +149,7 @@ impl World {
         let room = if self.are_pressed(i, j) {
             grain
         } else {
-            0.25 * grain
+            0.0625 * grain
         };
         let mut back = (room * length / fall).max(f64::MIN_POSITIVE);
         if self.extent(i).half.max(self.extent(j).half) == 0.0 {
