@@ -3,6 +3,7 @@
 //! `cargo bench -- impacts` runs all, prints tables and leaves them in `target/impacts.md`;
 //! `cargo bench -- impacts/crowd` runs a part. It fails if an answer of ours is wrong.
 
+mod boxes;
 mod crowd;
 mod galperin;
 mod one;
@@ -17,6 +18,8 @@ mod scene;
 mod table;
 mod watch;
 
+extern crate alloc;
+
 use std::path::Path;
 
 use table::Table;
@@ -25,6 +28,7 @@ fn main() {
     let mut criterion = watch::criterion();
     let tables = [
         pair::bench(&mut criterion),
+        boxes::bench(&mut criterion),
         crowd::bench(&mut criterion),
         one::bench(&mut criterion),
         galperin::bench(&mut criterion),
