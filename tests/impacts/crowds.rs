@@ -1,7 +1,8 @@
-//! A hundred bodies in a closed box: case 26.
+//! A hundred bodies in a closed box: case 26; and heaps.
 
 use sim_core::{Body, DVec3, Vec3, World};
 
+use crate::balls::G;
 use crate::shapes::{boxes, cube};
 use crate::worlds::{DT, Kept, ball, bits, immovable, mesh_body, run, wall, world};
 
@@ -136,4 +137,60 @@ fn a_crowd_has_the_same_bits_twice() {
         (bits(&world), impacts)
     });
     assert_eq!(first, second);
+}
+
+/// Balls of 1 kg that fall in a column of square layers, between walls.
+fn heap(count: usize, restitution: f64) -> World {
+    const RADIUS: f64 = 0.25;
+    let mut random = Random(5);
+    let side = 2;
+    let half = 0.3 * side as f64;
+    let mut bodies = vec![wall(DVec3::Y, DVec3::ZERO, DVec3::ZERO)];
+    for normal in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z] {
+        bodies.push(wall(normal, -half * normal, DVec3::ZERO));
+    }
+    for i in 0..count {
+        let cell = [i % side, i / side / side, i / side % side].map(|c| 0.6 * c as f64 + 0.3);
+        let at = DVec3::from_array(cell) - DVec3::new(half, 0.0, half);
+        bodies.push(Body {
+            force: -G * DVec3::Y,
+            ..ball(RADIUS, at + 0.02 * random.vector(), DVec3::ZERO)
+        });
+    }
+    for body in &mut bodies {
+        body.restitution = restitution;
+    }
+    world(DT, &bodies)
+}
+
+#[test]
+fn heaps_settle_without_gain() {
+    for restitution in [0.0, 0.3, 0.7] {
+        let mut world = heap(12, restitution);
+        let energy = |world: &World| {
+            let heights = (5..world.len()).map(|ball| world.position(ball).y);
+            world.kinetic_energy() + G * heights.sum::<f64>()
+        };
+        let mut before = energy(&world);
+        for step in 0..100 {
+            world
+                .step()
+                .unwrap_or_else(|error| panic!("{restitution}: {error}"));
+            let after = energy(&world);
+            // What has stopped in a step may gain by it.
+            assert!(
+                after <= before + 5e-3,
+                "{restitution}, {step}: {before} {after}"
+            );
+            before = after;
+            for i in 5..world.len() {
+                let at = world.position(i);
+                assert!(at.y >= 0.25 && at.x.abs().max(at.z.abs()) <= 0.35);
+                for j in 5..i {
+                    assert!((at - world.position(j)).length() > 0.5);
+                }
+            }
+        }
+        assert!(world.kinetic_energy() < 1.0, "{restitution}");
+    }
 }

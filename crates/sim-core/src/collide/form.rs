@@ -156,7 +156,7 @@ pub(crate) fn parting_normals(first: Form<'_>, second: Form<'_>, offset: DVec3) 
 const MOST_NORMALS: usize = 32;
 
 /// How far a shape extends against `normal`, and where.
-fn reach(shape: Form<'_>, normal: DVec3) -> (f64, DVec3) {
+pub(super) fn reach(shape: Form<'_>, normal: DVec3) -> (f64, DVec3) {
     match shape {
         Form::Mesh(mesh) => {
             let (least, corner) = mesh.least_along(normal);
@@ -219,7 +219,7 @@ fn spheres(first: f64, second: f64, offset: DVec3, motion: DVec3) -> Option<Cont
 }
 
 /// Of unit length; exactly so along an axis, and whatever the length was.
-fn unit(v: DVec3) -> Option<DVec3> {
+pub(super) fn unit(v: DVec3) -> Option<DVec3> {
     let scaled = v / v.abs().max_element();
     scaled.is_finite().then(|| scaled / scaled.length())
 }

@@ -10,11 +10,12 @@
 //!
 //! The projection is `v + M⁻¹ Nᵀ λ` with `0 <= λ`, `0 <= N (v + M⁻¹ Nᵀ λ)`, each `λ` times its
 //! speed zero. Sums are taken in an order that depends on their terms alone, so that bodies in
-//! another order, and mirror images, give the same bits; but for piles of more than 32 contacts,
-//! which are solved by sweeps.
+//! another order, and mirror images, give the same bits; but for heaps of more than 32 contacts.
 
 use alloc::{vec, vec::Vec};
 use glam::DVec3;
+
+use super::complementarity::{Rows, sum};
 
 /// Two bodies in contact, and the unit normal from the first to the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +33,7 @@ impl Joined {
     }
 
     /// Part of an impulse of another contact that arrives here, by inverse mass.
-    fn shared(&self, other: &Joined, inverse_mass: &[f64]) -> f64 {
+    pub(super) fn shared(&self, other: &Joined, inverse_mass: &[f64]) -> f64 {
         let signs = |contact: &Joined| [(contact.bodies.0, -1.0), (contact.bodies.1, 1.0)];
         let mut sum = 0.0;
         for (body, sign) in signs(self) {
@@ -138,7 +139,7 @@ fn multipliers(contacts: &[Joined], inverse_mass: &[f64], velocity: &[DVec3]) ->
             let shared = contacts[0].shared(&contacts[1], inverse_mass);
             two(&wanted, [own(0), own(1)], shared)
         }
-        _ => many(contacts, inverse_mass, &wanted),
+        _ => Rows::of(contacts, inverse_mass).multipliers(&wanted),
     }
 }
 
@@ -161,190 +162,6 @@ fn two(wanted: &[f64], [a, b]: [f64; 2], shared: f64) -> Vec<f64> {
     } else {
         vec![alone[0], 0.0]
     }
-}
-
-/// Contacts are taken to push or not to push by guess, the equations of those that push solved, and
-/// the guess mended where one would pull or one that does not push closes (Júdice, Pires 1994, "A
-/// block principal pivoting algorithm for large-scale strictly monotone linear complementarity
-/// problems").
-fn many(contacts: &[Joined], inverse_mass: &[f64], wanted: &[f64]) -> Vec<f64> {
-    let rows = Rows::of(contacts, inverse_mass);
-    let scale = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
-    let mut pushes: Vec<bool> = wanted.iter().map(|&w| w > 0.0).collect();
-    let mut given = vec![0.0; contacts.len()];
-    let guesses = if contacts.len() <= FEW { GUESSES } else { 0 };
-    for guess in 0..guesses {
-        given = rows.solve(wanted, &pushes);
-        let missing = rows.missing(wanted, &given);
-        let is_wrong = |k: usize| match pushes[k] {
-            true => given[k] * rows.own(k) < -ROUNDING * scale,
-            false => missing[k] > ROUNDING * scale,
-        };
-        let wrong: Vec<usize> = (0..contacts.len()).filter(|&k| is_wrong(k)).collect();
-        if wrong.is_empty() {
-            return given.into_iter().map(|given| given.max(0.0)).collect();
-        }
-        // All at once is fast; one at a time does not go in circles.
-        let mended = if guess < GUESSES / 2 { wrong.len() } else { 1 };
-        for &k in wrong.iter().rev().take(mended) {
-            pushes[k] = !pushes[k];
-        }
-    }
-    rows.sweep(wanted, given)
-}
-
-/// So many contacts are solved to the last bits; piles of more are swept over until it is good
-/// enough for what they do: to stay where they are.
-const FEW: usize = 32;
-/// Sweeps over a pile.
-const SWEEPS: usize = 64;
-
-/// Part of the largest speed that is lost in solving.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// Guesses at which contacts push; a few are enough, by far.
-const GUESSES: usize = 40;
-
-/// The matrix `N M⁻¹ Nᵀ` by rows, of which most is zero.
-struct Rows(Vec<Vec<(usize, f64)>>);
-
-impl Rows {
-    fn of(contacts: &[Joined], inverse_mass: &[f64]) -> Rows {
-        let mut at: Vec<Vec<usize>> = vec![Vec::new(); inverse_mass.len()];
-        for (k, contact) in contacts.iter().enumerate() {
-            for body in [contact.bodies.0, contact.bodies.1] {
-                // Nothing arrives through a body that nothing moves.
-                if inverse_mass[body] > 0.0 {
-                    at[body].push(k);
-                }
-            }
-        }
-        let row = |contact: &Joined| {
-            let (i, j) = contact.bodies;
-            let mut others: Vec<usize> = at[i].iter().chain(&at[j]).copied().collect();
-            others.sort_unstable();
-            others.dedup();
-            let shared = |l: usize| (l, contact.shared(&contacts[l], inverse_mass));
-            others
-                .into_iter()
-                .map(shared)
-                .filter(|entry| entry.1 != 0.0)
-                .collect()
-        };
-        Rows(contacts.iter().map(row).collect())
-    }
-
-    /// What a contact's own impulse does to its speed.
-    fn own(&self, k: usize) -> f64 {
-        let entry = self.0[k].iter().find(|&&(l, _)| l == k);
-        entry.map_or(1.0, |&(_, own)| own)
-    }
-
-    /// What is left of the wanted change after some impulses.
-    fn missing(&self, wanted: &[f64], given: &[f64]) -> Vec<f64> {
-        let done = |row: &Vec<(usize, f64)>| sum(row.iter().map(|&(l, x)| x * given[l]));
-        wanted
-            .iter()
-            .zip(&self.0)
-            .map(|(w, row)| w - done(row))
-            .collect()
-    }
-
-    /// Impulses from some others on by projected Gauss-Seidel sweeps, there and back.
-    fn sweep(&self, wanted: &[f64], mut given: Vec<f64>) -> Vec<f64> {
-        for sweep in 0..SWEEPS {
-            for step in 0..given.len() {
-                let k = if sweep % 2 == 0 {
-                    step
-                } else {
-                    given.len() - 1 - step
-                };
-                let done: f64 = self.0[k].iter().map(|&(l, shared)| shared * given[l]).sum();
-                given[k] = (given[k] + (wanted[k] - done) / self.own(k)).max(0.0);
-            }
-        }
-        given
-    }
-
-    /// The impulses of those that push by conjugate gradients (Hestenes, Stiefel 1952), which know no
-    /// order among contacts, and where there are many solutions find the one that shares best.
-    fn solve(&self, wanted: &[f64], pushes: &[bool]) -> Vec<f64> {
-        let only = |values: Vec<f64>| -> Vec<f64> {
-            let values = values.into_iter().zip(pushes);
-            values
-                .map(|(value, &pushes)| if pushes { value } else { 0.0 })
-                .collect()
-        };
-        let dot = |a: &[f64], b: &[f64]| sum(a.iter().zip(b).map(|(a, b)| a * b));
-        let mut given = vec![0.0; wanted.len()];
-        let mut best = (f64::INFINITY, given.clone());
-        let scale = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
-        let enough = (f64::EPSILON * scale) * (f64::EPSILON * scale);
-        // Rounding leaves a part of the last bits in each run, so that one more is worth it.
-        for _ in 0..3 {
-            let mut residual = only(self.missing(wanted, &given));
-            let mut size = dot(&residual, &residual);
-            if size < best.0 {
-                best = (size, given.clone());
-            }
-            let mut direction = residual.clone();
-            for _ in 0..wanted.len() {
-                if size <= enough {
-                    return best.1;
-                }
-                let none = vec![0.0; wanted.len()];
-                let image: Vec<f64> = only(self.missing(&none, &direction));
-                let curvature = -dot(&direction, &image);
-                if size == 0.0 || curvature <= 0.0 {
-                    break;
-                }
-                let length = size / curvature;
-                for k in 0..given.len() {
-                    given[k] += length * direction[k];
-                    residual[k] += length * image[k];
-                }
-                let next = dot(&residual, &residual);
-                for k in 0..given.len() {
-                    direction[k] = residual[k] + next / size * direction[k];
-                }
-                size = next;
-                if size < best.0 {
-                    best = (size, given.clone());
-                }
-            }
-        }
-        best.1
-    }
-}
-
-/// A sum that does not depend on the order of its terms, and that only changes its sign with theirs:
-/// positive and negative terms apart, each from the least on.
-fn sum(terms: impl Iterator<Item = f64>) -> f64 {
-    let (mut few, mut count, mut many) = ([0.0; 16], 0, Vec::new());
-    for term in terms.filter(|&term| term != 0.0) {
-        if count < few.len() {
-            few[count] = term;
-            count += 1;
-        } else {
-            many.push(term);
-        }
-    }
-    let terms = if many.is_empty() {
-        &mut few[..count]
-    } else {
-        many.extend(few);
-        &mut many[..]
-    };
-    if terms.len() > 2 {
-        terms.sort_unstable_by(|a, b| a.abs().total_cmp(&b.abs()));
-    }
-    let total = |sign: f64| {
-        let part = terms
-            .iter()
-            .map(|term| sign * term)
-            .filter(|&term| term > 0.0);
-        part.sum::<f64>()
-    };
-    total(1.0) - total(-1.0)
 }
 
 #[cfg(test)]
@@ -416,6 +233,25 @@ mod tests {
                 );
             }
             assert!(energy(&inverse, &velocity) <= energy(&inverse, &start) * (1.0 + 1e-14));
+        }
+    }
+
+    #[test]
+    fn heaps_are_projected_as_well() {
+        for seed in 0..40 {
+            let (contacts, inverse, start) = scene(seed, 25, 33 + 2 * seed as usize);
+            let mut velocity = start.clone();
+            let given = project(&contacts, &inverse, &mut velocity);
+            let most = given.iter().fold(1.0_f64, |most, &given| most.max(given));
+            for (contact, &given) in contacts.iter().zip(&given) {
+                let opening = contact.opening(&velocity);
+                assert!(given >= 0.0 && opening > -1e-12, "{seed}: {opening:e}");
+                assert!(
+                    given * opening < 1e-11 * most,
+                    "{seed}: {given:e} {opening:e}"
+                );
+            }
+            assert!(energy(&inverse, &velocity) <= energy(&inverse, &start));
         }
     }
 

@@ -50,6 +50,8 @@ pub(super) struct Continuous {
     /// How often each body has come to rest in this step, once one has; one that has too often stops
     /// for the rest of it.
     rests: Vec<u32>,
+    /// How often each body has had an impact, once one has, where some give back a part only.
+    bounces: Vec<u32>,
     /// Contacts whose bodies stay together for the rest of the step.
     resting: Vec<Rest>,
     events: BinaryHeap<Event>,

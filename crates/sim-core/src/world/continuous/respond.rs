@@ -5,6 +5,11 @@
 //! of the step, and forces do not move one into the other. So a ball comes to rest after finitely
 //! many bounces, and a body on a floor stays where it is; the limit follows from the step and the
 //! forces. In the next step contact is found anew, or it is not.
+//!
+//! In a heap impacts follow each other faster and faster without any flight being short (inelastic
+//! collapse; McNamara, Young 1994, "Inelastic collapse in two dimensions"). A body that gives back a
+//! part only and has had several in a step comes to rest on what it closes with by less than what
+//! forces give in a step.
 
 use alloc::{vec, vec::Vec};
 use core::mem;
@@ -16,6 +21,14 @@ use crate::impulse::{Joined, project, reflect};
 
 /// A flight of less than this part of a step is none.
 const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
+
+/// Impacts of a body in a step after which it counts as one of a heap, and after which none gives
+/// anything back any more.
+const MANY_BOUNCES: u32 = 8;
+const MOST_BOUNCES: u32 = 1024;
+
+/// Part of a step within which bodies that lie together may come to touch.
+const SOON: f64 = 1.0 / 4.0;
 
 /// Part of the speed that forces give in a step below which bodies that come to rest on each other
 /// have rested before, and it is no impact.
@@ -54,7 +67,11 @@ pub(super) enum Answer {
 
 impl World {
     /// Answers impacts that happen at the same time.
-    pub(super) fn answer(&mut self, group: &mut [Event], time: f64) -> Result<(), (usize, Cause)> {
+    pub(super) fn answer(
+        &mut self,
+        group: &mut Vec<Event>,
+        time: f64,
+    ) -> Result<(), (usize, Cause)> {
         let mut renewed = mem::take(&mut self.continuous.renewed);
         renewed.clear();
         for event in group.iter() {
@@ -62,13 +79,11 @@ impl World {
         }
         for event in group.iter_mut() {
             self.choose(event);
-            if event.answer != Answer::Bounce {
-                self.continuous.rests.resize(self.len(), 0);
-                for body in [event.bodies.0, event.bodies.1] {
-                    self.continuous.rests[body] += u32::from(self.is_moved(body));
-                }
-            }
         }
+        if group.iter().any(|event| event.answer == Answer::Rest) {
+            self.join_touching(group, time, &mut renewed)?;
+        }
+        self.count(group);
         let chosen = |answer| group.iter().filter(move |event| event.answer == answer);
         self.bounce_all_of(chosen(Answer::Bounce), time);
         for event in chosen(Answer::Part) {
@@ -145,27 +160,105 @@ impl World {
         self.mass_there(body).is_finite()
     }
 
+    /// Adds to contacts that come to rest those that are to do so soon and are no farther from it than
+    /// a flight that is none, as most are in a heap: one by one, each would move all others.
+    fn join_touching(
+        &mut self,
+        group: &mut Vec<Event>,
+        time: f64,
+        renewed: &mut Vec<usize>,
+    ) -> Result<(), (usize, Cause)> {
+        let mut others = Vec::new();
+        while let Some(mut event) = self.next_event(time + SOON * self.settings.dt) {
+            let hop = self.hop(event.bodies);
+            if self.closes_by(&event, time)? <= hop {
+                self.renew(event.bodies, time, renewed)?;
+                self.choose(&mut event);
+                if event.answer == Answer::Rest {
+                    group.push(event);
+                    continue;
+                }
+            }
+            others.push(event);
+        }
+        self.continuous.events.extend(others);
+        Ok(())
+    }
+
+    /// The height of a flight that is none, m, as forces on two bodies make it.
+    fn hop(&self, (i, j): (usize, usize)) -> f64 {
+        let push = &self.continuous.given;
+        let half = 0.5 * SHORTEST_FLIGHT * self.settings.dt;
+        0.5 * half * half * push[i].length().max(push[j].length())
+    }
+
+    /// By how much the bodies of an impact come together from a time on until then, m.
+    fn closes_by(&mut self, event: &Event, from: f64) -> Result<f64, (usize, Cause)> {
+        let mut probe = mem::take(&mut self.continuous.probe);
+        let mut moves = |body: usize| {
+            let start = from.max(self.continuous.since[body]);
+            let before = self.motion_at(body, start, &mut probe)?.0;
+            Ok(self.motion_at(body, event.time, &mut probe)?.0 - before)
+        };
+        let (first, second) = (moves(event.bodies.0), moves(event.bodies.1));
+        self.continuous.probe = probe;
+        Ok((first? - second?).dot(event.contact.normal))
+    }
+
+    /// Counts how often bodies have come to rest, and where some do not keep their speed how often they
+    /// have had an impact.
+    fn count(&mut self, group: &[Event]) {
+        for event in group {
+            for body in [event.bodies.0, event.bodies.1] {
+                let is_counted = event.answer != Answer::Bounce || !self.restitution.is_empty();
+                if !is_counted || !self.is_moved(body) {
+                    continue;
+                }
+                let counts = match event.answer {
+                    Answer::Bounce => &mut self.continuous.bounces,
+                    Answer::Rest | Answer::Part => &mut self.continuous.rests,
+                };
+                counts.resize(self.mass.len(), 0);
+                counts[body] += 1;
+            }
+        }
+    }
+
     fn choose(&self, event: &mut Event) {
         let ((i, j), normal) = (event.bodies, event.contact.normal);
         let closing = (self.velocity_there(i) - self.velocity_there(j)).dot(normal);
-        let pressed = (self.acceleration_there(i) - self.acceleration_there(j)).dot(normal);
+        let pushed = (self.acceleration_there(i), self.acceleration_there(j));
+        let pressed = (pushed.0 - pushed.1).dot(normal);
         let restitution = self.pair_restitution(i, j);
-        let leaving = restitution * closing.max(0.0);
         event.pressure = self.settings.dt * pressed;
         let lasting = restitution * (closing - self.unfelt(event.pressure)).max(0.0);
-        // Bodies that keep a part of their speed meet without end where they are caught, until what is
-        // left moves them by a rounding.
-        let left = self.settings.dt - self.continuous.since[i].max(self.continuous.since[j]);
-        let is_spent = restitution < 1.0 && closing > 0.0 && leaving * left <= self.grain(i, j);
         // Back after the time 2 v / a.
-        event.answer =
-            if is_spent || pressed > 0.0 && 2.0 * lasting <= SHORTEST_FLIGHT * event.pressure {
-                Answer::Rest
-            } else if closing > 0.0 {
-                Answer::Bounce
-            } else {
-                Answer::Part
-            };
+        let is_short = pressed > 0.0 && 2.0 * lasting <= SHORTEST_FLIGHT * event.pressure;
+        let felt = self.settings.dt * pushed.0.length().max(pushed.1.length());
+        event.answer = if is_short || restitution < 1.0 && self.is_caught(event, closing, felt) {
+            Answer::Rest
+        } else if closing > 0.0 {
+            Answer::Bounce
+        } else {
+            Answer::Part
+        };
+    }
+
+    /// Whether bodies that keep a part of their speed only, and close, are caught among others, where
+    /// they would meet without end: they hardly move any more, or have met others often in this
+    /// step and close by no more than what forces give in one, or have so all too often.
+    fn is_caught(&self, event: &Event, closing: f64, felt: f64) -> bool {
+        if closing <= 0.0 {
+            return false;
+        }
+        let (i, j) = event.bodies;
+        let ways = &self.continuous;
+        let left = self.settings.dt - ways.since[i].max(ways.since[j]);
+        let bounces = |body: usize| ways.bounces.get(body).copied().unwrap_or(0);
+        let bounces = bounces(i).max(bounces(j));
+        self.pair_restitution(i, j) * closing * left <= self.grain(i, j)
+            || bounces >= MANY_BOUNCES && closing <= felt
+            || bounces >= MOST_BOUNCES
     }
 
     /// The speed at which bodies close that lie on each other, as forces that close them by a speed in

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
 use super::{Event, Probe, respond::Answer};
-use crate::collide::{Contact, first_contact, snap};
+use crate::collide::{Contact, Form, Parabola, first_contact, first_on_parabola, has_roots, snap};
 
 /// Departure of a chord from its way that is looked past, in largest half extents of the smaller
 /// body.
@@ -52,6 +52,14 @@ impl World {
         let (start, end) = (self.start_of(pair), self.settings.dt);
         let size = self.extent(i).half.min(self.extent(j).half);
         let length = end - start;
+        if let Some(forms) = self.form(i).zip(self.form(j))
+            && pair.bend > 0.0
+            && self.unit(i).is_none()
+            && self.unit(j).is_none()
+            && has_roots(forms.0, forms.1)
+        {
+            return self.seek_on_parabola(pair, forms, probe);
+        }
         let mut from = (start, self.offset_at(pair, start, probe)?);
         // A point has no extent: its way must do.
         let size = match size > 0.0 {
@@ -79,6 +87,33 @@ impl World {
             (from, chord) = (to, chord + 1.0);
         }
         Ok(None)
+    }
+
+    /// The first impact on ways that are parabolas, of shapes with closed forms.
+    fn seek_on_parabola(
+        &self,
+        pair: Pair,
+        (first, second): (Form<'_>, Form<'_>),
+        probe: &mut Probe,
+    ) -> Result<Option<Event>, (usize, Cause)> {
+        let start = self.start_of(pair);
+        let (x1, v1) = self.seen_at(pair.i, start, probe)?;
+        let (x2, v2) = self.seen_at(pair.j, start, probe)?;
+        let still = 8.0 * f64::EPSILON * (v1.length() + v2.length());
+        let way = Parabola {
+            offset: x2 - x1,
+            velocity: v2 - v1,
+            acceleration: self.acceleration_there(pair.j) - self.acceleration_there(pair.i),
+            grain: (pair.grain, still),
+        };
+        let length = self.settings.dt - start;
+        let Some(contact) = first_on_parabola(first, second, &way, length) else {
+            return Ok(None);
+        };
+        let from = (start, way.offset);
+        // Parts of the way are its seconds.
+        let along = (1.0, way.closing(contact.time, contact.normal).max(0.0));
+        self.settle(pair, from, along, contact, probe).map(Some)
     }
 
     /// The first impact on a part of the way, given as times and offsets of its ends.
@@ -198,7 +233,7 @@ impl World {
     /// Whether two bodies at the start of their common way do not part along a normal.
     fn is_closing(&self, pair: Pair, normal: DVec3, probe: &mut Probe) -> bool {
         let start = self.start_of(pair);
-        let mut velocity = |body| self.motion_at(body, start, probe).map(|(_, v)| v);
+        let mut velocity = |body| self.seen_at(body, start, probe).map(|(_, v)| v);
         let velocities = velocity(pair.i).ok().zip(velocity(pair.j).ok());
         velocities.is_some_and(|(v1, v2)| {
             (v2 - v1).dot(normal) <= 8.0 * f64::EPSILON * (v1.length() + v2.length())

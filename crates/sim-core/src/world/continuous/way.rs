@@ -62,6 +62,7 @@ impl World {
         ways.since.clear();
         ways.since.resize(n, 0.0);
         ways.rests.clear();
+        ways.bounces.clear();
         ways.version.clear();
         ways.version.resize(n, 0);
     }
@@ -118,6 +119,22 @@ impl World {
             &mut probe.scratch,
         )?;
         Ok((probe.state.position[body], probe.state.velocity[body]))
+    }
+
+    /// The same as others meet it: what has stopped stands, whatever it will do in the next step.
+    pub(super) fn seen_at(
+        &self,
+        body: usize,
+        time: f64,
+        probe: &mut Probe,
+    ) -> Result<(DVec3, DVec3), (usize, Cause)> {
+        let (x, v) = self.motion_at(body, time, probe)?;
+        let v = if self.is_stopped(body) {
+            DVec3::ZERO
+        } else {
+            v
+        };
+        Ok((x, v))
     }
 
     /// Position and velocity of a body on a parabola, some time after its way has started. Methods of

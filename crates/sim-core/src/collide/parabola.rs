@@ -1,0 +1,337 @@
+//! The first contact of two shapes that have no triangles, or one of which is a half-space, on a way
+//! that is a parabola.
+//!
+//! Above a half-space the height is a quadratic function of time. Between spheres it is the square
+//! of the distance that is a polynomial, of degree four; in Bernstein's basis it has no root where
+//! all of its coefficients are positive, and is halved where they are not (Lane, Riesenfeld 1981,
+//! "Bounds on a polynomial"). So nothing is passed over, however shallow it is.
+
+use glam::DVec3;
+
+use super::form::{Contact, Form, reach, unit};
+
+/// Where the second of two shapes is from the first, after a time `t`: `offset + t (velocity + t
+/// acceleration / 2)`, in m, m/s and m/s².
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parabola {
+    pub(crate) offset: DVec3,
+    pub(crate) velocity: DVec3,
+    pub(crate) acceleration: DVec3,
+    /// What rounding may make of distances, m, and of speeds, m/s.
+    pub(crate) grain: (f64, f64),
+}
+
+impl Parabola {
+    pub(crate) fn at(&self, t: f64) -> DVec3 {
+        self.offset + t * (self.velocity + 0.5 * t * self.acceleration)
+    }
+
+    /// The speed at which the second comes along a normal against it, m/s.
+    pub(crate) fn closing(&self, t: f64, normal: DVec3) -> f64 {
+        -normal.dot(self.velocity + t * self.acceleration)
+    }
+
+    fn reversed(&self) -> Parabola {
+        Parabola {
+            offset: -self.offset,
+            velocity: -self.velocity,
+            acceleration: -self.acceleration,
+            grain: self.grain,
+        }
+    }
+
+    /// How the way starts, from the gap there, and how that begins to change.
+    fn start(&self, gap: f64, speed: f64, acceleration: f64, length: f64) -> Start {
+        let (grain, still) = self.grain;
+        if gap > 0.0 {
+            let is_near = gap <= 4.0 * grain && speed <= still;
+            return if is_near { Start::Near } else { Start::Apart };
+        }
+        if speed > still {
+            return Start::Leaving;
+        }
+        // Rounding has brought it here; by how much more would it go?
+        let change = length * (speed + 0.5 * length * acceleration);
+        if change < -0.25 * grain {
+            Start::Touching
+        } else {
+            Start::Beside
+        }
+    }
+}
+
+enum Start {
+    Apart,
+    /// Within rounding of a touch, and not leaving: what it comes to, it comes to at once.
+    Near,
+    /// It touches, and closes or is pressed to.
+    Touching,
+    /// It touches and leaves; it may come back.
+    Leaving,
+    /// It touches, and nothing presses it.
+    Beside,
+}
+
+/// Whether two shapes have their contacts here.
+pub(crate) fn has_roots(first: Form<'_>, second: Form<'_>) -> bool {
+    match (first, second) {
+        // Points have no surface to leave.
+        (Form::Sphere(first), Form::Sphere(second)) => first + second > 0.0,
+        (Form::HalfSpace(_), _) | (_, Form::HalfSpace(_)) => true,
+        _ => false,
+    }
+}
+
+/// The first contact of two shapes that are apart, within a time; its own time is in s.
+pub(crate) fn first_on_parabola(
+    first: Form<'_>,
+    second: Form<'_>,
+    way: &Parabola,
+    length: f64,
+) -> Option<Contact> {
+    match (first, second) {
+        (Form::HalfSpace(_), Form::HalfSpace(_)) => None,
+        (Form::HalfSpace(normal), other) => above_plane(normal, other, way, length),
+        (Form::Sphere(first), Form::Sphere(second)) => spheres(first, second, way, length),
+        (first, second) => {
+            let contact = first_on_parabola(second, first, &way.reversed(), length)?;
+            Some(Contact {
+                point: contact.point + way.at(contact.time),
+                normal: -contact.normal,
+                ..contact
+            })
+        }
+    }
+}
+
+fn above_plane(normal: DVec3, other: Form<'_>, way: &Parabola, length: f64) -> Option<Contact> {
+    let (speed, acceleration) = (normal.dot(way.velocity), normal.dot(way.acceleration));
+    let least = speed.min(speed + length * acceleration);
+    if least >= 0.0 && acceleration >= 0.0 {
+        return None;
+    }
+    let (reach, corner) = reach(other, normal);
+    let height = normal.dot(way.offset) - reach;
+    let start = way.start(height, speed, acceleration, length);
+    let time = match start {
+        Start::Touching => 0.0,
+        Start::Beside => return None,
+        Start::Apart | Start::Near | Start::Leaving => {
+            let height = height.max(0.0);
+            let root = libm::sqrt(speed * speed - 2.0 * acceleration * height);
+            // Where it falls; each without a difference of what is alike.
+            match speed <= 0.0 {
+                true => 2.0 * height / (root - speed),
+                false => (speed + root) / -acceleration,
+            }
+        }
+    };
+    // Nor where there is none.
+    if !(0.0..=length).contains(&time) {
+        return None;
+    }
+    let time = if matches!(start, Start::Near) {
+        0.0
+    } else {
+        time
+    };
+    let at = way.at(time) + corner;
+    Some(Contact {
+        time,
+        point: at - normal.dot(at) * normal,
+        normal,
+        feature: None,
+    })
+}
+
+fn spheres(first: f64, second: f64, way: &Parabola, length: f64) -> Option<Contact> {
+    let sum = first + second;
+    let (r, v, a) = (way.offset, way.velocity, way.acceleration);
+    let distance = libm::sqrt(r.dot(r));
+    let outward = unit(r)?;
+    let gap = distance - sum;
+    // Its second derivative: what turns about the other one leaves it.
+    let (speed, turning) = (
+        outward.dot(v),
+        (v.dot(v) - outward.dot(v) * outward.dot(v)) / distance,
+    );
+    let start = way.start(gap, speed, outward.dot(a) + turning, length);
+    // The square of the distance less that of the sum, over the length as one.
+    let (h, h2) = (length, length * length);
+    let terms = [
+        gap * (distance + sum),
+        h * 2.0 * r.dot(v),
+        h2 * (v.dot(v) + r.dot(a)),
+        h2 * h * v.dot(a),
+        h2 * h2 * 0.25 * a.dot(a),
+    ];
+    let part = match start {
+        Start::Touching => 0.0,
+        Start::Apart => first_root(bernstein(terms))?,
+        Start::Near => 0.0 * first_root(bernstein(terms))?,
+        // The root at the start is one of a power of `t` times the rest.
+        Start::Leaving => {
+            let [_, rest @ ..] = terms;
+            first_root(bernstein(rest))?
+        }
+        Start::Beside => {
+            let [_, _, rest @ ..] = terms;
+            first_root(bernstein(rest))?
+        }
+    };
+    let mut time = part * length;
+    for _ in 0..2 {
+        let at = way.at(time);
+        let outward = unit(at)?;
+        let closing = way.closing(time, outward);
+        if part > 0.0 && closing > 0.0 {
+            time = (time + (libm::sqrt(at.dot(at)) - sum) / closing).clamp(0.0, length);
+        }
+    }
+    let normal = unit(way.at(time))?;
+    Some(Contact {
+        time,
+        point: first * normal,
+        normal,
+        feature: None,
+    })
+}
+
+/// A polynomial over 0 to 1, from the coefficients of powers, lowest first, to Bernstein's.
+fn bernstein<const N: usize>(powers: [f64; N]) -> [f64; N] {
+    let degree = N - 1;
+    // Row by row of Pascal's triangle: what is left of `C(i, k) / C(degree, k)`.
+    core::array::from_fn(|i| {
+        let (mut factor, mut sum) = (1.0, powers[0]);
+        for (k, power) in (1..=i).zip(&powers[1..]) {
+            factor *= (i + 1 - k) as f64 / (degree + 1 - k) as f64;
+            sum += factor * power;
+        }
+        sum
+    })
+}
+
+/// Halvings of the interval in search of a root.
+const HALVINGS: u32 = 52;
+
+/// Where from 0 to 1 a polynomial in Bernstein's basis first becomes negative.
+fn first_root<const N: usize>(coefficients: [f64; N]) -> Option<f64> {
+    first_root_in(coefficients, (0.0, 1.0), HALVINGS)
+}
+
+fn first_root_in<const N: usize>(
+    coefficients: [f64; N],
+    (low, high): (f64, f64),
+    halvings: u32,
+) -> Option<f64> {
+    if coefficients.iter().all(|&c| c >= 0.0) {
+        return None;
+    }
+    if coefficients[0] <= 0.0 || halvings == 0 {
+        return Some(low);
+    }
+    // De Casteljau: the left half's are the first of each row, the right half's the last ones.
+    let (mut left, mut right) = (coefficients, coefficients);
+    let mut row = coefficients;
+    for level in 1..N {
+        for i in 0..N - level {
+            row[i] = 0.5 * row[i] + 0.5 * row[i + 1];
+        }
+        left[level] = row[0];
+        right[N - 1 - level] = row[N - 1 - level];
+    }
+    let middle = 0.5 * (low + high);
+    first_root_in(left, (low, middle), halvings - 1)
+        .or_else(|| first_root_in(right, (middle, high), halvings - 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn way(offset: DVec3, velocity: DVec3, acceleration: DVec3) -> Parabola {
+        Parabola {
+            offset,
+            velocity,
+            acceleration,
+            grain: (1e-14, 1e-14),
+        }
+    }
+
+    /// Where one shape is first within another, by small steps; half the last one as an error.
+    fn stepped(way: &Parabola, gap: impl Fn(DVec3) -> f64, length: f64) -> Option<f64> {
+        const STEPS: u32 = 20_000;
+        let at = |i: u32| length * f64::from(i) / f64::from(STEPS);
+        (1..=STEPS).map(at).find(|&t| gap(way.at(t)) <= 0.0)
+    }
+
+    #[test]
+    fn roots_are_those_of_small_steps() {
+        let mut state = 9_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        let mut vector = move || DVec3::new(random(), random(), random());
+        let (mut hits, mut misses) = (0, 0);
+        for _ in 0..2000 {
+            let way = way(2.0 * vector(), 2.0 * vector(), 8.0 * vector());
+            let normal = unit(vector()).unwrap();
+            let forms = [
+                (Form::Sphere(0.3), Form::Sphere(0.5)),
+                (Form::HalfSpace(normal), Form::Sphere(0.2)),
+                (Form::Sphere(0.2), Form::HalfSpace(normal)),
+            ];
+            for (first, second) in forms {
+                let gap = |r: DVec3| match (first, second) {
+                    (Form::Sphere(_), Form::Sphere(_)) => r.length() - 0.8,
+                    (Form::Sphere(_), _) => -r.dot(normal) - 0.2,
+                    _ => r.dot(normal) - 0.2,
+                };
+                if gap(way.offset) <= 0.0 {
+                    continue;
+                }
+                let found = first_on_parabola(first, second, &way, 1.0);
+                match (found, stepped(&way, gap, 1.0)) {
+                    (Some(contact), _) => {
+                        let time = contact.time;
+                        assert!(gap(way.at(time)).abs() < 1e-14);
+                        assert!(way.closing(time, contact.normal) >= 0.0);
+                        let before = stepped(&way, gap, 1.0).unwrap_or(1.0);
+                        assert!(time <= before && before - time < 1e-2);
+                        hits += 1;
+                    }
+                    (None, missed) => {
+                        assert_eq!(missed, None);
+                        misses += 1;
+                    }
+                }
+            }
+        }
+        assert!(hits > 500 && misses > 1000);
+    }
+
+    #[test]
+    fn what_leaves_comes_back_and_what_lies_is_pressed() {
+        let ball = (Form::Sphere(0.5), Form::Sphere(0.5));
+        let floor = (Form::HalfSpace(DVec3::Y), Form::Sphere(1.0));
+        for (first, second) in [ball, floor] {
+            let time = |speed: f64, fall: f64| {
+                let way = way(DVec3::Y, speed * DVec3::Y, -fall * DVec3::Y);
+                first_on_parabola(first, second, &way, 1.0).map(|contact| contact.time)
+            };
+            assert!((time(2.0, 8.0).unwrap() - 0.5).abs() < 1e-15);
+            assert_eq!(time(2.0, 1.0), None);
+            assert_eq!(time(0.0, 1.0), Some(0.0));
+            assert_eq!(time(-1.0, 1.0), Some(0.0));
+            assert_eq!(time(0.0, 0.0), None);
+            assert_eq!(time(0.0, -1.0), None);
+        }
+        // It rolls off, held by half of what would keep it there: fast enough it leaves.
+        let (first, second) = ball;
+        let rolls = way(DVec3::Y, 2.0 * DVec3::X, -2.0 * DVec3::Y);
+        assert!(first_on_parabola(first, second, &rolls, 0.1).is_none());
+    }
+}
