@@ -8,7 +8,7 @@ use core::arch::x86_64::*;
 use core::ops::ControlFlow;
 
 use super::lanes::{least, push_each};
-use super::{Lanes, Meshes, Question, Stack, TILE, overlap};
+use super::{Lanes, Level, Meshes, Question, Stack, TILE, overlap};
 use crate::bvh::WIDTH;
 
 #[cfg(feature = "std")]
@@ -20,34 +20,47 @@ macro_rules! has {
     ($($feature:tt),*) => { cfg!(all($(target_feature = $feature),*)) };
 }
 
-#[inline]
-pub(super) fn has_avx2() -> bool {
-    has!("avx2", "fma", "bmi1", "bmi2", "popcnt")
+fn widest_of_processor() -> Level {
+    let has_avx2 = has!("avx2", "fma", "bmi1", "bmi2", "popcnt");
+    match (has_avx2, has!("avx512f")) {
+        (true, true) => Level::Avx512,
+        (true, false) => Level::Avx2,
+        (false, _) => Level::Portable,
+    }
 }
 
+/// The widest level that this processor has.
+#[cfg(feature = "std")]
 #[inline]
-pub(super) fn has_avx512() -> bool {
-    has!("avx512f") && has_avx2()
+pub(super) fn widest() -> Level {
+    // Asked once, as a query that ends at once would feel the asking.
+    static WIDEST: std::sync::OnceLock<Level> = std::sync::OnceLock::new();
+    *WIDEST.get_or_init(widest_of_processor)
 }
 
-/// Answers a question in 256-bit vectors.
-pub(super) fn ask_avx2<Q: Question, const TURNED: bool>(
+/// The widest level that the crate was compiled for.
+#[cfg(not(feature = "std"))]
+#[inline]
+pub(super) fn widest() -> Level {
+    widest_of_processor()
+}
+
+/// Answers a question at a level with instructions of its own that this processor has.
+#[inline]
+pub(super) fn ask<Q: Question, const TURNED: bool>(
+    level: Level,
     meshes: Meshes<'_>,
     question: &mut Q,
-) -> ControlFlow<()> {
-    assert!(has_avx2());
-    // SAFETY: the processor has what `avx2` is compiled for, by the assertion.
-    unsafe { avx2::<Q, TURNED>(meshes, question) }
-}
-
-/// Answers a question in 512-bit vectors.
-pub(super) fn ask_avx512<Q: Question, const TURNED: bool>(
-    meshes: Meshes<'_>,
-    question: &mut Q,
-) -> ControlFlow<()> {
-    assert!(has_avx512());
-    // SAFETY: the processor has what `avx512` is compiled for, by the assertion.
-    unsafe { avx512::<Q, TURNED>(meshes, question) }
+) -> Option<ControlFlow<()>> {
+    if level > widest() {
+        return None;
+    }
+    // SAFETY: the processor has what these are compiled for, as it has the level.
+    match level {
+        Level::Portable => None,
+        Level::Avx2 => Some(unsafe { avx2::<Q, TURNED>(meshes, question) }),
+        Level::Avx512 => Some(unsafe { avx512::<Q, TURNED>(meshes, question) }),
+    }
 }
 
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
