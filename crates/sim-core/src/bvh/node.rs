@@ -103,6 +103,12 @@ impl Triangles {
     /// The corners of a lane's triangle.
     #[inline]
     pub(crate) fn corners(&self, lane: usize) -> [Vec3; 3] {
-        [0, 3, 6].map(|k| Vec3::from_array([0, 1, 2].map(|axis| self.corners[k + axis][lane])))
+        [0, 1, 2].map(|k| self.corner(lane, k))
+    }
+
+    /// The `k`-th corner of a lane's triangle.
+    #[inline]
+    pub(crate) fn corner(&self, lane: usize, k: usize) -> Vec3 {
+        Vec3::from_array([0, 1, 2].map(|axis| self.corners[3 * k + axis][lane]))
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Two triangles are apart if one lies on one side of the other's plane. Sixteen pairs are looked
 //! at in f32, with a bound of everything that rounding can do; pairs that the bound leaves open
-//! are for exact arithmetic. Nearly every pair that is apart is found so.
+//! are for exact arithmetic. Nearly every pair that is apart is found so, and of nearly every other
+//! one it is known which corners lie above which plane, which spares exact arithmetic the most.
 //!
 //! The bound. A height `h = n·w` above a plane through corner `a`, with `n = u × v` and
 //! `w = p - a`, is a determinant whose rows are differences of corners. Computed from exact
@@ -12,20 +13,20 @@
 //! at most `q`, whence `dn·|w|` with `dn_x = q (|u_y| + |v_y| + |u_z| + |v_z| + 2 q)` and so on;
 //! and products below the range of f32 vanish, whence a small constant. As boxes meet, no
 //! component of `w` exceeds twice the sum of the half extents and the margin of their comparison.
-//! Sizes are such that no product overflows ([`Reach::has_planes`]).
+//! The greatest of each leaf are taken for these, so that there are errors of four triangles to
+//! compute and not of sixteen pairs. Sizes are such that no product overflows
+//! ([`Reach::has_planes`]).
 
-use super::pairs::{Lanes, Meshes, Reach, dot, dot0, splat};
+use super::pairs::{Lanes, Meshes, Reach, dot0, splat};
 use crate::bvh::{Triangles, WIDTH};
 
 /// Columns of four triangles.
 type Four = [f32; WIDTH];
 
-/// Planes of the four triangles of a leaf, with their errors: a height above one errs by
-/// `slope·|w| + rest`.
+/// Planes of the four triangles of a leaf, with what a height above one errs by at most.
 struct Planes {
     normal: [Four; 3],
-    slope: [Four; 3],
-    rest: Four,
+    error: Four,
 }
 
 /// 16 e for products of rounded differences.
@@ -34,15 +35,15 @@ const ROUNDING: f32 = 8.0 * f32::EPSILON;
 const VANISHING: f32 = 16.0 * f32::MIN_POSITIVE;
 
 impl Planes {
-    /// For sides moved by at most `shift`, and points that f32 misses by at most `miss`.
+    /// For sides moved by at most `shift`, and points that f32 misses by at most `miss` and that
+    /// lie no farther than `wide` from the first corner along each axis.
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "lanes of several columns")]
-    fn of(triangles: &Triangles, shift: f32, miss: f32) -> Planes {
+    fn of(triangles: &Triangles, shift: f32, miss: f32, wide: &[f32; 3]) -> Planes {
         let corners = &triangles.corners;
         let mut planes = Planes {
             normal: [[0.0; WIDTH]; 3],
-            slope: [[0.0; WIDTH]; 3],
-            rest: [VANISHING; WIDTH],
+            error: [VANISHING; WIDTH],
         };
         for axis in 0..3 {
             let (y, z) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -59,33 +60,40 @@ impl Planes {
                 let size = one.abs() + other.abs();
                 let moved = shift * ((uy.abs() + vy.abs()) + (uz.abs() + vz.abs()) + 2.0 * shift);
                 planes.normal[axis][i] = one - other;
-                planes.slope[axis][i] = ROUNDING * size + 2.0 * moved + VANISHING;
-                planes.rest[i] += miss * (size + moved);
+                let slope = ROUNDING * size + 2.0 * moved + VANISHING;
+                planes.error[i] += slope * wide[axis] + miss * (size + moved);
             }
         }
         planes
     }
 }
 
-/// A bit for each of the `pairs` that may meet: of two leaves whose boxes are known to meet there,
-/// of meshes that are not turned.
+/// What a glance tells, a bit for each pair.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Glance {
+    /// Those that may meet.
+    pub(super) maybe: u32,
+    /// Those of which each crosses the other's plane, with no corner in it, for certain.
+    pub(super) cross: u32,
+    /// Of those that cross, which corners of the first are above the second's plane.
+    pub(super) first_above: [u32; 3],
+    /// Of those that cross, which corners of the second are above the first's plane.
+    pub(super) second_above: [u32; 3],
+}
+
+/// A glance at the `pairs`: of two leaves whose boxes are known to meet there, of meshes that are
+/// not turned.
 #[inline(always)]
-pub(super) fn maybe_meet<L: Lanes>(
+pub(super) fn glance<L: Lanes>(
     meshes: Meshes<'_>,
     (a, b): (u32, u32),
     pairs: u32,
     reach: &Reach,
-) -> u32 {
+) -> Glance {
     let (a, b) = (meshes.first.node(a), meshes.second.node(b));
     let (first, second) = (meshes.first.triangles(a), meshes.second.triangles(b));
-    let (f, s) = (&a.boxes.half, &b.boxes.half);
+    let wide = wide(&a.boxes.half, &b.boxes.half, reach.margin());
     let offset = splat(reach.offset());
-    let margin = L::splat(reach.margin());
-    let widest = [
-        wide(f, s, margin, 0),
-        wide(f, s, margin, 1),
-        wide(f, s, margin, 2),
-    ];
     let (u, v) = (&first.corners, &second.corners);
     let a = [rows(u, 0), rows(u, 3), rows(u, 6)];
     let b = [
@@ -94,41 +102,43 @@ pub(super) fn maybe_meet<L: Lanes>(
         placed(v, 6, &offset),
     ];
 
-    let planes = Planes::of(first, 0.0, reach.miss());
+    let planes = Planes::of(first, 0.0, reach.miss(), &wide);
     let normal = [
         L::rows(&planes.normal[0]),
         L::rows(&planes.normal[1]),
         L::rows(&planes.normal[2]),
     ];
-    let slope = [
-        L::rows(&planes.slope[0]),
-        L::rows(&planes.slope[1]),
-        L::rows(&planes.slope[2]),
-    ];
-    let error = dot(&slope, &widest, L::rows(&planes.rest));
-    let one = one_side(&normal, error, &a[0], &b);
+    let seconds = sides(&normal, L::rows(&planes.error), &a[0], &b);
 
-    let planes = Planes::of(second, reach.shift(), reach.miss());
+    let planes = Planes::of(second, reach.shift(), reach.miss(), &wide);
     let normal = [
         L::columns(&planes.normal[0]),
         L::columns(&planes.normal[1]),
         L::columns(&planes.normal[2]),
     ];
-    let slope = [
-        L::columns(&planes.slope[0]),
-        L::columns(&planes.slope[1]),
-        L::columns(&planes.slope[2]),
-    ];
-    let error = dot(&slope, &widest, L::columns(&planes.rest));
-    let other = one_side(&normal, error, &b[0], &a);
-    pairs & !(one | other)
+    let firsts = sides(&normal, L::columns(&planes.error), &b[0], &a);
+    let maybe = pairs & !(firsts.apart() | seconds.apart());
+    Glance {
+        maybe,
+        cross: maybe & firsts.certain() & seconds.certain(),
+        first_above: firsts.above,
+        second_above: seconds.above,
+    }
 }
 
-/// Bounds what lies between two points of two boxes that meet, along an axis.
+/// Bounds what lies between two points of two boxes that meet, along each axis, whichever two of
+/// two leaves they are.
 #[inline(always)]
-fn wide<L: Lanes>(first: &[Four; 3], second: &[Four; 3], margin: L, axis: usize) -> L {
-    let half = L::rows(&first[axis]).add(L::columns(&second[axis]));
-    half.add(half).add(margin)
+fn wide(first: &[Four; 3], second: &[Four; 3], margin: f32) -> [f32; 3] {
+    let most = |[a, b, c, d]: Four| max(max(a, b), max(c, d));
+    let wide = |axis: usize| 2.0 * (most(first[axis]) + most(second[axis])) + margin;
+    [wide(0), wide(1), wide(2)]
+}
+
+/// The greater of two numbers.
+#[inline(always)]
+fn max(x: f32, y: f32) -> f32 {
+    if x > y { x } else { y }
 }
 
 /// A corner of each of the first's triangles.
@@ -161,12 +171,38 @@ fn height<L: Lanes>(normal: &[L; 3], corner: &[L; 3], p: &[L; 3]) -> L {
     dot0(normal, &[x, y, z])
 }
 
-/// Lanes in which three points lie on one side of a plane for certain.
+/// On which sides of a plane three points lie for certain, a bit for each lane.
+struct Sides {
+    above: [u32; 3],
+    below: [u32; 3],
+}
+
+impl Sides {
+    /// All on one.
+    #[inline(always)]
+    fn apart(&self) -> u32 {
+        let [p, q, r] = self.above;
+        let [s, t, u] = self.below;
+        (p & q & r) | (s & t & u)
+    }
+
+    /// Each on one or the other.
+    #[inline(always)]
+    fn certain(&self) -> u32 {
+        let [p, q, r] = self.above;
+        let [s, t, u] = self.below;
+        (p | s) & (q | t) & (r | u)
+    }
+}
+
 #[inline(always)]
-fn one_side<L: Lanes>(normal: &[L; 3], error: L, corner: &[L; 3], points: &[[L; 3]; 3]) -> u32 {
+fn sides<L: Lanes>(normal: &[L; 3], error: L, corner: &[L; 3], points: &[[L; 3]; 3]) -> Sides {
     let p = height(normal, corner, &points[0]);
     let q = height(normal, corner, &points[1]);
     let r = height(normal, corner, &points[2]);
-    let (low, high) = (p.min(q).min(r), p.max(q).max(r));
-    low.above(error) | L::splat(0.0).sub(high).above(error)
+    let minus = L::splat(0.0).sub(error);
+    Sides {
+        above: [p.above(error), q.above(error), r.above(error)],
+        below: [minus.above(p), minus.above(q), minus.above(r)],
+    }
 }

@@ -61,30 +61,32 @@ impl Placement {
     }
 
     /// Least and greatest corner of a box around every placed vertex of `bounds`.
+    #[inline]
     fn corners(&self, bounds: &Aabb) -> (DVec3, DVec3) {
-        match self.turn {
+        match &self.turn {
             // Rounding is monotone.
             None => (
                 bounds.min.as_dvec3() + self.offset,
                 bounds.max.as_dvec3() + self.offset,
             ),
-            Some(turn) => {
-                let (centre, half) = (bounds.centre(), bounds.half_extent());
-                let middle = turn * centre + self.offset;
-                let reach = turn.x_axis.abs() * half.x
-                    + turn.y_axis.abs() * half.y
-                    + turn.z_axis.abs() * half.z;
-                let size = centre.abs().element_sum()
-                    + half.element_sum()
-                    + self.offset.abs().element_sum();
-                // More than all roundings, and than what becomes of small components.
-                let reach = reach + DVec3::splat(16.0 * f64::EPSILON * size + TINY);
-                (middle - reach, middle + reach)
-            }
+            Some(turn) => self.turned_corners(turn, *bounds),
         }
     }
 
+    fn turned_corners(&self, turn: &DMat3, bounds: Aabb) -> (DVec3, DVec3) {
+        let (centre, half) = (bounds.centre(), bounds.half_extent());
+        let middle = *turn * centre + self.offset;
+        let reach =
+            turn.x_axis.abs() * half.x + turn.y_axis.abs() * half.y + turn.z_axis.abs() * half.z;
+        let size =
+            centre.abs().element_sum() + half.element_sum() + self.offset.abs().element_sum();
+        // More than all roundings, and than what becomes of small components.
+        let reach = reach + DVec3::splat(16.0 * f64::EPSILON * size + TINY);
+        (middle - reach, middle + reach)
+    }
+
     /// Whether a box of the first mesh meets a box of the second; a "no" is a proof.
+    #[inline]
     pub(super) fn boxes_meet(&self, first: &Aabb, second: &Aabb) -> bool {
         let (min, max) = self.corners(second);
         // Corners beyond all numbers say nothing.

@@ -26,6 +26,12 @@ impl Estimate {
         }
     }
 
+    /// Whether the sign is that of the value, for certain.
+    #[inline(always)]
+    pub(super) fn is_certain(self) -> bool {
+        self.value.abs() > self.error
+    }
+
     /// Which of two has the greater magnitude, where the errors leave no doubt.
     #[inline(always)]
     pub(super) fn magnitude_cmp(self, other: Estimate) -> Option<Ordering> {

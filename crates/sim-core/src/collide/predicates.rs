@@ -12,7 +12,7 @@ use core::cmp::Ordering;
 use glam::DVec3;
 use robust::{Coord, Coord3D};
 
-use super::plane::Plane;
+use super::plane::{Cross, Plane};
 
 /// Positive if `d` sees `a`, `b`, `c` clockwise, negative if counter-clockwise, zero if the four
 /// points lie in a plane: the exact sign of `det(a - d, b - d, c - d)`.
@@ -64,56 +64,59 @@ pub fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
     if s_sides[0] != Ordering::Equal && s_sides == [s_sides[0]; 3] {
         return false;
     }
-    match (lone(s_sides), lone(t_sides)) {
-        (Some((i, s_above)), Some((j, t_above))) => {
-            // Wound so that each first corner lies above the other's plane.
-            crossing_meet(from(s, i, t_above), from(t, j, s_above))
-        }
-        _ => {
-            let edge_of_one_meets = |s: [DVec3; 3], t: [DVec3; 3]| {
-                (0..3).any(|i| segment_meets_triangle(s[i], s[(i + 1) % 3], t))
-            };
-            edge_of_one_meets(s, t) || edge_of_one_meets(t, s)
-        }
+    if [s_sides, t_sides].as_flattened().contains(&Ordering::Equal) {
+        let edge_of_one_meets = |s: [DVec3; 3], t: [DVec3; 3]| {
+            (0..3).any(|i| segment_meets_triangle(s[i], s[(i + 1) % 3], t))
+        };
+        return edge_of_one_meets(s, t) || edge_of_one_meets(t, s);
     }
+    let above = |sides: [Ordering; 3]| {
+        let [p, q, r] = sides.map(|side| u32::from(side == Ordering::Greater));
+        p | q << 1 | r << 2
+    };
+    let (s_order, t_order) = crossing_orders(above(s_sides), above(t_sides));
+    crossing_meet(s_order.map(|i| s[i]), t_order.map(|i| t[i]))
 }
 
-/// Whether two triangles meet that cross each other's planes, each with its first corner alone
-/// above the other's plane and none in the plane: whether the parts overlap in which they cut the
-/// line that the planes share (Guigue, Devillers 2003, "Fast and robust triangle-triangle overlap
-/// test using orientation predicates", sec. 3).
-#[inline]
-fn crossing_meet([p1, q1, r1]: [DVec3; 3], [p2, q2, r2]: [DVec3; 3]) -> bool {
+/// Whether two triangles meet that cross each other's planes, with no corner in a plane and in the
+/// order of [`crossing_orders`]: whether the parts overlap in which they cut the line that the
+/// planes share (Guigue, Devillers 2003, "Fast and robust triangle-triangle overlap test using
+/// orientation predicates", sec. 3).
+#[inline(always)]
+pub(super) fn crossing_meet([p1, q1, r1]: [DVec3; 3], [p2, q2, r2]: [DVec3; 3]) -> bool {
+    let between = p2 - p1;
+    let q = Cross::of(q1 - p1, q2 - p2).dot(between);
+    let r = Cross::of(r1 - p1, r2 - p2).dot(between);
+    if q.is_certain() && r.is_certain() {
+        // Either sign is anyone's guess, so there is one branch for both.
+        return (q.value > 0.0) & (r.value < 0.0);
+    }
+    // The first determinant is minus that of `p1`, `q1`, `p2`, `q2`.
     side([p1, q1, p2], q2) != Ordering::Greater && side([p1, r1, r2], p2) != Ordering::Greater
 }
 
-/// Which corner of a triangle is alone on its side of a plane, and whether it is above; none if a
-/// corner lies in the plane. Which one it is, is anyone's guess, so it is looked up and not
-/// branched on.
-#[inline]
-fn lone([p, q, r]: [Ordering; 3]) -> Option<(usize, bool)> {
-    if [p, q, r].contains(&Ordering::Equal) {
-        return None;
-    }
-    let above = |side| usize::from(side == Ordering::Greater);
-    let which = above(p) | above(q) << 1 | above(r) << 2;
-    // Of one above it is that one, of two the other.
-    Some(([0, 0, 1, 2, 2, 1, 0, 0][which], which.is_power_of_two()))
+/// The order in which [`crossing_meet`] takes the corners of two triangles, of each of which some
+/// corners are above the other's plane and the others below, a bit each: the one that is alone on
+/// its side first, and wound so that each first corner lies above the other's plane.
+#[inline(always)]
+pub(super) fn crossing_orders(s_above: u32, t_above: u32) -> ([usize; 3], [usize; 3]) {
+    let order = |above: u32, others: u32| {
+        let is_one_above = others.is_power_of_two();
+        ORDERS[usize::from(is_one_above)][above as usize % 8]
+    };
+    (order(s_above, t_above), order(t_above, s_above))
 }
 
-/// A triangle from its corner `i` on, wound as it is or the other way.
-#[inline]
-fn from(corners: [DVec3; 3], i: usize, same_way: bool) -> [DVec3; 3] {
-    const NEXT: [usize; 3] = [1, 2, 0];
-    // Two steps on is one step back.
-    let next = NEXT[i];
-    let [q, r] = if same_way {
-        [next, NEXT[next]]
-    } else {
-        [NEXT[next], next]
-    };
-    [corners[i], corners[q], corners[r]]
-}
+/// The corners of a triangle, the one that is alone above or below first, turned or as it is wound:
+/// which one it is, is anyone's guess, so it is looked up and not branched on.
+static ORDERS: [[[usize; 3]; 8]; 2] = {
+    const TURNED: [[usize; 3]; 3] = [[0, 2, 1], [1, 0, 2], [2, 1, 0]];
+    const AS_WOUND: [[usize; 3]; 3] = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
+    const fn by_bits([p, q, r]: [[usize; 3]; 3]) -> [[usize; 3]; 8] {
+        [p, p, q, r, r, q, p, p]
+    }
+    [by_bits(TURNED), by_bits(AS_WOUND)]
+};
 
 /// On which side of the plane of `abc` some points lie: above is where it is counter-clockwise.
 #[inline]

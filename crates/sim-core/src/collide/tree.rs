@@ -5,9 +5,9 @@ use core::ops::ControlFlow;
 
 use super::{
     Hit, Level, Placement, Side, Work,
-    apart::maybe_meet,
+    apart::{Glance, glance},
     pairs::{Lanes, Meshes, Question, Reach, TILE, each_pair},
-    predicates::{segment_meets_triangle, triangles_meet},
+    predicates::{crossing_meet, crossing_orders, segment_meets_triangle, triangles_meet},
 };
 use crate::bvh::{Bvh, WIDTH};
 
@@ -36,11 +36,14 @@ impl Question for AnyHit {
         pairs: u32,
         reach: Option<&Reach>,
     ) -> ControlFlow<()> {
-        let maybe = match reach.filter(|reach| reach.has_planes()) {
-            Some(reach) => maybe_meet::<L>(meshes, (a, b), pairs, reach),
-            None => pairs,
+        let glance = match reach.filter(|reach| reach.has_planes()) {
+            Some(reach) => glance::<L>(meshes, (a, b), pairs, reach),
+            None => Glance {
+                maybe: pairs,
+                ..Glance::default()
+            },
         };
-        if any_meets(meshes, (a, b), maybe) {
+        if glance.maybe != 0 && any_meets(meshes, (a, b), &glance) {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
@@ -49,10 +52,21 @@ impl Question for AnyHit {
 
 /// Not for lanes, and not to take their registers.
 #[inline(never)]
-fn any_meets(meshes: Meshes<'_>, leaves: (u32, u32), pairs: u32) -> bool {
-    triangles(meshes, leaves, pairs).any(|((_, s), (_, t))| {
-        let s = s.map(|v| v.as_dvec3());
-        triangles_meet(s, t.map(|v| meshes.at.place(v)))
+fn any_meets(meshes: Meshes<'_>, (a, b): (u32, u32), glance: &Glance) -> bool {
+    let first = meshes.first.triangles(meshes.first.node(a));
+    let second = meshes.second.triangles(meshes.second.node(b));
+    lanes(glance.maybe).any(|(i, j)| {
+        let bit = |bits: u32| bits >> (WIDTH * i + j) & 1;
+        let s = |k| first.corner(i, k).as_dvec3();
+        let t = |k| meshes.at.place(second.corner(j, k));
+        if bit(glance.cross) == 1 {
+            let above = |[p, q, r]: [u32; 3]| bit(p) | bit(q) << 1 | bit(r) << 2;
+            let orders = crossing_orders(above(glance.first_above), above(glance.second_above));
+            let ([p, q, r], [u, v, w]) = orders;
+            crossing_meet([s(p), s(q), s(r)], [t(u), t(v), t(w)])
+        } else {
+            triangles_meet([s(0), s(1), s(2)], [t(0), t(1), t(2)])
+        }
     })
 }
 
@@ -162,15 +176,29 @@ type Face = (u32, [glam::Vec3; 3]);
 fn triangles(
     meshes: Meshes<'_>,
     (a, b): (u32, u32),
-    mut pairs: u32,
+    pairs: u32,
 ) -> impl Iterator<Item = (Face, Face)> {
     let s = meshes.first.triangles(meshes.first.node(a));
     let t = meshes.second.triangles(meshes.second.node(b));
+    lanes(pairs).map(|(i, j)| ((s.face[i], s.corners(i)), (t.face[j], t.corners(j))))
+}
+
+/// The lanes of some pairs, which are in no order but so that both change from one to the next
+/// where they can: where a triangle misses, its neighbours in the other leaf are likely to be
+/// missed too.
+#[inline]
+fn lanes(pairs: u32) -> impl Iterator<Item = (usize, usize)> {
+    let (mut pairs, mut turned) = (pairs as u16, 0);
     core::iter::from_fn(move || {
-        let pair = (pairs != 0).then(|| pairs.trailing_zeros() as usize)?;
-        pairs &= pairs - 1;
-        let (i, j) = (pair / WIDTH, pair % WIDTH);
-        Some(((s.face[i], s.corners(i)), (t.face[j], t.corners(j))))
+        if pairs == 0 {
+            return None;
+        }
+        let skipped = pairs.trailing_zeros();
+        let pair = (turned + skipped) as usize % TILE;
+        let on = skipped + WIDTH as u32 + 1;
+        pairs = (pairs & (pairs - 1)).rotate_right(on);
+        turned += on;
+        Some((pair / WIDTH, pair % WIDTH))
     })
 }
 
@@ -251,6 +279,20 @@ mod tests {
             .expect("an edge of the first ball");
         let before = u64::from(first.face) * edges as u64 + u64::from(first.edge) + 1;
         assert_eq!(plain.tests, before);
+    }
+
+    #[test]
+    fn every_pair_has_its_turn_once() {
+        for pairs in 0..1 << TILE {
+            let seen = lanes(pairs).fold(0, |seen, (i, j)| {
+                let bit = 1 << (WIDTH * i + j);
+                assert_eq!(seen & bit, 0);
+                seen | bit
+            });
+            assert_eq!(seen, pairs);
+        }
+        let both_change: Vec<_> = lanes(0xffff).take(WIDTH).collect();
+        assert_eq!(both_change, [(0, 0), (1, 1), (2, 2), (3, 3)]);
     }
 
     #[test]

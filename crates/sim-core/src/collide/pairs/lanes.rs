@@ -25,8 +25,8 @@ pub(in crate::collide) trait Lanes: Copy {
     fn at_most(self, other: Self) -> u32;
     /// A bit for each lane that is above `other`'s; none where one is not a number.
     fn above(self, other: Self) -> u32;
-    /// The lane of the least float among those of some bits.
-    fn least(self, among: u32) -> u32;
+    /// The lane of the least float among those of some bits, roughly, and whether it is negative.
+    fn least(self, among: u32) -> (u32, bool);
     /// Puts the pairs of `rows[i]` and `columns[j]` of some bits on the stack, lowest first.
     fn push(stack: &mut Stack, bits: u32, rows: &[u32; WIDTH], columns: &[u32; WIDTH]);
 }
@@ -125,28 +125,22 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn least(self, among: u32) -> u32 {
-        least(&self.0, among)
+    fn least(self, mut among: u32) -> (u32, bool) {
+        let (mut best, mut least) = (0, f32::INFINITY);
+        while among != 0 {
+            let lane = among.trailing_zeros();
+            among &= among - 1;
+            if self.0[lane as usize] < least {
+                (best, least) = (lane, self.0[lane as usize]);
+            }
+        }
+        (best, least < 0.0)
     }
 
     #[inline(always)]
     fn push(stack: &mut Stack, bits: u32, rows: &[u32; WIDTH], columns: &[u32; WIDTH]) {
         push_each(stack, bits, rows, columns);
     }
-}
-
-/// [`Lanes::least`] of lanes in memory.
-#[inline(always)]
-pub(super) fn least(lanes: &[f32; TILE], mut among: u32) -> u32 {
-    let (mut best, mut least) = (0, f32::INFINITY);
-    while among != 0 {
-        let lane = among.trailing_zeros();
-        among &= among - 1;
-        if lanes[lane as usize] < least {
-            (best, least) = (lane, lanes[lane as usize]);
-        }
-    }
-    best
 }
 
 /// [`Lanes::push`] one by one.

@@ -7,7 +7,7 @@ use super::simd;
 use super::{Meshes, Portable, Question, overlap};
 
 /// Instructions that a descent may use. All give the same answers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// What the crate was compiled for: 128-bit vectors on x86-64 and on AArch64.
     Portable,
@@ -25,26 +25,16 @@ impl Level {
     /// for is known.
     #[inline]
     pub fn is_available(self) -> bool {
-        #[cfg(target_arch = "x86_64")]
-        match self {
-            Level::Portable => true,
-            Level::Avx2 => simd::has_avx2(),
-            Level::Avx512 => simd::has_avx512(),
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        matches!(self, Level::Portable)
+        self <= Level::best()
     }
 
     /// The widest level that this processor has.
     #[inline]
     pub fn best() -> Level {
-        if Level::Avx512.is_available() {
-            Level::Avx512
-        } else if Level::Avx2.is_available() {
-            Level::Avx2
-        } else {
-            Level::Portable
-        }
+        #[cfg(target_arch = "x86_64")]
+        return simd::widest();
+        #[cfg(not(target_arch = "x86_64"))]
+        Level::Portable
     }
 
     /// Answers a question at this level; one that is not available is `Portable`.
@@ -55,15 +45,18 @@ impl Level {
         question: &mut Q,
     ) -> ControlFlow<()> {
         #[cfg(target_arch = "x86_64")]
-        match self {
-            Level::Avx512 if simd::has_avx512() => {
-                return simd::ask_avx512::<Q, TURNED>(meshes, question);
-            }
-            Level::Avx2 if simd::has_avx2() => {
-                return simd::ask_avx2::<Q, TURNED>(meshes, question);
-            }
-            _ => {}
+        if let Some(answer) = simd::ask::<Q, TURNED>(self, meshes, question) {
+            return answer;
         }
-        overlap::ask::<Portable, Q, TURNED>(meshes, question)
+        portable::<Q, TURNED>(meshes, question)
     }
+}
+
+/// Not to take its stack in queries that do without it.
+#[inline(never)]
+fn portable<Q: Question, const TURNED: bool>(
+    meshes: Meshes<'_>,
+    question: &mut Q,
+) -> ControlFlow<()> {
+    overlap::ask::<Portable, Q, TURNED>(meshes, question)
 }

@@ -1,9 +1,10 @@
 //! The descent through two hierarchies at once.
 //!
 //! A *tile* is a pair of nodes or leaves: the four boxes of one against the four of the other,
-//! sixteen pairs at once. Pairs of children that may meet go on a stack, to be tiles in their turn,
-//! the nearest on top. A leaf against a node goes down on the node's side only, and where two
-//! leaves have come together the pairs of triangles whose boxes meet are handed over.
+//! sixteen pairs at once. Pairs of children that may meet go on a stack, to be tiles in their turn;
+//! at first the one that promises most is next. A leaf against a node goes down on the node's side
+//! only, and where two leaves have come together the pairs of triangles whose boxes meet are handed
+//! over.
 
 mod lanes;
 mod level;
@@ -19,7 +20,7 @@ use crate::bvh::{Boxes, Bvh, LEAF, Slabs, WIDTH};
 pub(super) use lanes::{Lanes, Portable};
 pub use level::Level;
 pub(super) use overlap::{Meshes, Question, each_pair};
-pub(super) use reach::{Reach, dot, dot0, splat};
+pub(super) use reach::{Reach, dot0, splat};
 pub(super) use stack::Stack;
 
 /// Pairs in a tile.
@@ -29,7 +30,8 @@ pub(in crate::collide) const TILE: usize = WIDTH * WIDTH;
 pub(super) trait Tiles {
     type Lanes: Lanes;
 
-    /// A bit for each pair of boxes that is worth a look, and how near each is.
+    /// A bit for each pair of boxes that is worth a look, and how far the centre of one is outside
+    /// the other of each: below zero within.
     fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, Self::Lanes);
 
     /// Those of some pairs that are worth it by their slabs too.
@@ -39,9 +41,15 @@ pub(super) trait Tiles {
     fn triangles(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()>;
 }
 
-/// How many tiles are looked at one after the other, always the nearest pair next. Where meshes
-/// meet deeply, a hit is found by then as a rule.
-const GREEDY: usize = 12;
+/// How many tiles are looked at one after the other at most, always that pair next in which a
+/// centre lies deepest in the other box. Where meshes meet deeply, a hit is found by then as a
+/// rule.
+const GREEDY: usize = 24;
+/// How many of them may be without promise: where no box is worth a look, or none that is holds
+/// the other's centre.
+const HOPE: usize = 10;
+/// How many more for two leaves in which boxes of triangles meet.
+const MORE_HOPE: usize = 4;
 /// How many tiles are looked at side by side after that, in no order, as then the hope is gone and
 /// throughput counts.
 const ABREAST: usize = 4;
@@ -51,26 +59,34 @@ const ABREAST: usize = 4;
 pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> ControlFlow<()> {
     let mut stack = Stack::new();
     let mut next = Some((first.root(), second.root()));
+    let mut hope = HOPE;
     for _ in 0..GREEDY {
+        if hope == 0 {
+            break;
+        }
         let Some((a, b)) = next.or_else(|| stack.pop()) else {
             return ControlFlow::Continue(());
         };
         let (node, other) = (first.node(a), second.node(b));
-        let (pairs, distance) = tiles.boxes(&node.boxes, &other.boxes);
+        let (pairs, outside) = tiles.boxes(&node.boxes, &other.boxes);
         let bits = below(a, b, pairs);
         next = None;
         if bits != 0 {
-            let nearest = distance.least(bits);
-            let (i, j) = (nearest as usize / WIDTH, nearest as usize % WIDTH);
+            let (deepest, is_inside) = outside.least(pairs);
+            hope -= usize::from(!is_inside);
+            let (i, j) = (deepest as usize / WIDTH, deepest as usize % WIDTH);
             next = Some((node.child[i], other.child[j]));
             T::Lanes::push(
                 &mut stack,
-                bits & !(1 << nearest),
+                bits & !(1 << (deepest & kept(a, b))),
                 &node.child,
                 &other.child,
             );
         } else if pairs != 0 {
             tiles.triangles(a, b, pairs)?;
+            hope += MORE_HOPE;
+        } else {
+            hope -= 1;
         }
     }
     if let Some((a, b)) = next {
@@ -97,6 +113,14 @@ pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> Con
             tiles.triangles(a, b, pairs)?;
         }
     }
+}
+
+/// What tells lanes of [`below`] apart: where a leaf stays, its number does not.
+#[inline(always)]
+fn kept(a: u32, b: u32) -> u32 {
+    let of_first = if a & LEAF == 0 { 0b1111 } else { 0b0011 };
+    let of_second = if b & LEAF == 0 { 0b1111 } else { 0b1100 };
+    of_first & of_second
 }
 
 /// The pairs to go on with: of two nodes all; where one is a leaf, it stays for the other's

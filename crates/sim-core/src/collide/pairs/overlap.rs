@@ -31,8 +31,8 @@ pub(in crate::collide) trait Question {
     fn tile(&mut self) {}
 }
 
-/// Asks about the pairs of triangles whose boxes meet, nearest first as far as depth-first goes,
-/// until told to stop.
+/// Asks about the pairs of triangles whose boxes meet, the most promising first as far as
+/// depth-first goes, until told to stop.
 #[inline]
 pub(in crate::collide) fn each_pair<Q: Question>(
     level: Level,
@@ -92,9 +92,12 @@ impl<L: Lanes, Q: Question, const TURNED: bool> Tiles for Overlaps<'_, L, Q, TUR
         self.question.tile();
         let a = Placed::<L>::first(first);
         let b = Placed::<L>::second::<TURNED>(second, &self.reach);
-        let x = separation(&a, &b, 0);
-        let separation = x.max(separation(&a, &b, 1)).max(separation(&a, &b, 2));
-        (separation.at_most(self.margin), separation)
+        let (x, y, z) = (between(&a, &b, 0), between(&a, &b, 1), between(&a, &b, 2));
+        let sum = |axis: usize| a.half[axis].add(b.half[axis]);
+        let larger = |axis: usize| a.half[axis].max(b.half[axis]);
+        let separation = x.sub(sum(0)).max(y.sub(sum(1))).max(z.sub(sum(2)));
+        let outside = x.sub(larger(0)).max(y.sub(larger(1))).max(z.sub(larger(2)));
+        (separation.at_most(self.margin), outside)
     }
 
     #[inline(always)]
@@ -116,11 +119,10 @@ impl<L: Lanes, Q: Question, const TURNED: bool> Tiles for Overlaps<'_, L, Q, TUR
     }
 }
 
-/// How far apart boxes are along an axis.
+/// How far apart the centres of boxes are along an axis.
 #[inline(always)]
-fn separation<L: Lanes>(a: &Placed<L>, b: &Placed<L>, axis: usize) -> L {
-    let between = a.centre[axis].sub(b.centre[axis]).abs();
-    between.sub(a.half[axis].add(b.half[axis]))
+fn between<L: Lanes>(a: &Placed<L>, b: &Placed<L>, axis: usize) -> L {
+    a.centre[axis].sub(b.centre[axis]).abs()
 }
 
 /// A bit for each pair in which a slab holds nothing of what lies in another slab and box.

@@ -179,7 +179,7 @@ pub(in crate::collide) fn splat<L: Lanes>([x, y, z]: [f32; 3]) -> [L; 3] {
 
 /// `x·y + rest`.
 #[inline(always)]
-pub(in crate::collide) fn dot<L: Lanes>(x: &[L; 3], y: &[L; 3], rest: L) -> L {
+pub(super) fn dot<L: Lanes>(x: &[L; 3], y: &[L; 3], rest: L) -> L {
     x[0].mul_add(y[0], x[1].mul_add(y[1], x[2].mul_add(y[2], rest)))
 }
 

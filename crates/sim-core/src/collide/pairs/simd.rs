@@ -7,8 +7,8 @@
 use core::arch::x86_64::*;
 use core::ops::ControlFlow;
 
-use super::lanes::{least, push_each};
-use super::{Lanes, Meshes, Question, Stack, TILE, overlap};
+use super::lanes::push_each;
+use super::{Lanes, Level, Meshes, Question, Stack, TILE, overlap};
 use crate::bvh::WIDTH;
 
 #[cfg(feature = "std")]
@@ -20,34 +20,47 @@ macro_rules! has {
     ($($feature:tt),*) => { cfg!(all($(target_feature = $feature),*)) };
 }
 
-#[inline]
-pub(super) fn has_avx2() -> bool {
-    has!("avx2", "fma", "bmi1", "bmi2", "popcnt")
+fn widest_of_processor() -> Level {
+    let has_avx2 = has!("avx2", "fma", "bmi1", "bmi2", "popcnt");
+    match (has_avx2, has!("avx512f")) {
+        (true, true) => Level::Avx512,
+        (true, false) => Level::Avx2,
+        (false, _) => Level::Portable,
+    }
 }
 
+/// The widest level that this processor has.
+#[cfg(feature = "std")]
 #[inline]
-pub(super) fn has_avx512() -> bool {
-    has!("avx512f") && has_avx2()
+pub(super) fn widest() -> Level {
+    // Asked once, as a query that ends at once would feel the asking.
+    static WIDEST: std::sync::OnceLock<Level> = std::sync::OnceLock::new();
+    *WIDEST.get_or_init(widest_of_processor)
 }
 
-/// Answers a question in 256-bit vectors.
-pub(super) fn ask_avx2<Q: Question, const TURNED: bool>(
+/// The widest level that the crate was compiled for.
+#[cfg(not(feature = "std"))]
+#[inline]
+pub(super) fn widest() -> Level {
+    widest_of_processor()
+}
+
+/// Answers a question at a level with instructions of its own that this processor has.
+#[inline]
+pub(super) fn ask<Q: Question, const TURNED: bool>(
+    level: Level,
     meshes: Meshes<'_>,
     question: &mut Q,
-) -> ControlFlow<()> {
-    assert!(has_avx2());
-    // SAFETY: the processor has what `avx2` is compiled for, by the assertion.
-    unsafe { avx2::<Q, TURNED>(meshes, question) }
-}
-
-/// Answers a question in 512-bit vectors.
-pub(super) fn ask_avx512<Q: Question, const TURNED: bool>(
-    meshes: Meshes<'_>,
-    question: &mut Q,
-) -> ControlFlow<()> {
-    assert!(has_avx512());
-    // SAFETY: the processor has what `avx512` is compiled for, by the assertion.
-    unsafe { avx512::<Q, TURNED>(meshes, question) }
+) -> Option<ControlFlow<()>> {
+    if level > widest() {
+        return None;
+    }
+    // SAFETY: the processor has what these are compiled for, as it has the level.
+    match level {
+        Level::Portable => None,
+        Level::Avx2 => Some(unsafe { avx2::<Q, TURNED>(meshes, question) }),
+        Level::Avx512 => Some(unsafe { avx512::<Q, TURNED>(meshes, question) }),
+    }
 }
 
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
@@ -166,13 +179,16 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn least(self, among: u32) -> u32 {
-        let mut lanes = [0.0; TILE];
+    fn least(self, among: u32) -> (u32, bool) {
         call! {
-            _mm256_storeu_ps(lanes.as_mut_ptr(), self.0);
-            _mm256_storeu_ps(lanes[8..].as_mut_ptr(), self.1);
+            let first = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+            let last = _mm256_add_epi32(first, _mm256_set1_epi32(8));
+            let x = _mm256_min_ps(keys(self.0, first, among), keys(self.1, last, among));
+            let x = _mm_min_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps::<1>(x));
+            let x = _mm_min_ps(x, _mm_movehl_ps(x, x));
+            let x = _mm_cvtss_f32(_mm_min_ss(x, _mm_movehdup_ps(x)));
+            (x.to_bits() & 15, x.is_sign_negative())
         }
-        least(&lanes, among)
     }
 
     #[inline(always)]
@@ -246,16 +262,15 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    fn least(self, among: u32) -> u32 {
+    fn least(self, among: u32) -> (u32, bool) {
         call! {
-            // Floats in the order of signed integers: the magnitude's bits of negative ones turned
-            // over. The lowest bits name the lane.
+            // The lowest bits name the lane.
             let bits = _mm512_castps_si512(self.0);
-            let turned = _mm512_srli_epi32::<1>(_mm512_srai_epi32::<31>(bits));
-            let key = _mm512_xor_si512(bits, turned);
             let lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-            let key = _mm512_or_si512(_mm512_and_si512(key, _mm512_set1_epi32(!15)), lane);
-            _mm512_mask_reduce_min_epi32(among as __mmask16, key) as u32 & 15
+            let key = _mm512_or_si512(_mm512_and_si512(bits, _mm512_set1_epi32(!15)), lane);
+            let key = _mm512_castsi512_ps(key);
+            let least = _mm512_mask_reduce_min_ps(among as __mmask16, key);
+            (least.to_bits() & 15, least.is_sign_negative())
         }
     }
 
@@ -270,6 +285,19 @@ impl Lanes for Avx512 {
             stack.push_tile(rows, pack(columns), bits.count_ones() as usize);
         }
     }
+}
+
+/// Floats whose lowest bits name their lane; those of lanes that are not among some bits are
+/// infinite.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn keys(x: __m256, lane: __m256i, among: u32) -> __m256 {
+    let bits = _mm256_and_si256(_mm256_castps_si256(x), _mm256_set1_epi32(!15));
+    let key = _mm256_castsi256_ps(_mm256_or_si256(bits, lane));
+    let bit = _mm256_sllv_epi32(_mm256_set1_epi32(1), lane);
+    let is_not = _mm256_andnot_si256(_mm256_set1_epi32(among as i32), bit);
+    let is_not = _mm256_castsi256_ps(_mm256_cmpeq_epi32(is_not, bit));
+    _mm256_blendv_ps(key, _mm256_set1_ps(f32::INFINITY), is_not)
 }
 
 /// Within each four lanes, takes the one of their own number.
