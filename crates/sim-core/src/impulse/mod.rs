@@ -32,8 +32,8 @@ pub struct Exchange {
 /// `v1`, `v2` (m/s) part along `normal` with the part `restitution` (0 to 1) of the speed at which
 /// they approach; `None` unless they do, and where nothing moves either.
 ///
-/// Along an axis, velocities are rounded once. What differences lose is kept ([`two_sum`]): bodies
-/// that meet millions of times lose it the same way again and again.
+/// Along an axis, velocities are rounded once. What differences lose is kept: bodies that meet
+/// millions of times lose it the same way again and again.
 pub fn between(
     (m1, v1): (f64, DVec3),
     (m2, v2): (f64, DVec3),
