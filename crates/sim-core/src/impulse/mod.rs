@@ -40,7 +40,7 @@ pub fn between(
     normal: DVec3,
     restitution: f64,
 ) -> Option<Exchange> {
-    let (relative, lost) = sum(v2, -v1);
+    let (relative, lost) = two_sums(v2, -v1);
     let parting = relative.dot(normal);
     if parting >= 0.0 || parting.is_nan() {
         return None;
@@ -70,12 +70,12 @@ pub fn between(
 
 /// `v + by normal`, with `by` a sum of two.
 fn changed(v: DVec3, by: (f64, f64), normal: DVec3) -> DVec3 {
-    let (sum, lost) = sum(v, by.0 * normal);
+    let (sum, lost) = two_sums(v, by.0 * normal);
     sum + (lost + by.1 * normal)
 }
 
 /// A sum by components, and what rounding took.
-fn sum(u: DVec3, v: DVec3) -> (DVec3, DVec3) {
+fn two_sums(u: DVec3, v: DVec3) -> (DVec3, DVec3) {
     let [x, y, z] = [0, 1, 2].map(|axis| two_sum(u[axis], v[axis]));
     (DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1))
 }

@@ -15,7 +15,7 @@
 use alloc::{vec, vec::Vec};
 use glam::DVec3;
 
-use super::complementarity::{Rows, sum};
+use super::complementarity::{Matrix, sum};
 
 /// Two bodies in contact, and the unit normal from the first to the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,7 +139,7 @@ fn multipliers(contacts: &[Joined], inverse_mass: &[f64], velocity: &[DVec3]) ->
             let shared = contacts[0].shared(&contacts[1], inverse_mass);
             two(&wanted, [own(0), own(1)], shared)
         }
-        _ => Rows::of(contacts, inverse_mass).multipliers(&wanted),
+        _ => Matrix::of(contacts, inverse_mass).multipliers(&wanted),
     }
 }
 
@@ -238,20 +238,26 @@ mod tests {
 
     #[test]
     fn heaps_are_projected_as_well() {
-        for seed in 0..40 {
-            let (contacts, inverse, start) = scene(seed, 25, 33 + 2 * seed as usize);
+        for seed in 0..80 {
+            let (contacts, mut inverse, start) = scene(seed, 25, 10 + seed as usize);
+            // Every other one of masses up to a million times each other.
+            let is_uneven = seed % 2 == 1;
+            if is_uneven {
+                inverse.iter_mut().for_each(|w| *w = libm::pow(*w, 7.0));
+            }
+            let rounding = if is_uneven { 1e-9 } else { 1e-12 };
             let mut velocity = start.clone();
             let given = project(&contacts, &inverse, &mut velocity);
             let most = given.iter().fold(1.0_f64, |most, &given| most.max(given));
             for (contact, &given) in contacts.iter().zip(&given) {
                 let opening = contact.opening(&velocity);
-                assert!(given >= 0.0 && opening > -1e-12, "{seed}: {opening:e}");
+                assert!(given >= 0.0 && opening > -rounding, "{seed}: {opening:e}");
                 assert!(
-                    given * opening < 1e-11 * most,
+                    given * opening < 10.0 * rounding * most,
                     "{seed}: {given:e} {opening:e}"
                 );
             }
-            assert!(energy(&inverse, &velocity) <= energy(&inverse, &start));
+            assert!(energy(&inverse, &velocity) <= energy(&inverse, &start) * (1.0 + 1e-14));
         }
     }
 
