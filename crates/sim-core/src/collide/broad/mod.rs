@@ -51,7 +51,7 @@ pub(crate) struct Broad {
 #[derive(Clone, Debug)]
 struct Wall {
     now: Front,
-    /// How far it may come along its normal, m, before they are others.
+    /// How far it may come along its normal, rounding with it, m, before they are others.
     level: f64,
     bodies: Vec<usize>,
 }
@@ -80,7 +80,9 @@ impl Broad {
             }
         }
         self.age += 1;
-        if is_known && LEAVERS * self.leavers.len() <= self.bodies.len() {
+        // Only lists of neighbours outlast a step.
+        let is_listed = is_known && self.neighbours.is_some();
+        if is_listed && LEAVERS * self.leavers.len() <= self.bodies.len() {
             for &body in &self.leavers {
                 self.has_left[body] = true;
                 self.rows.replace(self.now[body]);
@@ -164,15 +166,15 @@ impl Broad {
                         found(i, j);
                     }
                 }
-            }
-        }
-        for &body in &self.leavers {
-            self.each_in_rows(body, |other| {
-                // Of two that have left, the pair comes up twice.
-                if !self.has_left[other] || body < other {
-                    found(body.min(other), body.max(other));
+                for &body in &self.leavers {
+                    self.each_in_rows(body, |other| {
+                        // Of two that have left, the pair comes up twice.
+                        if !self.has_left[other] || body < other {
+                            found(body.min(other), body.max(other));
+                        }
+                    });
                 }
-            });
+            }
         }
         for wall in &self.walls {
             let body = wall.now.body;
@@ -255,11 +257,13 @@ impl Wall {
         (leavers, has_left, wide): (&[usize], &[bool], &[Swept]),
     ) {
         let last = mem::replace(&mut self.now, front);
-        if front.level > self.level {
+        if front.level + front.slack > self.level {
             let ahead = STEPS * (front.level - last.level).max(0.0);
-            self.level = front.level + ahead;
-            let level = self.level;
-            let farthest = Front { level, ..front };
+            let farthest = Front {
+                level: front.level + ahead,
+                ..front
+            };
+            self.level = farthest.level + farthest.slack;
             self.bodies.clear();
             rows.each_before(&farthest, |body| {
                 if !has_left[body] {
@@ -333,13 +337,18 @@ mod tests {
 
     #[test]
     fn pairs_and_partners_are_those_of_brute_force() {
-        for count in [0, 1, 2, 3, 10, 300, 600] {
+        let cases = [0, 1, 2, 3, 10, 300, 600].map(|count| [(count, 1), (count, 12)]);
+        // How many there are, and of how many one moves.
+        for (count, moving) in cases.into_iter().flatten() {
             let bodies: Vec<usize> = (0..count + 2).collect();
             let mut random = Random(7 + count as u64);
             let mut broad = Broad::default();
             let mut all: Vec<Swept> = (0..count).map(|body| random.swept(body)).collect();
             let velocity: Vec<_> = (0..count)
-                .map(|_| random.vector() - random.vector())
+                .map(|body| match body % moving {
+                    0 => random.vector() - random.vector(),
+                    _ => DVec3::ZERO,
+                })
                 .collect();
             let fronts = |step: usize| {
                 [(DVec3::X, 2.0), (DVec3::new(0.0, -0.6, 0.8), -3.0)].map(|(normal, level)| Front {

@@ -2,8 +2,8 @@
 //!
 //! Boxes are sorted along a curve that keeps neighbours together (Morton 1966, "A computer oriented
 //! geodetic data base and a new technique in file sequencing"). Eight in a row have a box around them,
-//! eight of these another, and so on: a tree without a pointer, made afresh in each step in less time
-//! than it takes to ask it. A box that is replaced after that widens those around it.
+//! eight of these another, and so on: a tree without a pointer, made afresh in less time than it takes
+//! to ask it. A box that is replaced after that widens those around it.
 
 use alloc::vec::Vec;
 use glam::DVec3;
