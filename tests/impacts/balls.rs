@@ -194,3 +194,79 @@ fn stacks_stand() {
         assert!(moved <= 1e-9, "body {i} moved {moved:e}");
     }
 }
+
+/// A ball thrown up to a ceiling or a ball, which it reaches with what speed is left.
+#[test]
+fn what_just_touches_at_its_turn_falls_back() {
+    const HEIGHT: f64 = 4.0;
+    let ball = |y: f64, speed: f64| ball(0.5, y * DVec3::Y, speed * DVec3::Y);
+    // By how much the other one is too low, m.
+    for depth in [0.0, 1e-12, 1e-6] {
+        for dt in [2.0, 0.75, 2.0 / 3.0, 1.0 / 16.0, DT] {
+            let ceiling = wall(DVec3::NEG_Y, (HEIGHT + 0.5 - depth) * DVec3::Y, DVec3::ZERO);
+            let other = immovable(ball(HEIGHT + 1.0 - depth, 0.0));
+            for above in [ceiling, other] {
+                let thrown = Body {
+                    force: -8.0 * DVec3::Y,
+                    ..ball(0.0, 8.0)
+                };
+                let mut world = world_with(settings(dt), &[thrown, above]);
+                run(&mut world, (1.5 / dt).ceil() as u64);
+                let t = world.time();
+                let exact = 8.0 * t - 4.0 * t * t;
+                // Turned back at the speed left there, it is early by twice the time to the turn.
+                let early = 2.0 * (depth / 4.0).sqrt();
+                let tolerance = 1e-6 + 1.1 * early * (8.0 * t - 8.0).abs();
+                let off = (world.position(0).y - exact).abs();
+                assert!(off <= tolerance, "{depth:e}, {dt}: {off:e}");
+            }
+        }
+    }
+}
+
+/// An impact at the end of a step gives back what any other one does.
+#[test]
+fn the_end_of_a_step_takes_no_speed() {
+    for restitution in [0.1, 0.9, 1.0] {
+        for early in [0.0, 1e-15, 1e-14, 1e-12] {
+            let dt = 1.0 / 64.0;
+            let x = -0.5 - (3.0 - early) * dt;
+            let thrown = Body {
+                restitution,
+                ..ball(0.5, x * DVec3::X, DVec3::X)
+            };
+            let wall = wall(DVec3::NEG_X, DVec3::ZERO, DVec3::ZERO);
+            let mut world = world_with(settings(dt), &[thrown, wall]);
+            run(&mut world, 8);
+            let speed = -world.velocity(0).x;
+            assert!(
+                (speed - restitution).abs() < 1e-14,
+                "{restitution}, {early:e}: {speed}"
+            );
+        }
+    }
+}
+
+/// A ball that rolls off another one and is pushed back to it is met where it comes back, however
+/// near it was at the start.
+#[test]
+fn what_leaves_at_once_and_comes_back_is_met_there() {
+    let end = |gap: f64| {
+        let under = immovable(ball(0.5, DVec3::ZERO, DVec3::ZERO));
+        let rolling = Body {
+            force: DVec3::new(-16.0, -2.0, 0.0),
+            ..ball(0.5, (1.0 + gap) * DVec3::Y, 2.0 * DVec3::X)
+        };
+        let mut world = world_with(settings(0.5), &[under, rolling]);
+        assert!(world.overlapping().is_empty());
+        run(&mut world, 1);
+        (world.position(1), world.velocity(1))
+    };
+    let exact = end(1e-13);
+    assert!(exact.1.y > 0.1);
+    for gap in [1e-15, 2e-15, 1e-14] {
+        let found = end(gap);
+        assert!((found.0 - exact.0).length() < 1e-9, "{gap:e}: {found:?}");
+        assert!((found.1 - exact.1).length() < 1e-9, "{gap:e}: {found:?}");
+    }
+}

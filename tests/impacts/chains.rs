@@ -3,7 +3,7 @@
 use std::sync::mpsc;
 use std::time::Duration;
 
-use sim_core::{DVec3, World};
+use sim_core::{Body, DVec3, World};
 
 use crate::worlds::{DT, Kept, ULP, assert_close, ball, run, settings, wall, world, world_with};
 
@@ -176,6 +176,61 @@ fn a_symmetric_break_stays_symmetric() {
             assert_eq!(cue, mirrored(cue), "{what}");
             assert!(up.1.y > 0.1, "{what}: {up:?}");
             kept.assert(&world, 4.0 * ULP, &what);
+        }
+    }
+}
+
+/// The least loss at each impact changes nothing to speak of, however many there are in a step.
+#[test]
+fn blocks_that_lose_a_last_bit_count_as_well() {
+    let mut world = galperin(3, 0.25);
+    for body in 0..3 {
+        world.set_restitution(body, 1.0 - 1e-15).expect("less");
+    }
+    for _ in 0..1200 {
+        world.step().expect("a step");
+    }
+    assert_eq!(world.impacts(), 3141);
+    assert!((world.velocity(2).x - 1.0).abs() < 1e-3);
+}
+
+/// Gravity along the walls of a slot, or on all alike, has no part in impacts across it.
+#[test]
+fn common_gravity_changes_no_impact() {
+    let slot = [1.0, -1.0].map(|s| Body {
+        restitution: 0.999,
+        ..wall(s * DVec3::X, -0.5001 * s * DVec3::X, DVec3::ZERO)
+    });
+    let rattling = Body {
+        restitution: 0.999,
+        ..ball(0.5, DVec3::ZERO, 0.15 * DVec3::X)
+    };
+    let in_slot = [slot.as_slice(), &[rattling]].concat();
+    let falling = [(-1.001, 0.05, 1e4), (0.0, 0.0, 1.0), (1.002, -0.05, 1e4)];
+    let falling = falling.map(|(x, v, mass)| Body {
+        mass,
+        restitution: 0.999,
+        ..ball(0.5, x * DVec3::X, v * DVec3::X)
+    });
+    for bodies in [in_slot, falling.to_vec()] {
+        let speeds = |g: f64| {
+            let weigh = |body: &Body| Body {
+                force: if body.mass.is_finite() {
+                    -g * body.mass * DVec3::Y
+                } else {
+                    DVec3::ZERO
+                },
+                ..body.clone()
+            };
+            let bodies: Vec<Body> = bodies.iter().map(weigh).collect();
+            let mut world = world(DT, &bodies);
+            run(&mut world, 240);
+            (0..bodies.len())
+                .map(|i| world.velocity(i).x)
+                .collect::<Vec<_>>()
+        };
+        for (with, without) in speeds(9.81).into_iter().zip(speeds(0.0)) {
+            assert!((with - without).abs() < 1e-9, "{with} {without}");
         }
     }
 }

@@ -44,8 +44,11 @@ impl Parabola {
     fn start(&self, gap: f64, speed: f64, acceleration: f64, length: f64) -> Start {
         let (grain, still) = self.grain;
         if gap > 0.0 {
-            let is_near = gap <= 4.0 * grain && speed <= still;
-            return if is_near { Start::Near } else { Start::Apart };
+            let is_coming = speed < -still || speed <= still && acceleration < 0.0;
+            return match is_coming && gap <= 4.0 * grain {
+                true => Start::Near,
+                false => Start::Apart,
+            };
         }
         if speed > still {
             return Start::Leaving;
@@ -62,7 +65,7 @@ impl Parabola {
 
 enum Start {
     Apart,
-    /// Within rounding of a touch, and not leaving: what it comes to, it comes to at once.
+    /// Within rounding of a touch that it comes to: it comes to it at once.
     Near,
     /// It touches, and closes or is pressed to.
     Touching,
@@ -126,8 +129,9 @@ fn above_plane(normal: DVec3, other: Form<'_>, way: &Parabola, length: f64) -> O
             }
         }
     };
-    // Nor where there is none.
-    if !(0.0..=length).contains(&time) {
+    // Nor where there is none, nor where it turns just there.
+    let is_turn = time > 0.0 && way.closing(time, normal) <= 0.0;
+    if is_turn || !(0.0..=length).contains(&time) {
         return None;
     }
     let time = if matches!(start, Start::Near) {
@@ -175,20 +179,24 @@ fn spheres(first: f64, second: f64, way: &Parabola, length: f64) -> Option<Conta
             first_root(bernstein(rest))?
         }
         Start::Beside => {
-            let [_, _, rest @ ..] = terms;
-            first_root(bernstein(rest))?
+            let [_, _, bend, rest @ ..] = terms;
+            first_root(bernstein([bend.max(0.0), rest[0], rest[1]]))?
         }
     };
     let mut time = part * length;
-    for _ in 0..2 {
-        let at = way.at(time);
-        let outward = unit(at)?;
-        let closing = way.closing(time, outward);
-        if part > 0.0 && closing > 0.0 {
-            time = (time + (libm::sqrt(at.dot(at)) - sum) / closing).clamp(0.0, length);
+    if part > 0.0 {
+        for _ in 0..2 {
+            let at = way.at(time);
+            let closing = way.closing(time, unit(at)?);
+            if closing > 0.0 {
+                time = (time + (libm::sqrt(at.dot(at)) - sum) / closing).clamp(0.0, length);
+            }
         }
     }
     let normal = unit(way.at(time))?;
+    if part > 0.0 && way.closing(time, normal) <= 0.0 {
+        return None;
+    }
     Some(Contact {
         time,
         point: first * normal,

@@ -50,8 +50,8 @@ pub(super) struct Continuous {
     /// How often each body has come to rest in this step, once one has; one that has too often stops
     /// for the rest of it.
     rests: Vec<u32>,
-    /// How often each body has had an impact, once one has, where some give back a part only.
-    bounces: Vec<u32>,
+    /// What impacts each body has had in this step, once one has, where some give back a part only.
+    bounces: Vec<Bounces>,
     /// Contacts whose bodies stay together for the rest of the step.
     resting: Vec<Rest>,
     events: BinaryHeap<Event>,
@@ -69,6 +69,14 @@ pub(super) struct Continuous {
     is_free: bool,
     /// Whether overlapping pairs have been placed since it was seen whether they just touch.
     pub(super) placed: bool,
+}
+
+/// Impacts of a body in a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Bounces {
+    count: u32,
+    /// The greatest speed at which one closed, m/s.
+    fastest: f64,
 }
 
 /// An impact to come.
@@ -225,18 +233,22 @@ impl World {
 
     /// The next impact no later than a time, of bodies that are still on the ways that led to it.
     fn next_event(&mut self, until: f64) -> Option<Event> {
-        let ways = &mut self.continuous;
-        while let Some(event) = ways.events.peek() {
+        while let Some(event) = self.continuous.events.peek() {
             if event.time > until {
                 return None;
             }
-            let event = ways.events.pop()?;
-            let (i, j) = event.bodies;
-            if event.versions == (ways.version[i], ways.version[j]) {
+            let event = self.continuous.events.pop()?;
+            if self.is_current(&event) {
                 return Some(event);
             }
         }
         None
+    }
+
+    /// Whether the bodies of an impact are still on the ways that lead to it.
+    fn is_current(&self, event: &Event) -> bool {
+        let ((i, j), version) = (event.bodies, &self.continuous.version);
+        event.versions == (version[i], version[j])
     }
 
     /// Takes what a body sweeps on its new way in the place of what it swept.

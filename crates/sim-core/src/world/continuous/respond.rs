@@ -6,26 +6,28 @@
 //! many bounces, and a body on a floor stays where it is; the limit follows from the step and the
 //! forces. In the next step contact is found anew, or it is not.
 //!
-//! In a heap impacts follow each other faster and faster without any flight being short (inelastic
-//! collapse; McNamara, Young 1994, "Inelastic collapse in two dimensions"). A body that gives back a
-//! part only and has had several in a step comes to rest on what it closes with by less than what
-//! forces give in a step.
+//! Bodies that keep a part of their speed only come to rest as well where what is left moves them by
+//! no more than a rounding in a step; and where they are caught among others, so that impacts follow
+//! each other faster and faster though nothing presses these two together (inelastic collapse;
+//! McNamara, Young 1994, "Inelastic collapse in two dimensions"): by a small part of the speed
+//! at which it began, or of what forces give to each of them if they lie on something.
 
 use alloc::{vec, vec::Vec};
 use core::mem;
 use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
-use super::Event;
+use super::{Bounces, Event};
 use crate::impulse::{Joined, project, reflect};
 
 /// A flight of less than this part of a step is none.
 const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
 
-/// Impacts of a body in a step after which it counts as one of a heap, and after which none gives
-/// anything back any more.
+/// Impacts of a body in a step after which it may be caught among others.
 const MANY_BOUNCES: u32 = 8;
-const MOST_BOUNCES: u32 = 1024;
+
+/// Part of the greatest speed at which a body has had an impact in a step that is nothing beside it.
+const SPENT: f64 = 1e-6;
 
 /// Part of a step within which bodies that lie together may come to touch.
 const SOON: f64 = 1.0 / 4.0;
@@ -160,82 +162,127 @@ impl World {
         self.mass_there(body).is_finite()
     }
 
-    /// Adds to contacts that come to rest those that are to do so soon and are no farther from it than
-    /// a flight that is none, as most are in a heap: one by one, each would move all others.
+    /// Adds to contacts that come to rest those that their bodies and what lies with these come to
+    /// soon, no farther away than a flight that is none is high: in a heap nearly all are so, and
+    /// one by one each would move all others.
     fn join_touching(
         &mut self,
         group: &mut Vec<Event>,
         time: f64,
         renewed: &mut Vec<usize>,
     ) -> Result<(), (usize, Cause)> {
-        let mut others = Vec::new();
-        while let Some(mut event) = self.next_event(time + SOON * self.settings.dt) {
-            let hop = self.hop(event.bodies);
-            if self.closes_by(&event, time)? <= hop {
-                self.renew(event.bodies, time, renewed)?;
-                self.choose(&mut event);
-                if event.answer == Answer::Rest {
-                    group.push(event);
-                    continue;
+        let until = time + SOON * self.settings.dt;
+        loop {
+            let bodies = group.iter().map(|event| event.bodies);
+            let tied = self.reached(bodies.clone(), &self.continuous.resting);
+            let is_tied = |event: &&Event| {
+                let (i, j) = event.bodies;
+                event.time <= until && self.is_current(event) && (tied[i] || tied[j])
+            };
+            let soon = self.continuous.events.iter().filter(is_tied);
+            let is_new = |event: &&Event| bodies.clone().all(|known| known != event.bodies);
+            let mut soon: Vec<Event> = soon.filter(is_new).cloned().collect();
+            soon.sort_unstable_by(|a, b| b.cmp(a));
+            let before = group.len();
+            for mut event in soon {
+                if self.is_hop(&event, time)? {
+                    self.renew(event.bodies, time, renewed)?;
+                    self.choose(&mut event);
+                    if event.answer == Answer::Rest {
+                        group.push(event);
+                    }
                 }
             }
-            others.push(event);
+            if group.len() == before {
+                return Ok(());
+            }
         }
-        self.continuous.events.extend(others);
-        Ok(())
     }
 
-    /// The height of a flight that is none, m, as forces on two bodies make it.
-    fn hop(&self, (i, j): (usize, usize)) -> f64 {
-        let push = &self.continuous.given;
-        let half = 0.5 * SHORTEST_FLIGHT * self.settings.dt;
-        0.5 * half * half * push[i].length().max(push[j].length())
-    }
-
-    /// By how much the bodies of an impact come together from a time on until then, m.
-    fn closes_by(&mut self, event: &Event, from: f64) -> Result<f64, (usize, Cause)> {
+    /// Whether between a time and an impact two bodies are no farther apart, and do not part faster,
+    /// than in a flight that is none.
+    fn is_hop(&mut self, event: &Event, from: f64) -> Result<bool, (usize, Cause)> {
+        let ((i, j), normal) = (event.bodies, event.contact.normal);
         let mut probe = mem::take(&mut self.continuous.probe);
-        let mut moves = |body: usize| {
-            let start = from.max(self.continuous.since[body]);
-            let before = self.motion_at(body, start, &mut probe)?.0;
-            Ok(self.motion_at(body, event.time, &mut probe)?.0 - before)
+        let mut along = |body: usize, time: f64| {
+            let (x, v) = self.seen_at(body, time, &mut probe)?;
+            Ok((x.dot(normal), v.dot(normal)))
         };
-        let (first, second) = (moves(event.bodies.0), moves(event.bodies.1));
+        let start = from
+            .max(self.continuous.since[i])
+            .max(self.continuous.since[j]);
+        let mut apart = |time: f64| {
+            let ((x1, v1), (x2, v2)) = (along(i, time)?, along(j, time)?);
+            Ok((x2 - x1, v2 - v1))
+        };
+        let motion = apart(start).and_then(|start| Ok((start, apart(event.time)?)));
         self.continuous.probe = probe;
-        Ok((first? - second?).dot(event.contact.normal))
+        let ((gap, opening), (end, _)) = motion?;
+        let push = self.greatest_push(i, j);
+        // Up for half of the time, and down for the other.
+        let rise = 0.5 * SHORTEST_FLIGHT * self.settings.dt;
+        Ok(gap - end <= 0.5 * rise * rise * push && opening <= rise * push)
     }
 
-    /// Counts how often bodies have come to rest, and where some do not keep their speed how often they
-    /// have had an impact.
+    /// The greater of what forces alone do to two bodies all along their ways, m/s².
+    fn greatest_push(&self, i: usize, j: usize) -> f64 {
+        let push = &self.continuous.given;
+        push[i].length().max(push[j].length())
+    }
+
+    /// Counts how often bodies have come to rest, and where some do not keep their speed what impacts
+    /// they have had.
     fn count(&mut self, group: &[Event]) {
         for event in group {
+            let is_counted = event.answer != Answer::Bounce || !self.restitution.is_empty();
+            let closing = self.closing(event);
             for body in [event.bodies.0, event.bodies.1] {
-                let is_counted = event.answer != Answer::Bounce || !self.restitution.is_empty();
                 if !is_counted || !self.is_moved(body) {
                     continue;
                 }
-                let counts = match event.answer {
-                    Answer::Bounce => &mut self.continuous.bounces,
-                    Answer::Rest | Answer::Part => &mut self.continuous.rests,
-                };
-                counts.resize(self.mass.len(), 0);
-                counts[body] += 1;
+                let (bodies, ways) = (self.mass.len(), &mut self.continuous);
+                if event.answer == Answer::Bounce {
+                    ways.bounces.resize(bodies, Bounces::default());
+                    let bounces = &mut ways.bounces[body];
+                    bounces.count += 1;
+                    bounces.fastest = bounces.fastest.max(closing);
+                } else {
+                    ways.rests.resize(bodies, 0);
+                    ways.rests[body] += 1;
+                }
             }
         }
+    }
+
+    /// The speed at which two bodies close at their impact, m/s.
+    fn closing(&self, event: &Event) -> f64 {
+        let (i, j) = event.bodies;
+        (self.velocity_there(i) - self.velocity_there(j)).dot(event.contact.normal)
     }
 
     fn choose(&self, event: &mut Event) {
         let ((i, j), normal) = (event.bodies, event.contact.normal);
-        let closing = (self.velocity_there(i) - self.velocity_there(j)).dot(normal);
-        let pushed = (self.acceleration_there(i), self.acceleration_there(j));
-        let pressed = (pushed.0 - pushed.1).dot(normal);
+        let closing = self.closing(event);
+        let pressed = (self.acceleration_there(i) - self.acceleration_there(j)).dot(normal);
         let restitution = self.pair_restitution(i, j);
         event.pressure = self.settings.dt * pressed;
         let lasting = restitution * (closing - self.unfelt(event.pressure)).max(0.0);
         // Back after the time 2 v / a.
-        let is_short = pressed > 0.0 && 2.0 * lasting <= SHORTEST_FLIGHT * event.pressure;
-        let felt = self.settings.dt * pushed.0.length().max(pushed.1.length());
-        event.answer = if is_short || restitution < 1.0 && self.is_caught(event, closing, felt) {
+        let is_short = |speed: f64, push: f64| 2.0 * speed <= SHORTEST_FLIGHT * push;
+        let is_resting = pressed > 0.0 && is_short(lasting, event.pressure);
+        let leaving = restitution * closing;
+        let is_spent = || leaving * self.settings.dt <= self.grain(i, j);
+        let is_caught = || {
+            let felt = self.settings.dt * self.greatest_push(i, j);
+            let (bounces, rests) = (
+                self.bounces_of(i, j),
+                self.has_rested(i) || self.has_rested(j),
+            );
+            bounces.count >= MANY_BOUNCES
+                && (leaving <= SPENT * bounces.fastest || rests && is_short(leaving, felt))
+        };
+        let is_lossy = restitution < 1.0 && closing > 0.0;
+        event.answer = if is_resting || is_lossy && (is_spent() || is_caught()) {
             Answer::Rest
         } else if closing > 0.0 {
             Answer::Bounce
@@ -244,21 +291,21 @@ impl World {
         };
     }
 
-    /// Whether bodies that keep a part of their speed only, and close, are caught among others, where
-    /// they would meet without end: they hardly move any more, or have met others often in this
-    /// step and close by no more than what forces give in one, or have so all too often.
-    fn is_caught(&self, event: &Event, closing: f64, felt: f64) -> bool {
-        if closing <= 0.0 {
-            return false;
+    /// The impacts of that one of two bodies that has had more.
+    fn bounces_of(&self, i: usize, j: usize) -> Bounces {
+        let of = |body: usize| self.continuous.bounces.get(body).copied();
+        let (first, second) = (of(i).unwrap_or_default(), of(j).unwrap_or_default());
+        match first.count >= second.count {
+            true => first,
+            false => second,
         }
-        let (i, j) = event.bodies;
-        let ways = &self.continuous;
-        let left = self.settings.dt - ways.since[i].max(ways.since[j]);
-        let bounces = |body: usize| ways.bounces.get(body).copied().unwrap_or(0);
-        let bounces = bounces(i).max(bounces(j));
-        self.pair_restitution(i, j) * closing * left <= self.grain(i, j)
-            || bounces >= MANY_BOUNCES && closing <= felt
-            || bounces >= MOST_BOUNCES
+    }
+
+    fn has_rested(&self, body: usize) -> bool {
+        self.continuous
+            .rests
+            .get(body)
+            .is_some_and(|&rests| rests > 0)
     }
 
     /// The speed at which bodies close that lie on each other, as forces that close them by a speed in
@@ -387,12 +434,21 @@ impl World {
         Ok(())
     }
 
-    /// The movable bodies of some pairs, and all that resting contacts tie to them.
+    /// The movable bodies of some pairs, and all that resting contacts tie to them. What one has pushed
+    /// that has stopped is among them, as it is no longer moved along.
     fn reached(&self, pairs: impl Iterator<Item = (usize, usize)>, resting: &[Rest]) -> Vec<bool> {
         let is_movable = |body: usize| self.is_moved(body);
         let mut reached = vec![false; self.len()];
         for body in pairs.flat_map(|(i, j)| [i, j]) {
             reached[body] = is_movable(body);
+            if self.is_stopped(body) {
+                for &Rest { bodies: (i, j), .. } in resting {
+                    if i == body || j == body {
+                        let other = i + j - body;
+                        reached[other] = is_movable(other);
+                    }
+                }
+            }
         }
         let mut grows = true;
         while grows {

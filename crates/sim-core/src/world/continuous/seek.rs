@@ -110,10 +110,9 @@ impl World {
         let Some(contact) = first_on_parabola(first, second, &way, length) else {
             return Ok(None);
         };
-        let from = (start, way.offset);
-        // Parts of the way are its seconds.
-        let along = (1.0, way.closing(contact.time, contact.normal).max(0.0));
-        self.settle(pair, from, along, contact, probe).map(Some)
+        let closing = way.closing(contact.time, contact.normal);
+        let times = (start, start + contact.time);
+        self.settle(pair, times, closing, contact, probe).map(Some)
     }
 
     /// The first impact on a part of the way, given as times and offsets of its ends.
@@ -139,10 +138,10 @@ impl World {
             && from.0 == self.start_of(pair)
             && self.is_closing(pair, contact.normal, probe);
         if is_straight || is_there {
-            let time = if is_there { 0.0 } else { contact.time };
-            let contact = Contact { time, ..contact };
+            let part = if is_there { 0.0 } else { contact.time };
+            let times = (from.0, from.0 + part * length);
             return self
-                .settle(pair, from, (length, fall), contact, probe)
+                .settle(pair, times, fall / length, contact, probe)
                 .map(Some);
         }
         // Within this of the chord's impact lies the way's, unless it slips past.
@@ -169,31 +168,33 @@ impl World {
         Ok(None)
     }
 
-    /// The last time before a contact, but for rounding, at which two bodies are apart.
+    /// The last time before a contact, but for rounding, at which two bodies are apart: not before a
+    /// start, and from a time on at which they touch and close at a speed.
     fn settle(
         &self,
         pair: Pair,
-        from: (f64, DVec3),
-        (length, fall): (f64, f64),
+        (start, touching): (f64, f64),
+        closing: f64,
         contact: Contact,
         probe: &mut Probe,
     ) -> Result<Event, (usize, Cause)> {
-        let Pair { i, j, grain, .. } = pair;
-        let touching = from.0 + contact.time * length;
+        let Pair { i, j, bend, grain } = pair;
         // Bodies that nothing presses together part at once, and need no room to stay in.
         let room = if self.are_pressed(i, j) {
             grain
         } else {
             0.0625 * grain
         };
-        let mut back = (room * length / fall).max(f64::MIN_POSITIVE);
+        // By their speed, or where there is hardly any by the way's bend.
+        let back = (room / closing).min(libm::sqrt(room / (4.0 * bend)));
+        let mut back = back.max(f64::MIN_POSITIVE);
         if self.extent(i).half.max(self.extent(j).half) == 0.0 {
             // Points that have passed each other by a rounding of the time do not meet.
             back = back.max(ULPS * f64::EPSILON * touching);
         }
         let mut time = touching;
-        while time > from.0 {
-            time = (touching - back).max(from.0);
+        while time > start {
+            time = (touching - back).max(start);
             back *= 2.0;
             let offset = self.offset_at(pair, time, probe)?;
             if !self.meet_built(i, j, offset) {
