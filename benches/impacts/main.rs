@@ -6,6 +6,7 @@
 mod boxes;
 mod crowd;
 mod galperin;
+mod heap;
 mod one;
 mod ours;
 mod pair;
@@ -32,6 +33,7 @@ fn main() {
         crowd::bench(&mut criterion),
         one::bench(&mut criterion),
         galperin::bench(&mut criterion),
+        heap::bench(),
     ];
     criterion.final_summary();
     let tables = tables.iter().flatten();

@@ -39,6 +39,7 @@ pub(crate) fn world(scene: &Scene, collision: Collision, method: &str) -> World 
             position: item.position,
             velocity: item.velocity,
             mass: if is_wall { f64::INFINITY } else { 1.0 },
+            restitution: scene.restitution,
             ..Body::default()
         };
         world.add(body).expect("a body");

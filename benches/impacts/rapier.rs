@@ -70,7 +70,8 @@ impl Rapier {
                 .ccd_enabled(item.is_bullet && !is_wall);
             match collider {
                 Some(collider) => {
-                    let collider = collider.mass(1.0).friction(0.0).restitution(1.0);
+                    let collider = collider.mass(1.0).friction(0.0);
+                    let collider = collider.restitution(scene.restitution);
                     world.insert(body, collider).0
                 }
                 None => world.insert_body(body.additional_mass(1.0)),

@@ -25,12 +25,13 @@ pub(crate) struct Item {
     pub(crate) is_bullet: bool,
 }
 
-/// Elastic bodies of 1 kg without friction that do not turn, and immovable walls.
+/// Bodies of 1 kg without friction that do not turn, elastic unless said, and immovable walls.
 #[derive(Clone)]
 pub(crate) struct Scene {
     pub(crate) items: Vec<Item>,
     pub(crate) dt: f64,
     pub(crate) gravity: DVec3,
+    pub(crate) restitution: f64,
 }
 
 impl Scene {
@@ -39,6 +40,7 @@ impl Scene {
             items,
             dt: 1.0 / 60.0,
             gravity: DVec3::ZERO,
+            restitution: 1.0,
         }
     }
 }

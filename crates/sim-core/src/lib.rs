@@ -85,6 +85,8 @@ pub mod ode;
 mod shape;
 #[cfg(test)]
 mod test_meshes;
+#[cfg(test)]
+mod test_random;
 mod world;
 
 pub use aabb::Aabb;

@@ -22,8 +22,8 @@ pub(crate) struct Cuboid {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Face {
     pub(crate) triangles: [u32; 2],
-    /// Of each triangle the corner that is not on the diagonal.
-    pub(crate) corners: [usize; 2],
+    /// The corner of the first one that is not on the diagonal.
+    pub(crate) corner: usize,
 }
 
 impl Cuboid {
@@ -58,11 +58,13 @@ impl Cuboid {
                 empty @ None => {
                     *empty = Some(Face {
                         triangles: [triangle; 2],
-                        corners: [right; 2],
+                        corner: right,
                     });
                 }
-                Some(face) if face.corners == [right ^ diagonal; 2] => {
-                    (face.triangles[1], face.corners[1]) = (triangle, right);
+                Some(Face { triangles, corner })
+                    if triangles[0] == triangles[1] && *corner == right ^ diagonal =>
+                {
+                    triangles[1] = triangle;
                 }
                 Some(_) => return None,
             }
@@ -123,9 +125,10 @@ mod tests {
             assert_eq!(cube().vertices()[vertex].as_dvec3(), at);
         }
         for (axis, face) in (0..3).flat_map(|axis| known.faces[axis].map(|face| (axis, face))) {
-            for (triangle, corner) in face.triangles.into_iter().zip(face.corners) {
+            let diagonal = 7 ^ 1 << axis;
+            let corners = [face.corner, face.corner ^ diagonal];
+            for (triangle, corner) in face.triangles.into_iter().zip(corners) {
                 let names = cube().triangles()[triangle as usize];
-                let diagonal = 7 ^ 1 << axis;
                 assert!(names.contains(&known.vertices[corner]));
                 assert!(!names.contains(&known.vertices[corner ^ diagonal]));
             }

@@ -215,14 +215,13 @@ impl Placed<'_> {
     fn triangle_met(&self, axis: usize, end: usize, point: DVec3, motion: DVec3) -> u32 {
         let face = &self.cuboid.faces[axis][end];
         let at = |corner: usize| Cuboid::corner(&self.ends, corner);
-        let of_first = face.corners[0];
-        let next = 1 << ((axis + 1) % 3);
-        let from = at(of_first ^ next);
-        let diagonal = Difference(at(face.corners[1] ^ next), from);
+        // The ends of the diagonal are the corners beside that of the first triangle.
+        let from = at(face.corner ^ 1 << ((axis + 1) % 3));
+        let diagonal = Difference(at(face.corner ^ 1 << ((axis + 2) % 3)), from);
         let side = |x: DVec3| sign([diagonal, motion.into(), Difference(from, x)]);
         match side(point) {
             Equal => face.triangles[0].min(face.triangles[1]),
-            side_of_it if side_of_it == side(at(of_first)) => face.triangles[0],
+            side_of_it if side_of_it == side(at(face.corner)) => face.triangles[0],
             _ => face.triangles[1],
         }
     }
@@ -253,40 +252,29 @@ mod tests {
         sweep::{Kind, Search},
         tree,
     };
-    use crate::test_meshes::cube;
+    use crate::{test_meshes::cube, test_random::Random};
     use alloc::format;
     use glam::DQuat;
 
-    struct Random(u64);
+    fn three(random: &mut Random, most: i64) -> DVec3 {
+        DVec3::from_array(random.three(most).map(|x| x as f64))
+    }
 
-    impl Random {
-        fn up_to(&mut self, most: i64) -> f64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            ((self.0 >> 1) as i64 % (2 * most + 1) - most) as f64
-        }
-
-        fn three(&mut self, most: i64) -> DVec3 {
-            DVec3::new(self.up_to(most), self.up_to(most), self.up_to(most))
-        }
-
-        /// A box, with some of its diagonals turned and its triangles in some order.
-        fn cuboid(&mut self, size: DVec3) -> Bvh {
-            let unit = cube().transformed(DQuat::IDENTITY, size).unwrap();
-            let mut triangles = unit.triangles().to_vec();
-            for pair in triangles.chunks_exact_mut(2) {
-                if self.up_to(1) > 0.0 {
-                    let ([a, b, c], d) = (pair[0], pair[1][2]);
-                    (pair[0], pair[1]) = ([a, b, d], [b, c, d]);
-                }
+    /// A box, with some of its diagonals turned and its triangles in some order.
+    fn cuboid(random: &mut Random, size: DVec3) -> Bvh {
+        let unit = cube().transformed(DQuat::IDENTITY, size).unwrap();
+        let mut triangles = unit.triangles().to_vec();
+        for pair in triangles.chunks_exact_mut(2) {
+            if random.up_to(1) > 0 {
+                let ([a, b, c], d) = (pair[0], pair[1][2]);
+                (pair[0], pair[1]) = ([a, b, d], [b, c, d]);
             }
-            for i in 0..triangles.len() {
-                let j = self.up_to(11).abs() as usize;
-                triangles.swap(i, j);
-            }
-            Bvh::build(&Mesh::new(unit.vertices().to_vec(), triangles).unwrap())
         }
+        for i in 0..triangles.len() {
+            let j = random.up_to(11).unsigned_abs() as usize;
+            triangles.swap(i, j);
+        }
+        Bvh::build(&Mesh::new(unit.vertices().to_vec(), triangles).unwrap())
     }
 
     #[test]
@@ -294,38 +282,33 @@ mod tests {
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         let (mut touches, mut misses, mut untold, mut others) = (0, 0, 0, 0);
         for round in 0..60_000 {
-            let sizes = [(); 2].map(|()| random.three(2).abs() + 1.0);
-            let (first, second) = (random.cuboid(sizes[0]), random.cuboid(sizes[1]));
-            let offset = 0.5 * random.three(8);
+            let sizes = [(); 2].map(|()| three(&mut random, 2).abs() + 1.0);
+            // As large as f32 has it, and as small as products bear.
+            let scale = libm::ldexp(1.0, [0, -100, 120][round % 7 % 3]);
+            let [first, second] = sizes.map(|size| cuboid(&mut random, scale * size));
+            let offset = 0.5 * three(&mut random, 8);
             let aim = if round % 2 == 0 { -1.5 } else { 0.0 };
-            let motion = aim * offset + 0.5 * random.three(8);
+            let motion = aim * offset + 0.5 * three(&mut random, 8);
             // A lattice on which much is tied; near it; and anything.
             let noise = match round % 3 {
                 0 => 0.0,
                 1 => 1e-15,
                 _ => 0.1,
             };
-            let offset = offset + noise * random.three(1 << 20) / f64::from(1 << 20);
-            let motion = motion + noise * random.three(1 << 20) / f64::from(1 << 20);
+            let offset = offset + noise * three(&mut random, 1 << 20) / f64::from(1 << 20);
+            let motion = motion + noise * three(&mut random, 1 << 20) / f64::from(1 << 20);
+            let (offset, motion) = (scale * offset, scale * motion);
             let (a, b) = (first.cuboid().unwrap(), second.cuboid().unwrap());
             assert_eq!(meet(a, b, offset), tree::intersect(&first, &second, offset));
             let expected = Search::run(Kind::Entering, (&first, &second), offset, motion).best();
             match first_touch(a, b, offset, motion) {
                 Err(Untold) => untold += 1,
                 Ok(found) => {
-                    let where_ = || format!("{sizes:?} {offset} {motion}");
-                    assert_eq!(
-                        found.map(|t| t.time),
-                        expected.map(|t| t.time),
-                        "{}",
-                        where_()
-                    );
+                    let what = || format!("{found:?} {expected:?} {sizes:?} {offset} {motion}");
+                    let time = |touch: Option<Touch>| touch.map(|touch| touch.time);
+                    assert_eq!(time(found), time(expected), "{}", what());
                     let is_same = found == expected;
-                    assert!(
-                        is_same || noise == 1e-15,
-                        "{found:?} {expected:?} {}",
-                        where_()
-                    );
+                    assert!(is_same || noise == 1e-15, "{}", what());
                     others += u32::from(!is_same);
                     touches += u32::from(found.is_some());
                     misses += u32::from(found.is_none());

@@ -40,7 +40,11 @@ impl Moving {
             let time = self.entry(first, pair / WIDTH, second, pair % WIDTH);
             if let Some(time) = time.filter(|&t| t <= horizon) {
                 bits |= 1 << pair;
-                *place = time as f32;
+                let rounded = time as f32;
+                *place = match f64::from(rounded) > time {
+                    true => rounded.next_down(),
+                    false => rounded,
+                };
             }
         }
         (bits, Portable::new(times))
@@ -158,24 +162,8 @@ impl Swift {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_meshes::cube;
+    use crate::{test_meshes::cube, test_random::Random};
     use glam::{DQuat, Vec3A};
-
-    /// Numbers from a sequence of Marsaglia's.
-    struct Random(u64);
-
-    impl Random {
-        fn up_to(&mut self, most: i64) -> i64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            (self.0 >> 1) as i64 % (2 * most + 1) - most
-        }
-
-        fn three(&mut self, most: i64) -> [i64; 3] {
-            [self.up_to(most), self.up_to(most), self.up_to(most)]
-        }
-    }
 
     /// When two boxes given as low and high corners begin to meet within the motion, as a fraction.
     fn exact(
