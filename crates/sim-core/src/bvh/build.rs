@@ -146,7 +146,13 @@ impl Tree {
     #[inline]
     fn close(&mut self, index: u32) {
         let index = index as usize;
-        let (slabs, below) = slabs::of_node(&self.nodes[index], &self.below, &self.triangles);
+        let (slabs, below) = slabs::of_node(
+            &self.nodes[index],
+            &self.nodes,
+            &self.slabs,
+            &self.below,
+            &self.triangles,
+        );
         self.slabs[index] = slabs;
         self.below[index] = below;
     }

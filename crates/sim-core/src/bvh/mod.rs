@@ -158,7 +158,7 @@ mod tests {
     use super::*;
     use crate::test_meshes::{cube, sphere};
     use alloc::vec;
-    use glam::Vec3;
+    use glam::{DQuat, DVec3, Vec3};
 
     /// Every triangle in one leaf, every box around what is below it, no level too deep.
     fn check(mesh: &Mesh) -> Bvh {
@@ -225,6 +225,60 @@ mod tests {
         check(&cube());
         let bvh = check(&sphere(60));
         assert!(bvh.depth() < 12, "{}", bvh.depth());
+    }
+
+    /// Every leaf below a code.
+    fn leaves(bvh: &Bvh, code: u32) -> Vec<u32> {
+        let node = bvh.node(code);
+        if code & LEAF != 0 {
+            return vec![code];
+        }
+        let below = node.lanes().flat_map(|lane| leaves(bvh, node.child[lane]));
+        below.collect()
+    }
+
+    #[test]
+    fn slabs_hold_what_their_boxes_do() {
+        let turned = DQuat::from_rotation_y(0.3) * DQuat::from_rotation_x(0.2);
+        // Half of a flat ball, as it lies on no axis.
+        let ball = sphere(60);
+        let is_above =
+            |corners: &[u32; 3]| corners.iter().all(|&v| ball.vertices()[v as usize].y > 0.0);
+        let half = ball.triangles().iter().copied().filter(is_above).collect();
+        for away in [0.0, 1e3] {
+            let place =
+                |v: &Vec3| (turned * (v.as_dvec3() * DVec3::new(1.0, 0.01, 0.3)) + away).as_vec3();
+            let vertices = ball.vertices().iter().map(place).collect();
+            let bvh = Bvh::build(&Mesh::new(vertices, Vec::clone(&half)).unwrap());
+            let mut thinnest: f32 = 1.0;
+            for code in (0..)
+                .zip(&bvh.nodes)
+                .filter(|(i, node)| node.child[0] != i | LEAF)
+            {
+                let (node, slabs) = (code.1, bvh.slabs(code.0));
+                for lane in node.lanes() {
+                    let normal = Vec3::from_array(slabs.normal.map(|axis| axis[lane]));
+                    let (middle, half) = (slabs.middle[lane], slabs.half[lane]);
+                    let below = leaves(&bvh, node.child[lane]);
+                    let size = node.boxes.bounds(lane).half_extent().max_element() as f32;
+                    if below.len() > 64 {
+                        thinnest = thinnest.min(half / size);
+                    }
+                    for leaf in below {
+                        let leaf = bvh.node(leaf);
+                        for corner in leaf
+                            .lanes()
+                            .flat_map(|lane| bvh.triangles(leaf).corners(lane))
+                        {
+                            let height = normal.as_dvec3().dot(corner.as_dvec3()) as f32;
+                            let slack = corner.abs().max_element() / (1 << 20) as f32;
+                            assert!((height - middle).abs() <= half + 2.0 * slack);
+                        }
+                    }
+                }
+            }
+            assert!(thinnest < 0.1, "{thinnest}");
+        }
     }
 
     #[test]

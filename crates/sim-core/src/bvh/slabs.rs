@@ -84,10 +84,21 @@ fn dot(a: [Vec4; 3], b: [Vec4; 3]) -> Vec4 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// Up to so many leaves below a child its slab is that of their corners, above that one around the
+/// slabs below it, which costs the same however many. With 4 instead, two spheres one in the other take
+/// half as many tiles more, and no build is faster; without limit it takes 4 % longer.
+const FEW_LEAVES: u32 = 64;
+
 /// The slabs of a node, where those of its children are known, and what it tells its parent. The
 /// triangles below a node lie side by side.
 #[inline]
-pub(super) fn of_node(node: &Node, below: &[Below], triangles: &[Triangles]) -> (Slabs, Below) {
+pub(super) fn of_node(
+    node: &Node,
+    nodes: &[Node],
+    slabs: &[Slabs],
+    below: &[Below],
+    triangles: &[Triangles],
+) -> (Slabs, Below) {
     let mut area = [[0.0; WIDTH]; 3];
     let mut all = Below {
         start: node.triangles,
@@ -105,10 +116,14 @@ pub(super) fn of_node(node: &Node, below: &[Below], triangles: &[Triangles]) -> 
     let normals = normal.map(|axis| axis.to_array());
     let (mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH]);
     for lane in node.lanes() {
-        let of_lane = &below[(node.child[lane] & !LEAF) as usize];
-        let corners = &triangles[of_lane.start as usize..of_lane.end as usize];
+        let child = (node.child[lane] & !LEAF) as usize;
+        let Below { start, end, .. } = below[child];
         let normal = normals.map(|axis| Vec4::splat(axis[lane]));
-        (low[lane], high[lane]) = heights(corners, normal);
+        (low[lane], high[lane]) = if end - start <= FEW_LEAVES {
+            heights(&triangles[start as usize..end as usize], normal)
+        } else {
+            heights_of_slabs(&nodes[child], &slabs[child], normal)
+        };
     }
     (Slabs::between(normal, low.into(), high.into()), all)
 }
@@ -146,6 +161,10 @@ impl Triangles {
     }
 }
 
+/// More than a height of a corner, or of a slab's side, is off by, relative to its coordinates: some
+/// twenty roundings of 2^-24, and the 2^-20 of a slab.
+const ROUNDINGS: f32 = 32.0 * f32::EPSILON;
+
 /// The least and the greatest height of all corners along a normal.
 #[inline]
 fn heights(triangles: &[Triangles], normal: [Vec4; 3]) -> (f32, f32) {
@@ -156,4 +175,31 @@ fn heights(triangles: &[Triangles], normal: [Vec4; 3]) -> (f32, f32) {
         high = high.max(a.max(b).max(c));
     }
     (low.min_element(), high.max_element())
+}
+
+/// The same of all that slabs and boxes of a node hold.
+///
+/// With the normal `m` of such a slab, `n·x = k m·x + (n - k m)·x` for any `k`; for `k = n·m` the second
+/// part is small where the normals are alike. The slab bounds the first part, the box the second.
+#[inline]
+fn heights_of_slabs(node: &Node, slabs: &Slabs, n: [Vec4; 3]) -> (f32, f32) {
+    let axes = |of: &[[f32; WIDTH]; 3]| of.map(Vec4::from_array);
+    let (m, centre, half) = (
+        axes(&slabs.normal),
+        axes(&node.boxes.centre),
+        axes(&node.boxes.half),
+    );
+    let k = dot(n, m);
+    let rest = [0, 1, 2].map(|axis| n[axis] - k * m[axis]);
+    let middle = k * Vec4::from_array(slabs.middle) + dot(rest, centre);
+    let reach = k.abs() * Vec4::from_array(slabs.half) + dot(rest.map(Vec4::abs), half);
+    // More than all roundings, here and in the slab.
+    let size = dot([Vec4::ONE; 3], centre.map(Vec4::abs)) + dot([Vec4::ONE; 3], half);
+    let reach = reach + ROUNDINGS * size;
+    let mut heights = (f32::INFINITY, f32::NEG_INFINITY);
+    for lane in node.lanes() {
+        heights.0 = heights.0.min(middle[lane] - reach[lane]);
+        heights.1 = heights.1.max(middle[lane] + reach[lane]);
+    }
+    heights
 }

@@ -249,6 +249,8 @@ mod tests {
     use crate::Mesh;
     use crate::bvh::Bvh;
     use crate::collide::{
+        Level,
+        pairs::Meshes,
         sweep::{Kind, Search},
         tree,
     };
@@ -299,7 +301,13 @@ mod tests {
             let motion = motion + noise * three(&mut random, 1 << 20) / f64::from(1 << 20);
             let (offset, motion) = (scale * offset, scale * motion);
             let (a, b) = (first.cuboid().unwrap(), second.cuboid().unwrap());
-            assert_eq!(meet(a, b, offset), tree::intersect(&first, &second, offset));
+            let meshes = Meshes {
+                first: &first,
+                second: &second,
+                at: &offset.into(),
+            };
+            let by_tiles = tree::meet_by_tiles(Level::best(), meshes);
+            assert_eq!(meet(a, b, offset), by_tiles);
             let expected = Search::run(Kind::Entering, (&first, &second), offset, motion).best();
             match first_touch(a, b, offset, motion) {
                 Err(Untold) => untold += 1,

@@ -16,7 +16,7 @@ use glam::DVec3;
 use super::{
     Feature, Touch,
     ball::{BallTouch, ball_meets, ball_touch},
-    cuboids, touch, tree,
+    touch, tree,
 };
 use crate::bvh::Bvh;
 
@@ -68,10 +68,7 @@ impl From<BallTouch> for Contact {
 /// Whether two shapes share a point, the second one displaced by `offset`, m.
 pub(crate) fn meet(first: Form<'_>, second: Form<'_>, offset: DVec3) -> bool {
     match (first, second) {
-        (Form::Mesh(first), Form::Mesh(second)) => match first.cuboid().zip(second.cuboid()) {
-            Some((first, second)) => cuboids::meet(first, second, offset),
-            None => tree::intersect(first, second, offset),
-        },
+        (Form::Mesh(first), Form::Mesh(second)) => tree::intersect(first, second, offset),
         (Form::Mesh(mesh), Form::Sphere(radius)) => ball_meets(mesh, offset, radius),
         (Form::Sphere(first), Form::Sphere(second)) => {
             offset.dot(offset) <= (first + second) * (first + second)

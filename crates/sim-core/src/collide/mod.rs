@@ -6,6 +6,7 @@
 mod apart;
 mod ball;
 mod broad;
+mod cuboid_mesh;
 mod cuboids;
 mod form;
 mod hit;

@@ -6,6 +6,7 @@ use core::ops::ControlFlow;
 use super::{
     Hit, Level, Placement, Side, Work,
     apart::{Glance, glance},
+    cuboid_mesh, cuboids,
     pairs::{Lanes, Meshes, Question, Reach, TILE, each_pair},
     predicates::{crossing_meet, crossing_orders, segment_meets_triangle, triangles_meet},
 };
@@ -21,7 +22,29 @@ pub fn intersect(first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> bool {
 pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> bool {
     let at = &at.into();
     let meshes = Meshes { first, second, at };
+    match with_cuboid(meshes) {
+        Some(work) => work.meet,
+        None => meet_by_tiles(level, meshes),
+    }
+}
+
+/// [`intersect_at`] whatever the meshes are.
+pub(super) fn meet_by_tiles(level: Level, meshes: Meshes<'_>) -> bool {
     each_pair(level, meshes, &mut AnyHit).is_break()
+}
+
+/// The answer and its cost where a mesh is a box, which needs no second tree.
+#[inline]
+fn with_cuboid(Meshes { first, second, at }: Meshes<'_>) -> Option<Work> {
+    match (first.cuboid(), second.cuboid()) {
+        (Some(first), Some(second)) if at.turn().is_none() => Some(Work {
+            meet: cuboids::meet(first, second, at.offset()),
+            boxes: 1,
+            tests: 0,
+        }),
+        (None, None) => None,
+        _ => Some(cuboid_mesh::Pair::of(first, second, at)?.meet()),
+    }
 }
 
 /// Stops at the first pair of triangles that meet.
@@ -74,13 +97,15 @@ fn any_meets(meshes: Meshes<'_>, (a, b): (u32, u32), glance: &Glance) -> bool {
 pub fn work(first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> Work {
     let at = &at.into();
     let meshes = Meshes { first, second, at };
-    let mut counted = Counted::default();
-    let meet = each_pair(Level::best(), meshes, &mut counted).is_break();
-    Work {
-        meet,
-        boxes: counted.tiles * TILE as u64,
-        tests: counted.pairs,
-    }
+    with_cuboid(meshes).unwrap_or_else(|| {
+        let mut counted = Counted::default();
+        let meet = each_pair(Level::best(), meshes, &mut counted).is_break();
+        Work {
+            meet,
+            boxes: counted.tiles * TILE as u64,
+            tests: counted.pairs,
+        }
+    })
 }
 
 /// [`AnyHit`], counted.

@@ -20,6 +20,8 @@ pub(crate) struct Topology {
     pub(crate) owned: Vec<Owned>,
     pub(crate) closed: bool,
     pub(crate) oriented: bool,
+    /// Whether edges lead from each vertex to every other.
+    pub(crate) connected: bool,
 }
 
 impl Topology {
@@ -40,6 +42,7 @@ impl Topology {
             owned: vertex_owners(vertices, &triangles),
             closed: true,
             oriented: true,
+            connected: false,
             triangles: Vec::new(),
         };
         for run in sides.chunk_by(|x, y| x.0 == y.0) {
@@ -60,6 +63,7 @@ impl Topology {
             topology.closed &= run.len() == 2;
             topology.oriented &= upward <= 1 && run.len() - upward <= 1;
         }
+        topology.connected = is_connected(vertices, &topology.edges);
         topology.triangles = triangles;
         topology
     }
@@ -95,6 +99,26 @@ fn vertex_owners(vertices: usize, triangles: &[[u32; 3]]) -> Vec<Owned> {
     owned
 }
 
+/// Counts pieces by joining them (Galler, Fischer 1964, "An improved equivalence algorithm"), paths
+/// halved on the way (Tarjan, van Leeuwen 1984).
+fn is_connected(vertices: usize, edges: &[[u32; 2]]) -> bool {
+    let mut parent: Vec<u32> = (0..vertices as u32).collect();
+    let mut root = |parent: &mut [u32], mut v: u32| {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    };
+    let mut pieces = vertices;
+    for ends in edges {
+        let [from, to] = ends.map(|v| root(&mut parent, v));
+        pieces -= usize::from(from != to);
+        parent[from.max(to) as usize] = from.min(to);
+    }
+    pieces == 1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,5 +143,16 @@ mod tests {
                 assert!(vertices.iter().chain(&edges).all(|&owners| owners == 1));
             }
         }
+    }
+
+    #[test]
+    fn pieces_and_loose_vertices_do_not_hang_together() {
+        let connected =
+            |vertices, triangles: &[[u32; 3]]| Topology::of(vertices, triangles.to_vec()).connected;
+        assert!(cube().topology().connected && sphere(20).topology().connected);
+        assert!(connected(5, &[[0, 1, 2], [2, 3, 4]]));
+        assert!(connected(7, &[[5, 6, 1], [3, 4, 2], [0, 1, 2]]));
+        assert!(!connected(6, &[[0, 1, 2], [3, 4, 5]]));
+        assert!(!connected(4, &[[0, 1, 2]]));
     }
 }

@@ -1,0 +1,336 @@
+//! Whether the surfaces of a box along the axes and of a mesh meet.
+//!
+//! The box tells inside from outside, so one descent of the mesh's tree is enough: what is
+//! strictly inside or outside is done with, and a triangle with a corner strictly inside and one
+//! that is not meets the surface, whatever its plane. So does all of a mesh that hangs together.
+//! Only triangles whose corners are all outside have to be compared with those of the box.
+
+use glam::{DVec3, Vec3A, Vec4};
+
+use super::{Placement, Work, predicates::triangles_meet};
+use crate::{
+    Aabb,
+    bvh::{Boxes, Bvh, Cuboid, LEAF, MAX_DEPTH, WIDTH},
+};
+
+/// Beyond this, m, sums of coordinates may leave f32.
+const LARGEST: f32 = 1e37;
+
+/// A box, and a mesh beside it.
+pub(super) struct Pair<'a> {
+    /// Low and high corner, m.
+    ends: [DVec3; 2],
+    mesh: &'a Bvh,
+    /// By how much the mesh is displaced, m.
+    offset: DVec3,
+    seen: Seen,
+}
+
+impl<'a> Pair<'a> {
+    /// Two meshes one of which is a box, the second placed but not turned, where f32 reaches.
+    #[inline]
+    pub(super) fn of(first: &'a Bvh, second: &'a Bvh, at: &Placement) -> Option<Pair<'a>> {
+        let (ends, mesh, offset) = match (first.cuboid(), second.cuboid()) {
+            _ if at.turn().is_some() => return None,
+            (Some(cuboid), _) => (cuboid.ends, second, at.offset()),
+            (None, Some(cuboid)) => {
+                let ends = cuboid.ends.map(|end| end + at.offset());
+                (ends, first, DVec3::ZERO)
+            }
+            (None, None) => return None,
+        };
+        Some(Pair {
+            ends,
+            mesh,
+            offset,
+            seen: Seen::of(ends, mesh, offset)?,
+        })
+    }
+
+    /// The answer, and what it costs.
+    pub(super) fn meet(&self) -> Work {
+        let mut work = Work {
+            meet: false,
+            boxes: 0,
+            tests: 0,
+        };
+        let is_across = self.is_across();
+        // Nodes on the way from the root, with a bit for each child that waits.
+        let mut waiting = [(0, 0); MAX_DEPTH];
+        let mut count = 0;
+        let mut code = self.mesh.root();
+        loop {
+            let node = self.mesh.node(code);
+            let Cut {
+                bits: mut cut,
+                depth,
+                is_any_inside,
+            } = self.seen.cut(&node.boxes);
+            work.boxes += WIDTH as u64;
+            if is_across && is_any_inside {
+                work.meet = true;
+                return work;
+            }
+            if code & LEAF != 0 {
+                let triangles = self.mesh.triangles(node);
+                while cut != 0 {
+                    let lane = cut.trailing_zeros() as usize;
+                    cut &= cut - 1;
+                    work.tests += 1;
+                    let corners = triangles.corners(lane).map(|v| v.as_dvec3() + self.offset);
+                    if self.meets(corners) {
+                        work.meet = true;
+                        return work;
+                    }
+                }
+            } else if cut != 0 {
+                // First the one that is cut the deepest.
+                let next = deepest(depth);
+                cut &= !(1 << next);
+                waiting[count] = (code, cut);
+                count += usize::from(cut != 0);
+                code = node.child[next];
+                continue;
+            }
+            let Some(last) = count.checked_sub(1) else {
+                return work;
+            };
+            let (parent, lanes) = &mut waiting[last];
+            code = self.mesh.node(*parent).child[lanes.trailing_zeros() as usize % WIDTH];
+            *lanes &= *lanes - 1;
+            count -= usize::from(*lanes == 0);
+        }
+    }
+
+    /// Whether the mesh hangs together, and not all of it is strictly inside.
+    #[inline]
+    fn is_across(&self) -> bool {
+        let Aabb { min, max } = self.mesh.bounds();
+        let [low, high] = self.ends;
+        let (min, max) = (min.as_dvec3() + self.offset, max.as_dvec3() + self.offset);
+        self.mesh.topology().connected && (min.cmple(low) | max.cmpge(high)).any()
+    }
+
+    /// Whether a triangle of the mesh meets the surface of the box.
+    #[inline]
+    fn meets(&self, corners: [DVec3; 3]) -> bool {
+        let [low, high] = self.ends;
+        let inside = corners.map(|c| (c.cmpgt(low) & c.cmplt(high)).all());
+        match inside {
+            [true, true, true] => false,
+            [false, false, false] => self.meets_from_outside(corners),
+            _ => true,
+        }
+    }
+
+    /// The same for one no corner of which is strictly inside.
+    #[inline(never)]
+    fn meets_from_outside(&self, corners: [DVec3; 3]) -> bool {
+        let [low, high] = self.ends;
+        if corners.iter().any(|c| (c.cmpge(low) & c.cmple(high)).all()) {
+            return true;
+        }
+        let [p, q, r] = corners;
+        let (min, max) = (p.min(q).min(r), p.max(q).max(r));
+        let may_meet = (min.cmple(high) & max.cmpge(low)).all() && !self.is_beside_plane(corners);
+        may_meet
+            && (0..3).any(|axis| {
+                let ends = [0, 1].into_iter().filter(|&end| {
+                    let level = self.ends[end][axis];
+                    min[axis] <= level && level <= max[axis]
+                });
+                ends.into_iter()
+                    .any(|end| self.face_meets(axis, end, corners))
+            })
+    }
+
+    /// Whether all of the box is on one side of a triangle's plane; a "yes" is a proof.
+    ///
+    /// Of the products and sums below each has a relative rounding of a few `2^-53`: of the normal
+    /// below 8 of `e²` in each component with the longest side `e` in the largest norm, of the heights
+    /// with it below 16 of `e²` times the distances added up.
+    fn is_beside_plane(&self, [p, q, r]: [DVec3; 3]) -> bool {
+        let [low, high] = self.ends;
+        let (one, other) = (q - p, r - p);
+        let normal = one.cross(other);
+        let (to_low, to_high) = (low - p, high - p);
+        // The corners of the box that are lowest and highest above the plane.
+        let (a, b) = (normal * to_low, normal * to_high);
+        let lowest = a.min(b).element_sum();
+        let highest = a.max(b).element_sum();
+        let distances = to_low.abs().max(to_high.abs()).element_sum();
+        let size = one.abs().max_element() * other.abs().max_element();
+        let slack = 32.0 * f64::EPSILON * size * distances;
+        lowest > slack || highest < -slack
+    }
+
+    /// Whether a triangle meets a side of the box.
+    fn face_meets(&self, axis: usize, end: usize, corners: [DVec3; 3]) -> bool {
+        let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
+        let at = |corner: usize| Cuboid::corner(&self.ends, end << axis | corner);
+        let diagonal = [at(0), at(u | v)];
+        [u, v].into_iter().any(|side| {
+            let [from, to] = diagonal;
+            triangles_meet([from, to, at(side)], corners)
+        })
+    }
+}
+
+/// How the surface of the box cuts the boxes of a node.
+struct Cut {
+    /// A bit for each that it may come into.
+    bits: u32,
+    /// How deep.
+    depth: Vec4,
+    /// Whether one is strictly inside.
+    is_any_inside: bool,
+}
+
+/// The lane of the greatest float, roughly.
+#[inline]
+fn deepest(depth: Vec4) -> usize {
+    // The lowest bits name the lane; those of minus infinity would make it no number.
+    let depth = depth.max(Vec4::splat(f32::MIN)).to_array();
+    let [x, y, z, w] = depth.map(|x| x.to_bits() & !3);
+    let key = Vec4::from_array([x, y | 1, z | 2, w | 3].map(f32::from_bits));
+    (key.max_element().to_bits() & 3) as usize
+}
+
+/// The box as the tree of the mesh sees it, in f32.
+struct Seen {
+    centre: [Vec4; 3],
+    half: [Vec4; 3],
+    /// More than all roundings of a comparison, m.
+    margin: f32,
+}
+
+impl Seen {
+    /// Unless f32 does not reach so far.
+    ///
+    /// Let `S` be the sum of the magnitudes of the mesh, of its displacement and of the box, and
+    /// `u = 2^-24`. A comparison `|c - c'| <= h + h'` sees roundings of centre and half extent, of
+    /// the difference, and of both sums, together below `7 u S`; placed vertices are rounded in f64.
+    #[inline]
+    fn of(ends: [DVec3; 2], mesh: &Bvh, offset: DVec3) -> Option<Seen> {
+        let [low, high] = ends.map(|end| end - offset);
+        let centre = (0.5 * (low + high)).as_vec3a();
+        let half = (0.5 * (high - low)).as_vec3a();
+        let Aabb { min, max } = mesh.bounds();
+        let mesh = Vec3A::from(min).abs().max(Vec3A::from(max).abs());
+        let size = mesh + offset.as_vec3a().abs() + centre.abs() + half;
+        let largest = size.max_element();
+        let of_axes = |of: Vec3A| of.to_array().map(Vec4::splat);
+        (largest < LARGEST).then(|| Seen {
+            centre: of_axes(centre),
+            half: of_axes(half),
+            margin: 8.0 * f32::EPSILON * largest + 16.0 * f32::MIN_POSITIVE,
+        })
+    }
+
+    #[inline]
+    fn cut(&self, boxes: &Boxes) -> Cut {
+        let (mut within, mut without) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
+        for axis in 0..3 {
+            let away = (Vec4::from_array(boxes.centre[axis]) - self.centre[axis]).abs();
+            let outside = away - self.half[axis];
+            let half = Vec4::from_array(boxes.half[axis]);
+            within = within.min(half - outside);
+            without = without.max(half + outside);
+        }
+        // Minus infinity in lanes that hold nothing.
+        let depth = within.min(without);
+        let margin = Vec4::splat(-self.margin);
+        let inside = without.cmplt(margin) & within.cmpgt(Vec4::ZERO);
+        Cut {
+            bits: depth.cmpge(margin).bitmask(),
+            depth,
+            is_any_inside: inside.any(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collide::{Level, pairs::Meshes, tree};
+    use crate::{
+        Mesh,
+        test_meshes::{cube, sphere},
+        test_random::Random,
+    };
+    use alloc::vec::Vec;
+    use glam::{DQuat, Vec3};
+
+    fn three(random: &mut Random, most: i64) -> DVec3 {
+        DVec3::from_array(random.three(most).map(|x| x as f64))
+    }
+
+    /// Triangles anywhere on a lattice, some of them without area, which may hang together.
+    fn soup(random: &mut Random, scale: f64) -> Mesh {
+        let count = 1 + random.up_to(30).unsigned_abs() as u32;
+        let apart = random.up_to(1).unsigned_abs() as u32;
+        let corner = |_| (scale * three(random, 6)).as_vec3();
+        let corners: Vec<Vec3> = (0..(2 + apart) * count + 1 - apart).map(corner).collect();
+        let triangles = (0..count).map(|i| [0, 1, 2].map(|k| (2 + apart) * i + k));
+        Mesh::new(corners, triangles.collect()).unwrap()
+    }
+
+    fn agree(first: &Bvh, second: &Bvh, offset: DVec3) -> bool {
+        let at = &offset.into();
+        let meshes = Meshes { first, second, at };
+        let pair = Pair::of(first, second, at).expect("a box and a mesh");
+        let meet = pair.meet().meet;
+        let by_tiles = tree::meet_by_tiles(Level::best(), meshes);
+        assert_eq!(meet, by_tiles, "{offset} {:?}", pair.ends);
+        meet
+    }
+
+    #[test]
+    fn a_box_meets_what_its_triangles_meet() {
+        let mut random = Random(0x2545_f491_4f6c_dd1d);
+        let (mut meet, mut apart) = (0, 0);
+        for round in 0..20_000 {
+            let scale = libm::ldexp(1.0, [0, -100, 60, -140][round % 4]);
+            let size = scale * (three(&mut random, 3).abs() + 1.0);
+            let cuboid = cube().transformed(DQuat::IDENTITY, size).unwrap();
+            let cuboid = Bvh::build(&cuboid);
+            let soup = Bvh::build(&soup(&mut random, 0.5 * scale));
+            let noise = [0.0, 1e-15, 1e-7, 0.1][round / 4 % 4];
+            let away = 0.25 * three(&mut random, 24)
+                + noise * three(&mut random, 1 << 20) / f64::from(1 << 20);
+            let far = [0.0, 1e8][round / 16 % 2] * three(&mut random, 1);
+            let offset = scale * (away + far);
+            let is_met = match round % 3 {
+                0 => agree(&soup, &cuboid, offset),
+                _ => agree(&cuboid, &soup, offset),
+            };
+            meet += u32::from(is_met);
+            apart += u32::from(!is_met);
+        }
+        assert!(meet > 2_000 && apart > 2_000, "{meet} {apart}");
+    }
+
+    #[test]
+    fn around_a_surface_and_within_it() {
+        let ball = Bvh::build(&sphere(24));
+        let of_size = |size: f64| {
+            let cuboid = cube().transformed(DQuat::IDENTITY, DVec3::splat(size));
+            Bvh::build(&cuboid.unwrap())
+        };
+        let (around, within) = (of_size(2.5), of_size(0.9));
+        assert!(!agree(&around, &ball, DVec3::ZERO) && !agree(&ball, &within, DVec3::ZERO));
+        assert!(agree(&around, &ball, DVec3::X * 0.3) && agree(&ball, &within, DVec3::X * 0.7));
+        // About where they touch at a pole, which f32 does not tell.
+        let unit = of_size(1.0);
+        for k in -40..=40 {
+            let offset = DVec3::Y * (1.5 + 1e-8 * f64::from(k));
+            assert_eq!(agree(&ball, &unit, offset), k <= 0, "{k}");
+            assert_eq!(agree(&unit, &ball, offset), k <= 0, "{k}");
+        }
+        // Seen from outside all of the mesh is one triangle of the box's boxes or less.
+        let work = Pair::of(&around, &ball, &DVec3::ZERO.into())
+            .unwrap()
+            .meet();
+        assert_eq!((work.boxes, work.tests), (WIDTH as u64, 0));
+    }
+}
