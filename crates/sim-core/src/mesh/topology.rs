@@ -103,7 +103,7 @@ fn vertex_owners(vertices: usize, triangles: &[[u32; 3]]) -> Vec<Owned> {
 /// halved on the way (Tarjan, van Leeuwen 1984).
 fn is_connected(vertices: usize, edges: &[[u32; 2]]) -> bool {
     let mut parent: Vec<u32> = (0..vertices as u32).collect();
-    let mut root = |parent: &mut [u32], mut v: u32| {
+    let root = |parent: &mut [u32], mut v: u32| {
         while parent[v as usize] != v {
             parent[v as usize] = parent[parent[v as usize] as usize];
             v = parent[v as usize];

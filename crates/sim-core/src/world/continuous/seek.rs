@@ -43,23 +43,61 @@ impl World {
         j: usize,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
+        let Some(forms) = self.form(i).zip(self.form(j)) else {
+            return Ok(None);
+        };
         let pair = Pair {
             i,
             j,
             bend: self.bend(i, j),
             grain: self.grain(i, j),
         };
-        let (start, end) = (self.start_of(pair), self.settings.dt);
-        let size = self.extent(i).half.min(self.extent(j).half);
-        let length = end - start;
-        if let Some(forms) = self.form(i).zip(self.form(j))
-            && pair.bend > 0.0
-            && self.unit(i).is_none()
-            && self.unit(j).is_none()
-            && has_roots(forms.0, forms.1)
-        {
-            return self.seek_on_parabola(pair, forms, probe);
+        let is_parabola = pair.bend > 0.0 && self.unit(i).is_none() && self.unit(j).is_none();
+        let found = match is_parabola && has_roots(forms.0, forms.1) {
+            true => self.seek_on_parabola(pair, forms, probe)?,
+            false => self.seek_on_chords(pair, forms, probe)?,
+        };
+        if found.is_none() && self.continuous.lag < 0.0 && self.are_pressed(i, j) {
+            return self.seek_at_end(pair, forms, probe);
         }
+        Ok(found)
+    }
+
+    /// The impact of two bodies that come back to each other at the end of the step, but for rounding.
+    ///
+    /// A method that keeps the velocity of half a step later lets what lies still leave by as much as
+    /// it falls in a step. What rests has to do so before that velocity is made.
+    fn seek_at_end(
+        &self,
+        pair: Pair,
+        (first, second): (Form<'_>, Form<'_>),
+        probe: &mut Probe,
+    ) -> Result<Option<Event>, (usize, Cause)> {
+        let end = self.settings.dt;
+        let (x1, v1) = self.seen_at(pair.i, end, probe)?;
+        let (x2, v2) = self.seen_at(pair.j, end, probe)?;
+        let motion = end * (v2 - v1);
+        let Some(contact) = first_contact(first, second, snap(x2 - x1), snap(motion)) else {
+            return Ok(None);
+        };
+        let fall = -contact.normal.dot(motion);
+        if contact.time * fall > 4.0 * pair.grain {
+            return Ok(None);
+        }
+        self.settle(pair, (end, end), fall / end, contact, probe)
+            .map(Some)
+    }
+
+    /// The first impact on ways of any kind.
+    fn seek_on_chords(
+        &self,
+        pair: Pair,
+        forms: (Form<'_>, Form<'_>),
+        probe: &mut Probe,
+    ) -> Result<Option<Event>, (usize, Cause)> {
+        let (start, end) = (self.start_of(pair), self.settings.dt);
+        let size = self.extent(pair.i).half.min(self.extent(pair.j).half);
+        let length = end - start;
         let mut from = (start, self.offset_at(pair, start, probe)?);
         // A point has no extent: its way must do.
         let size = match size > 0.0 {
@@ -81,7 +119,7 @@ impl World {
                 start + length * (chord / chords)
             };
             let to = (time, self.offset_at(pair, time, probe)?);
-            if let Some(event) = self.seek_on_chord(pair, (from, to), 0, probe)? {
+            if let Some(event) = self.seek_on_chord(pair, forms, (from, to), 0, probe)? {
                 return Ok(Some(event));
             }
             (from, chord) = (to, chord + 1.0);
@@ -119,15 +157,13 @@ impl World {
     fn seek_on_chord(
         &self,
         pair: Pair,
+        forms: (Form<'_>, Form<'_>),
         (from, to): ((f64, DVec3), (f64, DVec3)),
         depth: u32,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         let motion = to.1 - from.1;
-        let forms = self.form(pair.i).zip(self.form(pair.j));
-        let found = forms
-            .and_then(|(first, second)| first_contact(first, second, snap(from.1), snap(motion)));
-        let Some(contact) = found else {
+        let Some(contact) = first_contact(forms.0, forms.1, snap(from.1), snap(motion)) else {
             return Ok(None);
         };
         let length = to.0 - from.0;
@@ -160,7 +196,7 @@ impl World {
                 true => to,
                 false => (end, self.offset_at(pair, end, probe)?),
             };
-            if let Some(event) = self.seek_on_chord(pair, (from, part), depth + 1, probe)? {
+            if let Some(event) = self.seek_on_chord(pair, forms, (from, part), depth + 1, probe)? {
                 return Ok(Some(event));
             }
             from = part;
