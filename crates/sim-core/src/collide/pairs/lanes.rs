@@ -27,8 +27,17 @@ pub(in crate::collide) trait Lanes: Copy {
     fn above(self, other: Self) -> u32;
     /// The lane of the least float among those of some bits, roughly, and whether it is negative.
     fn least(self, among: u32) -> (u32, bool);
+    fn store(self, to: &mut [f32; TILE]);
     /// Puts the pairs of `rows[i]` and `columns[j]` of some bits on the stack, lowest first.
     fn push(stack: &mut Stack, bits: u32, rows: &[u32; WIDTH], columns: &[u32; WIDTH]);
+}
+
+/// What can be done in the lanes of any level. To be compiled for the instructions of each, it must be
+/// inlined.
+pub(in crate::collide) trait InLanes {
+    type Output;
+
+    fn run<L: Lanes>(self) -> Self::Output;
 }
 
 /// Lanes as the compiler makes them for the target it was given.
@@ -36,16 +45,6 @@ pub(in crate::collide) trait Lanes: Copy {
 pub(in crate::collide) struct Portable([f32; TILE]);
 
 impl Portable {
-    #[inline(always)]
-    pub(in crate::collide) fn new(lanes: [f32; TILE]) -> Portable {
-        Portable(lanes)
-    }
-
-    #[inline(always)]
-    pub(in crate::collide) fn lanes(self) -> [f32; TILE] {
-        self.0
-    }
-
     #[inline(always)]
     fn map(self, f: impl Fn(f32) -> f32) -> Portable {
         Portable(self.0.map(f))
@@ -64,6 +63,11 @@ impl Portable {
 }
 
 impl Lanes for Portable {
+    #[inline(always)]
+    fn store(self, to: &mut [f32; TILE]) {
+        *to = self.0;
+    }
+
     #[inline(always)]
     fn splat(x: f32) -> Portable {
         Portable([x; TILE])

@@ -1,12 +1,10 @@
-//! Which instructions a descent uses.
-
-use core::ops::ControlFlow;
+//! Which instructions lanes use.
 
 #[cfg(target_arch = "x86_64")]
 use super::simd;
-use super::{Meshes, Portable, Question, overlap};
+use super::{InLanes, Portable};
 
-/// Instructions that a descent may use. All give the same answers.
+/// Instructions that lanes may use. All give the same answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// What the crate was compiled for: 128-bit vectors on x86-64 and on AArch64.
@@ -37,26 +35,20 @@ impl Level {
         Level::Portable
     }
 
-    /// Answers a question at this level; one that is not available is `Portable`.
+    /// Does work at this level; one that is not available is `Portable`.
     #[inline]
-    pub(in crate::collide) fn ask<Q: Question, const TURNED: bool>(
-        self,
-        meshes: Meshes<'_>,
-        question: &mut Q,
-    ) -> ControlFlow<()> {
+    pub(in crate::collide) fn run<W: InLanes>(self, work: W) -> W::Output {
         #[cfg(target_arch = "x86_64")]
-        if let Some(answer) = simd::ask::<Q, TURNED>(self, meshes, question) {
-            return answer;
-        }
-        portable::<Q, TURNED>(meshes, question)
+        let work = match simd::run(self, work) {
+            Ok(output) => return output,
+            Err(work) => work,
+        };
+        portable(work)
     }
 }
 
 /// Not to take its stack in queries that do without it.
 #[inline(never)]
-fn portable<Q: Question, const TURNED: bool>(
-    meshes: Meshes<'_>,
-    question: &mut Q,
-) -> ControlFlow<()> {
-    overlap::ask::<Portable, Q, TURNED>(meshes, question)
+fn portable<W: InLanes>(work: W) -> W::Output {
+    work.run::<Portable>()
 }

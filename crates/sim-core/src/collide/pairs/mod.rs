@@ -17,7 +17,7 @@ mod stack;
 use core::ops::ControlFlow;
 
 use crate::bvh::{Boxes, Bvh, LEAF, Slabs, WIDTH};
-pub(super) use lanes::{Lanes, Portable};
+pub(super) use lanes::{InLanes, Lanes, Portable};
 pub use level::Level;
 pub(super) use overlap::{Meshes, Question, each_pair};
 pub(super) use reach::{Reach, dot0, splat};

@@ -3,7 +3,7 @@
 use core::ops::ControlFlow;
 
 use super::reach::{Placed, PlacedSlabs, abs, dot, dot0};
-use super::{Lanes, Level, Portable, Reach, TILE, Tiles, descend};
+use super::{InLanes, Lanes, Level, Portable, Reach, TILE, Tiles, descend};
 use crate::bvh::{Boxes, Bvh, Slabs, WIDTH};
 use crate::collide::Placement;
 
@@ -44,31 +44,38 @@ pub(in crate::collide) fn each_pair<Q: Question>(
         return ControlFlow::Continue(());
     }
     if at.turn().is_some() {
-        level.ask::<Q, true>(meshes, question)
+        level.run(Ask::<Q, true> { meshes, question })
     } else {
-        level.ask::<Q, false>(meshes, question)
+        level.run(Ask::<Q, false> { meshes, question })
     }
 }
 
 /// [`each_pair`] in the lanes of a level.
-#[inline(always)]
-pub(super) fn ask<L: Lanes, Q: Question, const TURNED: bool>(
-    meshes: Meshes<'_>,
-    question: &mut Q,
-) -> ControlFlow<()> {
-    let Meshes { first, second, at } = meshes;
-    match Reach::new(first, second, at) {
-        Some(reach) => {
-            let mut overlaps = Overlaps::<L, Q, TURNED> {
-                meshes,
-                margin: L::splat(reach.margin()),
-                slack: L::splat(SLACK * reach.margin()),
-                reach,
-                question,
-            };
-            descend(first, second, &mut overlaps)
+struct Ask<'a, Q, const TURNED: bool> {
+    meshes: Meshes<'a>,
+    question: &'a mut Q,
+}
+
+impl<Q: Question, const TURNED: bool> InLanes for Ask<'_, Q, TURNED> {
+    type Output = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> ControlFlow<()> {
+        let Ask { meshes, question } = self;
+        let Meshes { first, second, at } = meshes;
+        match Reach::new(first, second, at) {
+            Some(reach) => {
+                let mut overlaps = Overlaps::<L, Q, TURNED> {
+                    meshes,
+                    margin: L::splat(reach.margin()),
+                    slack: L::splat(SLACK * reach.margin()),
+                    reach,
+                    question,
+                };
+                descend(first, second, &mut overlaps)
+            }
+            None => descend(first, second, &mut Wide { meshes, question }),
         }
-        None => descend(first, second, &mut Wide { meshes, question }),
     }
 }
 

@@ -1,14 +1,13 @@
 //! Lanes in 256- and 512-bit vectors of x86-64.
 //!
 //! The `unsafe` here says no more than that instructions which have been found to exist may be
-//! executed: no pointer is made or followed but in loads of whole arrays.
+//! executed: no pointer is made or followed but in loads and stores of whole arrays.
 #![allow(unsafe_code)]
 
 use core::arch::x86_64::*;
-use core::ops::ControlFlow;
 
 use super::lanes::push_each;
-use super::{Lanes, Level, Meshes, Question, Stack, TILE, overlap};
+use super::{InLanes, Lanes, Level, Stack, TILE};
 use crate::bvh::WIDTH;
 
 #[cfg(feature = "std")]
@@ -45,35 +44,28 @@ pub(super) fn widest() -> Level {
     widest_of_processor()
 }
 
-/// Answers a question at a level with instructions of its own that this processor has.
+/// Does work at a level with instructions of its own that this processor has; gives it back otherwise.
 #[inline]
-pub(super) fn ask<Q: Question, const TURNED: bool>(
-    level: Level,
-    meshes: Meshes<'_>,
-    question: &mut Q,
-) -> Option<ControlFlow<()>> {
+pub(super) fn run<W: InLanes>(level: Level, work: W) -> Result<W::Output, W> {
     if level > widest() {
-        return None;
+        return Err(work);
     }
     // SAFETY: the processor has what these are compiled for, as it has the level.
     match level {
-        Level::Portable => None,
-        Level::Avx2 => Some(unsafe { avx2::<Q, TURNED>(meshes, question) }),
-        Level::Avx512 => Some(unsafe { avx512::<Q, TURNED>(meshes, question) }),
+        Level::Portable => Err(work),
+        Level::Avx2 => Ok(unsafe { avx2(work) }),
+        Level::Avx512 => Ok(unsafe { avx512(work) }),
     }
 }
 
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,popcnt")]
-fn avx2<Q: Question, const TURNED: bool>(meshes: Meshes<'_>, question: &mut Q) -> ControlFlow<()> {
-    overlap::ask::<Avx2, Q, TURNED>(meshes, question)
+fn avx2<W: InLanes>(work: W) -> W::Output {
+    work.run::<Avx2>()
 }
 
 #[target_feature(enable = "avx512f,avx2,fma,bmi1,bmi2,popcnt")]
-fn avx512<Q: Question, const TURNED: bool>(
-    meshes: Meshes<'_>,
-    question: &mut Q,
-) -> ControlFlow<()> {
-    overlap::ask::<Avx512, Q, TURNED>(meshes, question)
+fn avx512<W: InLanes>(work: W) -> W::Output {
+    work.run::<Avx512>()
 }
 
 /// Two rows of four in each vector. Made only in [`avx2`].
@@ -88,12 +80,21 @@ struct Avx512(__m512);
 macro_rules! call {
     ($($call:tt)*) => {
         // SAFETY: values of this type are made only in functions that run where the processor
-        // has these instructions; loads are of whole arrays.
+        // has these instructions; loads and stores are of whole arrays.
         unsafe { $($call)* }
     };
 }
 
 impl Lanes for Avx2 {
+    #[inline(always)]
+    fn store(self, to: &mut [f32; TILE]) {
+        let (low, high) = to.split_at_mut(TILE / 2);
+        call! {
+            _mm256_storeu_ps(low.as_mut_ptr(), self.0);
+            _mm256_storeu_ps(high.as_mut_ptr(), self.1);
+        }
+    }
+
     #[inline(always)]
     fn splat(x: f32) -> Avx2 {
         call! { let x = _mm256_set1_ps(x); Avx2(x, x) }
@@ -198,6 +199,11 @@ impl Lanes for Avx2 {
 }
 
 impl Lanes for Avx512 {
+    #[inline(always)]
+    fn store(self, to: &mut [f32; TILE]) {
+        call! { _mm512_storeu_ps(to.as_mut_ptr(), self.0) }
+    }
+
     #[inline(always)]
     fn splat(x: f32) -> Avx512 {
         call! { Avx512(_mm512_set1_ps(x)) }

@@ -3,7 +3,10 @@
 use glam::DVec3;
 
 use crate::bvh::{Boxes, Bvh, WIDTH};
-use crate::collide::pairs::{Lanes, Portable, Reach, TILE};
+use crate::collide::{
+    Level,
+    pairs::{InLanes, Lanes, Reach, TILE},
+};
 
 /// The motion as boxes see it.
 pub(super) struct Moving {
@@ -11,6 +14,7 @@ pub(super) struct Moving {
     motion: DVec3,
     /// Where f32 is enough.
     swift: Option<Swift>,
+    level: Level,
 }
 
 impl Moving {
@@ -19,22 +23,31 @@ impl Moving {
             offset,
             motion,
             swift: Swift::new(first, second, offset, motion),
+            level: Level::best(),
         }
     }
 
     /// A bit for each pair of boxes that meet no later than the horizon, and when they begin to,
     /// rounded down.
-    #[inline(never)]
-    pub(super) fn meet(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, Portable) {
+    pub(super) fn meet(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, [f32; TILE]) {
         match &self.swift {
-            Some(swift) => swift.meet(first, second, horizon),
+            Some(swift) => {
+                let mut enter = [0.0; TILE];
+                let pairs = self.level.run(Meet {
+                    swift,
+                    boxes: [first, second],
+                    horizon: horizon as f32,
+                    enter: &mut enter,
+                });
+                (pairs, enter)
+            }
             None => self.meet_in_f64(first, second, horizon),
         }
     }
 
     /// For meshes so large that f32 is of no use. It need not be fast.
     #[cold]
-    fn meet_in_f64(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, Portable) {
+    fn meet_in_f64(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, [f32; TILE]) {
         let (mut bits, mut times) = (0, [f32::INFINITY; TILE]);
         for (pair, place) in times.iter_mut().enumerate() {
             let time = self.entry(first, pair / WIDTH, second, pair % WIDTH);
@@ -47,7 +60,7 @@ impl Moving {
                 };
             }
         }
-        (bits, Portable::new(times))
+        (bits, times)
     }
 
     /// When two boxes begin to meet, rounded down; `None` if they do not within the motion.
@@ -115,47 +128,57 @@ impl Swift {
             }),
         })
     }
+}
 
-    /// A bit for each pair of boxes that meet before the horizon, and when they begin to.
-    ///
+/// [`Moving::meet`] in f32.
+struct Meet<'a> {
+    swift: &'a Swift,
+    boxes: [&'a Boxes; 2],
+    horizon: f32,
+    enter: &'a mut [f32; TILE],
+}
+
+impl InLanes for Meet<'_> {
+    type Output = u32;
+
     /// Distances are known to within the margin ([`Reach::new`]), whose roundings here are a small
     /// part of it. Quotients are rounded three times, by `2^-24` each.
     #[inline(always)]
-    fn meet(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, Portable) {
+    fn run<L: Lanes>(self) -> u32 {
         const DOWN: f32 = 1.0 - 4.0 * f32::EPSILON;
         const UP: f32 = 1.0 + 4.0 * f32::EPSILON;
-        let (mut enter, mut leave) = (Portable::splat(0.0), Portable::splat(1.0));
+        let (swift, [first, second]) = (self.swift, self.boxes);
+        let (mut enter, mut leave) = (L::splat(0.0), L::splat(1.0));
         let mut meet = u32::MAX;
         for axis in 0..3 {
             let (c, h) = (&first.centre[axis], &first.half[axis]);
             let (d, k) = (&second.centre[axis], &second.half[axis]);
-            let moved = Portable::columns(d).add(Portable::splat(self.offset[axis]));
-            let between = Portable::rows(c).sub(moved);
-            let reach = Portable::rows(h).add(Portable::columns(k));
-            let reach = reach.add(Portable::splat(self.margin[axis]));
+            let moved = L::columns(d).add(L::splat(swift.offset[axis]));
+            let between = L::rows(c).sub(moved);
+            let reach = L::rows(h).add(L::columns(k));
+            let reach = reach.add(L::splat(swift.margin[axis]));
             // Not so where a lane holds nothing.
-            meet &= Portable::splat(0.0).at_most(reach);
-            if self.inverse[axis] == 0.0 {
+            meet &= L::splat(0.0).at_most(reach);
+            let inverse = L::splat(swift.inverse[axis]);
+            if swift.inverse[axis] == 0.0 {
                 meet &= between.abs().at_most(reach);
-                continue;
+            } else {
+                let middle = between.mul(inverse);
+                let around = reach.mul(inverse.abs());
+                // Both roundings are relative to the parts, not to what is left of them.
+                let slack = middle.abs().add(around.abs());
+                let slack = slack.mul(L::splat(4.0 * f32::EPSILON));
+                enter = enter.max(middle.sub(around).sub(slack));
+                leave = leave.min(middle.add(around).add(slack));
             }
-            let inverse = Portable::splat(self.inverse[axis]);
-            let middle = between.mul(inverse);
-            let around = reach.mul(inverse.abs());
-            // Both roundings are relative to the parts, not to what is left of them.
-            let slack = middle
-                .abs()
-                .add(around.abs())
-                .mul(Portable::splat(4.0 * f32::EPSILON));
-            enter = enter.max(middle.sub(around).sub(slack));
-            leave = leave.min(middle.add(around).add(slack));
         }
-        let enter = enter.mul(Portable::splat(DOWN));
+        let enter = enter.mul(L::splat(DOWN));
+        enter.store(self.enter);
         // More than what quotients lose below the normal numbers.
-        let least = Portable::splat(f32::MIN_POSITIVE);
-        let latest = leave.min(Portable::splat(horizon as f32));
-        let latest = latest.mul_add(Portable::splat(UP), least);
-        (meet & enter.at_most(latest) & 0xffff, enter)
+        let least = L::splat(f32::MIN_POSITIVE);
+        let latest = leave.min(L::splat(self.horizon));
+        let latest = latest.mul_add(L::splat(UP), least);
+        meet & enter.at_most(latest) & 0xffff
     }
 }
 
@@ -221,7 +244,8 @@ mod tests {
             let (offset, mut motion) = (random.three(most), random.three(4 * most));
             motion[round % 3] *= i64::from(round % 5 != 0);
             let float = |v: [i64; 3]| DVec3::from_array(v.map(|x| x as f64 * unit));
-            let moving = Moving::new(&tree, &tree, float(offset), float(motion));
+            let mut moving = Moving::new(&tree, &tree, float(offset), float(motion));
+            moving.level = Level::ALL[round % Level::ALL.len()];
             assert!(moving.swift.is_some());
             let (pairs, enter) = moving.meet(&first, &second, 1.0);
             for pair in 0..TILE {
@@ -234,7 +258,7 @@ mod tests {
                 assert!(pairs >> pair & 1 == 1, "{round} {pair}");
                 // Rounding to f64 is monotonic.
                 let time = over as f64 / under as f64;
-                assert!(f64::from(enter.lanes()[pair]) <= time, "{round} {pair}");
+                assert!(f64::from(enter[pair]) <= time, "{round} {pair}");
                 // Nor where the horizon is the time itself.
                 let (pairs, _) = moving.meet(&first, &second, time);
                 assert!(pairs >> pair & 1 == 1, "{round} {pair} at the horizon");

@@ -105,7 +105,7 @@ impl<'a> Search<'a> {
             _ => Among::Pairs,
         };
         let is_leaves = a & b & LEAF != 0;
-        let (list, count) = in_order(pairs, &enter.lanes(), among);
+        let (list, count) = in_order(pairs, &enter, among);
         for &(soonest, lane) in &list[..count] {
             // Quotients lose no more than that below the normal numbers.
             if f64::from(soonest) > self.horizon + f64::from(f32::MIN_POSITIVE) {
