@@ -160,6 +160,35 @@ fn what_lies_on_a_floor_does_not_move() {
     }
 }
 
+/// What slides has no impacts, near or far, under any method.
+#[test]
+fn what_slides_down_a_slope_hits_nothing() {
+    let slope = DVec3::new(0.2, 1.0, 0.1).normalize();
+    for method in METHODS {
+        for (restitution, radius, far) in [(0.0, 0.25, 0.0), (1.0, 0.25, 0.0), (0.5, 0.0, 1e3)] {
+            let along = far * slope.any_orthonormal_vector();
+            let body = Body {
+                restitution,
+                ..ball(radius, along + radius * slope, DVec3::ZERO)
+            };
+            let floor = wall(slope, DVec3::ZERO, DVec3::ZERO);
+            let mut world = on_floor(method, 1.0 / 64.0, body, floor);
+            let impacts = run(&mut world, 600).len();
+            let what = format!("{}, e = {restitution}", method.name);
+            assert_eq!(impacts, 0, "{what}");
+            // It gathers speed as on a slope without friction, less half a step of it.
+            let pull = G * (DVec3::NEG_Y + slope.y * slope).length();
+            let speed = world.velocity(1).length();
+            assert!(
+                (speed / (600.0 / 64.0 * pull) - 1.0).abs() < 2e-3,
+                "{what}: {speed}"
+            );
+            let away = world.velocity(1).dot(slope).abs();
+            assert!(away < 1e-9, "{what}: leaves at {away:e}");
+        }
+    }
+}
+
 /// A stack of cubes and a cube in a corner stay as they are.
 #[test]
 fn stacks_stand() {

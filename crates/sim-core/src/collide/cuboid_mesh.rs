@@ -31,7 +31,7 @@ impl<'a> Pair<'a> {
     #[inline]
     pub(super) fn of(first: &'a Bvh, second: &'a Bvh, at: &Placement) -> Option<Pair<'a>> {
         let (ends, mesh, offset) = match (first.cuboid(), second.cuboid()) {
-            _ if at.turn().is_some() => return None,
+            _ if at.turn().is_some() || !at.is_in_range() => return None,
             (Some(cuboid), _) => (cuboid.ends, second, at.offset()),
             (None, Some(cuboid)) => {
                 let ends = cuboid.ends.map(|end| end + at.offset());
@@ -55,7 +55,7 @@ impl<'a> Pair<'a> {
             tests: 0,
         };
         let is_across = self.is_across();
-        // Nodes on the way from the root, with a bit for each child that waits.
+        // Nodes on the way from the root, one a level, with a bit for each child that waits.
         let mut waiting = [(0, 0); MAX_DEPTH];
         let mut count = 0;
         let mut code = self.mesh.root();
@@ -186,7 +186,8 @@ struct Cut {
     is_any_inside: bool,
 }
 
-/// The lane of the greatest float, roughly.
+/// The lane of the greatest float, or one that is as great but for rounding: it may be one that the
+/// surface does not come into, which costs a look and no more.
 #[inline]
 fn deepest(depth: Vec4) -> usize {
     // The lowest bits name the lane; those of minus infinity would make it no number.
@@ -218,12 +219,12 @@ impl Seen {
         let Aabb { min, max } = mesh.bounds();
         let mesh = Vec3A::from(min).abs().max(Vec3A::from(max).abs());
         let size = mesh + offset.as_vec3a().abs() + centre.abs() + half;
-        let largest = size.max_element();
+        let is_in_reach = size.cmplt(Vec3A::splat(LARGEST)).all();
         let of_axes = |of: Vec3A| of.to_array().map(Vec4::splat);
-        (largest < LARGEST).then(|| Seen {
+        is_in_reach.then(|| Seen {
             centre: of_axes(centre),
             half: of_axes(half),
-            margin: 8.0 * f32::EPSILON * largest + 16.0 * f32::MIN_POSITIVE,
+            margin: 8.0 * f32::EPSILON * size.max_element() + 16.0 * f32::MIN_POSITIVE,
         })
     }
 
@@ -308,6 +309,21 @@ mod tests {
             apart += u32::from(!is_met);
         }
         assert!(meet > 2_000 && apart > 2_000, "{meet} {apart}");
+    }
+
+    #[test]
+    fn what_is_no_place_leaves_meshes_apart() {
+        let (unit, ball) = (Bvh::build(&cube()), Bvh::build(&sphere(8)));
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e101, -1e101] {
+            for offset in DVec3::AXES
+                .map(|axis| DVec3::select(axis.cmpeq(DVec3::ONE), axis * value, DVec3::ZERO))
+            {
+                for (first, second) in [(&unit, &ball), (&ball, &unit), (&unit, &unit)] {
+                    assert!(!tree::intersect(first, second, offset), "{offset}");
+                    assert!(!tree::work(first, second, offset).meet, "{offset}");
+                }
+            }
+        }
     }
 
     #[test]

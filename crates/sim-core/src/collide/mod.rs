@@ -39,9 +39,9 @@ pub use touch::{Feature, Touch};
 pub struct Work {
     /// The answer.
     pub meet: bool,
-    /// Pairs of boxes compared.
+    /// Pairs of boxes compared; where a mesh is a box, its own with those of the other.
     pub boxes: u64,
-    /// Tests of triangles: of an edge against a triangle in the naive search, of two triangles
-    /// through trees.
+    /// Tests of triangles: of an edge against a triangle in the naive search, through trees of two
+    /// triangles, or of one with a mesh that is a box.
     pub tests: u64,
 }

@@ -18,7 +18,8 @@ pub fn intersect(first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> bool {
     intersect_at(Level::best(), first, second, at)
 }
 
-/// [`intersect`] with the instructions of a level, to compare levels.
+/// [`intersect`] with the instructions of a level, to compare levels. One mesh that is a box takes no
+/// wide instructions.
 pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> bool {
     let at = &at.into();
     let meshes = Meshes { first, second, at };

@@ -11,6 +11,7 @@
 //! meet, and two searches or so for each impact. Nothing but the motion goes from step to step,
 //! beside an order of boxes that saves time.
 
+mod hold;
 mod part;
 mod respond;
 mod seek;
@@ -150,6 +151,17 @@ impl World {
 
     /// Seeks the first impact of every pair that may have one.
     fn seek_all(&mut self) -> Result<(), (usize, Cause)> {
+        self.find_near();
+        self.continuous.resting.clear();
+        if self.continuous.lag < 0.0 && self.hold()? {
+            self.find_near();
+        }
+        self.continuous.events.clear();
+        self.seek_near()
+    }
+
+    /// Finds the pairs whose swept boxes meet.
+    fn find_near(&mut self) {
         let mut broad = mem::take(&mut self.continuous.broad);
         let mut near = mem::take(&mut self.continuous.near);
         broad.fill(
@@ -163,13 +175,11 @@ impl World {
         let count = near.len();
         self.continuous.broad = broad;
         self.continuous.near = near;
-        self.continuous.events.clear();
         for place in 0..count {
             let (i, j) = self.continuous.near[place];
             self.need_bvh(i);
             self.need_bvh(j);
         }
-        self.seek_near()
     }
 
     /// Seeks the first impact of each pair that comes near.
@@ -203,7 +213,6 @@ impl World {
 
     /// Answers impacts in the order of time until none is left.
     fn answer_all(&mut self) -> Result<(), (usize, Cause)> {
-        self.continuous.resting.clear();
         let mut answered = 0;
         let mut squeeze = Squeeze::default();
         let mut group = mem::take(&mut self.continuous.group);

@@ -34,7 +34,7 @@ const SOON: f64 = 1.0 / 4.0;
 
 /// Part of the speed that forces give in a step below which bodies that come to rest on each other
 /// have rested before, and it is no impact.
-const SLIGHTEST: f64 = 1e-6;
+pub(super) const SLIGHTEST: f64 = 1e-6;
 
 /// Cosine of the angle to which the normals of two contacts of the same bodies are one: 0.8 degrees.
 const SAME_NORMAL: f64 = 0.9999;
@@ -375,7 +375,7 @@ impl World {
 
     /// Lets bodies in resting contact move on together: those of some impacts, and all that rest on
     /// them or that they rest on.
-    fn rest(
+    pub(super) fn rest(
         &mut self,
         group: &[Event],
         time: f64,

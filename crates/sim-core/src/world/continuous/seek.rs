@@ -53,39 +53,10 @@ impl World {
             grain: self.grain(i, j),
         };
         let is_parabola = pair.bend > 0.0 && self.unit(i).is_none() && self.unit(j).is_none();
-        let found = match is_parabola && has_roots(forms.0, forms.1) {
-            true => self.seek_on_parabola(pair, forms, probe)?,
-            false => self.seek_on_chords(pair, forms, probe)?,
-        };
-        if found.is_none() && self.continuous.lag < 0.0 && self.are_pressed(i, j) {
-            return self.seek_at_end(pair, forms, probe);
+        match is_parabola && has_roots(forms.0, forms.1) {
+            true => self.seek_on_parabola(pair, forms, probe),
+            false => self.seek_on_chords(pair, forms, probe),
         }
-        Ok(found)
-    }
-
-    /// The impact of two bodies that come back to each other at the end of the step, but for rounding.
-    ///
-    /// A method that keeps the velocity of half a step later lets what lies still leave by as much as
-    /// it falls in a step. What rests has to do so before that velocity is made.
-    fn seek_at_end(
-        &self,
-        pair: Pair,
-        (first, second): (Form<'_>, Form<'_>),
-        probe: &mut Probe,
-    ) -> Result<Option<Event>, (usize, Cause)> {
-        let end = self.settings.dt;
-        let (x1, v1) = self.seen_at(pair.i, end, probe)?;
-        let (x2, v2) = self.seen_at(pair.j, end, probe)?;
-        let motion = end * (v2 - v1);
-        let Some(contact) = first_contact(first, second, snap(x2 - x1), snap(motion)) else {
-            return Ok(None);
-        };
-        let fall = -contact.normal.dot(motion);
-        if contact.time * fall > 4.0 * pair.grain {
-            return Ok(None);
-        }
-        self.settle(pair, (end, end), fall / end, contact, probe)
-            .map(Some)
     }
 
     /// The first impact on ways of any kind.
@@ -170,7 +141,7 @@ impl World {
         let fall = -contact.normal.dot(motion);
         let departure = pair.bend * length * length;
         let is_straight = departure <= pair.grain || depth == DEEPEST;
-        let is_there = contact.time * fall <= 4.0 * pair.grain
+        let is_there = contact.time * fall <= self.touching(pair.i, pair.j)
             && from.0 == self.start_of(pair)
             && self.is_closing(pair, contact.normal, probe);
         if is_straight || is_there {
@@ -275,6 +246,11 @@ impl World {
         velocities.is_some_and(|(v1, v2)| {
             (v2 - v1).dot(normal) <= 8.0 * f64::EPSILON * (v1.length() + v2.length())
         })
+    }
+
+    /// How far apart bodies may be that touch but for rounding, m.
+    pub(super) fn touching(&self, i: usize, j: usize) -> f64 {
+        4.0 * self.grain(i, j)
     }
 
     /// What the rounding of positions and placed vertices may be, m.
