@@ -167,12 +167,12 @@ impl Items {
     /// Cuts a run of two or more in two, along the axis on which centres lie farthest apart.
     #[inline]
     fn split(&mut self, run: &Run, count: &impl Fn(&Bounds) -> u32) -> (Run, Run) {
-        let level = usize::from(run.level);
-        let items = self.of(run);
-        let Centres { axis, low, high } = Centres::of(items);
         if run.len() == run.count as usize && run.len() <= SHORT {
             return self.split_short(run);
         }
+        let level = usize::from(run.level);
+        let items = self.of(run);
+        let Centres { axis, low, high } = Centres::of(items);
         if level >= HALVE_FROM || !(high > low && high - low < f32::INFINITY) {
             return self.halve(run, count);
         }
