@@ -193,24 +193,35 @@ fn what_slides_down_a_slope_hits_nothing() {
 #[test]
 fn stacks_stand() {
     let cube = cube(0.5);
-    let mut world = world_with(settings(DT), &[floor()]);
-    world
-        .add(wall(DVec3::X, DVec3::ZERO, DVec3::ZERO))
-        .expect("a wall");
-    for level in 0..4 {
-        let position = DVec3::new(0.5, 0.5 + f64::from(level), 0.0);
-        let body = Body {
-            restitution: 0.5,
-            ..mesh_body(&cube, position, DVec3::ZERO)
+    for (method, restitution) in METHODS.iter().flat_map(|&m| [(m, 0.5), (m, 1.0)]) {
+        let settings = Settings {
+            method,
+            ..settings(DT)
         };
-        world.add(body).expect("a cube");
-    }
-    world.add_force(weight()).expect("a force");
-    let start: Vec<DVec3> = (0..world.len()).map(|i| world.position(i)).collect();
-    run(&mut world, 600);
-    for (i, &start) in start.iter().enumerate() {
-        let moved = (world.position(i) - start).length();
-        assert!(moved <= 1e-9, "body {i} moved {moved:e}");
+        let mut world = world_with(settings, &[floor()]);
+        world
+            .add(wall(DVec3::X, DVec3::ZERO, DVec3::ZERO))
+            .expect("a wall");
+        for level in 0..4 {
+            let position = DVec3::new(0.5, 0.5 + f64::from(level), 0.0);
+            let body = Body {
+                restitution,
+                ..mesh_body(&cube, position, DVec3::ZERO)
+            };
+            world.add(body).expect("a cube");
+        }
+        world.add_force(weight()).expect("a force");
+        let start: Vec<DVec3> = (0..world.len()).map(|i| world.position(i)).collect();
+        for _ in 0..600 {
+            world.step().expect("a step");
+            for (i, &start) in start.iter().enumerate() {
+                let what = format!("{}, e = {restitution}: body {i}", method.name);
+                let moved = (world.position(i) - start).length();
+                assert!(moved <= 1e-9, "{what} moved {moved:e}");
+                let speed = world.velocity(i).length();
+                assert!(speed <= 1e-6, "{what} moves at {speed:e}");
+            }
+        }
     }
 }
 

@@ -17,24 +17,32 @@ use crate::collide::{first_contact, snap};
 impl World {
     /// Holds bodies of pairs that came near, and tells whether there are any.
     pub(super) fn hold(&mut self) -> Result<bool, (usize, Cause)> {
-        let near = self.continuous.near.iter();
-        let held = near.filter_map(|&(i, j)| self.held(i, j));
-        let (group, gaps): (Vec<Event>, Vec<f64>) = held.unzip();
-        if group.is_empty() {
-            return Ok(false);
+        let (mut group, mut gaps): (Vec<Event>, Vec<f64>) = Default::default();
+        let mut bodies: Vec<usize> = Vec::new();
+        // What lies on what is held is pressed once that is.
+        loop {
+            let known = |pair: (usize, usize)| group.iter().any(|event| event.bodies == pair);
+            let near = self.continuous.near.iter().filter(|&&pair| !known(pair));
+            let held = near.filter_map(|&(i, j)| self.held(i, j));
+            let (new, of_new): (Vec<Event>, Vec<f64>) = held.unzip();
+            if new.is_empty() {
+                break;
+            }
+            bodies.extend(
+                new.iter()
+                    .flat_map(|event| [event.bodies.0, event.bodies.1]),
+            );
+            bodies.sort_unstable();
+            bodies.dedup();
+            bodies.retain(|&body| self.is_moved(body));
+            group.extend(new);
+            gaps.extend(of_new);
+            for &body in &bodies {
+                self.continuous.start.velocity[body] = self.previous.velocity[body];
+            }
+            self.continuous.resting = group.iter().map(Rest::from).collect();
+            self.rest(&group, 0.0, &mut Vec::new())?;
         }
-        let mut bodies: Vec<usize> = group
-            .iter()
-            .flat_map(|e| [e.bodies.0, e.bodies.1])
-            .collect();
-        bodies.sort_unstable();
-        bodies.dedup();
-        bodies.retain(|&body| self.is_moved(body));
-        for &body in &bodies {
-            self.continuous.start.velocity[body] = self.previous.velocity[body];
-        }
-        self.continuous.resting = group.iter().map(Rest::from).collect();
-        self.rest(&group, 0.0, &mut Vec::new())?;
         for &body in &bodies {
             let ways = &mut self.continuous;
             ways.start.velocity[body] += ways.lag * ways.acceleration[body];
@@ -49,7 +57,7 @@ impl World {
             let unit = self.unit(body).map_or(body..body + 1, |(unit, _)| unit);
             self.finish_way(unit)?;
         }
-        Ok(true)
+        Ok(!group.is_empty())
     }
 
     /// The contact of two bodies that touch, that forces press together, and that do not part; and how far
@@ -58,7 +66,7 @@ impl World {
         let (first, second) = (self.form(i)?, self.form(j)?);
         let at = |of: &[DVec3]| of[j] - of[i];
         let (start, dt) = (&self.continuous.start, self.settings.dt);
-        let push = dt * at(&self.continuous.given);
+        let push = dt * at(&self.continuous.acceleration);
         let contact = first_contact(first, second, snap(at(&start.position)), snap(dt * push))?;
         let pressure = -push.dot(contact.normal);
         let gap = contact.time * dt * pressure;
