@@ -82,6 +82,7 @@ mod integrate;
 mod measure;
 mod mesh;
 pub mod ode;
+mod pieces;
 mod shape;
 #[cfg(test)]
 mod test_meshes;

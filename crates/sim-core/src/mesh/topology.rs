@@ -2,6 +2,8 @@
 
 use alloc::{vec, vec::Vec};
 
+use crate::pieces::Pieces;
+
 /// Of the corners and edges of a triangle, those for which it is the first of all that have it. By
 /// owners, each edge and vertex comes up once.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -99,24 +101,12 @@ fn vertex_owners(vertices: usize, triangles: &[[u32; 3]]) -> Vec<Owned> {
     owned
 }
 
-/// Counts pieces by joining them (Galler, Fischer 1964, "An improved equivalence algorithm"), paths
-/// halved on the way (Tarjan, van Leeuwen 1984).
 fn is_connected(vertices: usize, edges: &[[u32; 2]]) -> bool {
-    let mut parent: Vec<u32> = (0..vertices as u32).collect();
-    let root = |parent: &mut [u32], mut v: u32| {
-        while parent[v as usize] != v {
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
-    };
-    let mut pieces = vertices;
-    for ends in edges {
-        let [from, to] = ends.map(|v| root(&mut parent, v));
-        pieces -= usize::from(from != to);
-        parent[from.max(to) as usize] = from.min(to);
-    }
-    pieces == 1
+    let mut pieces = Pieces::new(vertices);
+    let joins = edges
+        .iter()
+        .filter(|[a, b]| pieces.join(*a as usize, *b as usize));
+    joins.count() + 1 == vertices
 }
 
 #[cfg(test)]

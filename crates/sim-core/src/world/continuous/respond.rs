@@ -18,7 +18,10 @@ use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
 use super::{Bounces, Event};
-use crate::impulse::{Joined, project, reflect};
+use crate::{
+    impulse::{Joined, project, reflect},
+    pieces::Pieces,
+};
 
 /// A flight of less than this part of a step is none.
 const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
@@ -466,19 +469,11 @@ impl World {
 
 /// For each contact a number that those have in common which movable bodies tie together.
 fn ties(contacts: &[Joined], is_movable: &[bool]) -> Vec<usize> {
-    let mut parent: Vec<usize> = (0..is_movable.len()).collect();
-    let root = |parent: &mut Vec<usize>, mut body: usize| {
-        while parent[body] != body {
-            parent[body] = parent[parent[body]];
-            body = parent[body];
-        }
-        body
-    };
+    let mut pieces = Pieces::new(is_movable.len());
     for contact in contacts {
         let (i, j) = contact.bodies;
         if is_movable[i] && is_movable[j] {
-            let (i, j) = (root(&mut parent, i), root(&mut parent, j));
-            parent[i.max(j)] = i.min(j);
+            pieces.join(i, j);
         }
     }
     let movable = |contact: &Joined| match is_movable[contact.bodies.0] {
@@ -487,7 +482,7 @@ fn ties(contacts: &[Joined], is_movable: &[bool]) -> Vec<usize> {
     };
     contacts
         .iter()
-        .map(|contact| root(&mut parent, movable(contact)))
+        .map(|contact| pieces.first(movable(contact)))
         .collect()
 }
 

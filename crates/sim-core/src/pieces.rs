@@ -1,0 +1,35 @@
+//! What hangs together with what.
+
+use alloc::vec::Vec;
+
+/// Pieces of a whole, joined two by two (Galler, Fischer 1964, "An improved equivalence algorithm"), with
+/// paths halved on the way (Tarjan, van Leeuwen 1984).
+pub(crate) struct Pieces {
+    parent: Vec<u32>,
+}
+
+impl Pieces {
+    /// So many, each on its own.
+    pub(crate) fn new(count: usize) -> Pieces {
+        Pieces {
+            parent: (0..count as u32).collect(),
+        }
+    }
+
+    /// The first one of all that one hangs together with.
+    pub(crate) fn first(&mut self, of: usize) -> usize {
+        let (parent, mut at) = (&mut self.parent, of);
+        while parent[at] as usize != at {
+            parent[at] = parent[parent[at] as usize];
+            at = parent[at] as usize;
+        }
+        at
+    }
+
+    /// Joins two, and tells whether they were apart.
+    pub(crate) fn join(&mut self, one: usize, other: usize) -> bool {
+        let (one, other) = (self.first(one), self.first(other));
+        self.parent[one.max(other)] = one.min(other) as u32;
+        one != other
+    }
+}
