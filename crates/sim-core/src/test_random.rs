@@ -1,5 +1,7 @@
 //! Whole numbers for tests.
 
+use glam::DVec3;
+
 /// Numbers from a sequence of Marsaglia's (2003, "Xorshift RNGs").
 pub(crate) struct Random(pub(crate) u64);
 
@@ -14,5 +16,9 @@ impl Random {
 
     pub(crate) fn three(&mut self, most: i64) -> [i64; 3] {
         [self.up_to(most), self.up_to(most), self.up_to(most)]
+    }
+
+    pub(crate) fn vector(&mut self, most: i64) -> DVec3 {
+        DVec3::from_array(self.three(most).map(|x| x as f64))
     }
 }

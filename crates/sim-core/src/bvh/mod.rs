@@ -227,14 +227,19 @@ mod tests {
         assert!(bvh.depth() < 12, "{}", bvh.depth());
     }
 
-    /// Every leaf below a code.
-    fn leaves(bvh: &Bvh, code: u32) -> Vec<u32> {
+    /// The corners of all triangles below a code, and how many leaves these are in.
+    fn below(bvh: &Bvh, code: u32) -> (Vec<Vec3>, u32) {
         let node = bvh.node(code);
-        if code & LEAF != 0 {
-            return vec![code];
-        }
-        let below = node.lanes().flat_map(|lane| leaves(bvh, node.child[lane]));
-        below.collect()
+        let of_lane = |lane| match code & LEAF {
+            0 => below(bvh, node.child[lane]),
+            _ => (bvh.triangles(node).corners(lane).to_vec(), 0),
+        };
+        let join = |(mut all, leaves): (Vec<Vec3>, u32), (more, others)| {
+            all.extend::<Vec<Vec3>>(more);
+            (all, leaves + others)
+        };
+        let is_leaf = u32::from(code & LEAF != 0);
+        node.lanes().map(of_lane).fold((vec![], is_leaf), join)
     }
 
     #[test]
@@ -242,39 +247,32 @@ mod tests {
         let turned = DQuat::from_rotation_y(0.3) * DQuat::from_rotation_x(0.2);
         // Half of a flat ball, as it lies on no axis.
         let ball = sphere(60);
-        let is_above =
-            |corners: &[u32; 3]| corners.iter().all(|&v| ball.vertices()[v as usize].y > 0.0);
+        let at = |v: u32| ball.vertices()[v as usize];
+        let is_above = |corners: &[u32; 3]| corners.iter().all(|&v| at(v).y > 0.0);
         let half = ball.triangles().iter().copied().filter(is_above).collect();
         for away in [0.0, 1e3] {
-            let place =
-                |v: &Vec3| (turned * (v.as_dvec3() * DVec3::new(1.0, 0.01, 0.3)) + away).as_vec3();
-            let vertices = ball.vertices().iter().map(place).collect();
+            let flat = |v: &Vec3| turned * (v.as_dvec3() * DVec3::new(1.0, 0.01, 0.3)) + away;
+            let vertices = ball.vertices().iter().map(|v| flat(v).as_vec3()).collect();
             let bvh = Bvh::build(&Mesh::new(vertices, Vec::clone(&half)).unwrap());
-            let mut thinnest: f32 = 1.0;
-            for code in (0..)
+            let inner = (0..)
                 .zip(&bvh.nodes)
-                .filter(|(i, node)| node.child[0] != i | LEAF)
+                .filter(|(i, node)| node.child[0] != i | LEAF);
+            let mut thinnest: f32 = 1.0;
+            for (code, node, lane) in
+                inner.flat_map(|(i, node)| node.lanes().map(move |l| (i, node, l)))
             {
-                let (node, slabs) = (code.1, bvh.slabs(code.0));
-                for lane in node.lanes() {
-                    let normal = Vec3::from_array(slabs.normal.map(|axis| axis[lane]));
-                    let (middle, half) = (slabs.middle[lane], slabs.half[lane]);
-                    let below = leaves(&bvh, node.child[lane]);
-                    let size = node.boxes.bounds(lane).half_extent().max_element() as f32;
-                    if below.len() > 64 {
-                        thinnest = thinnest.min(half / size);
-                    }
-                    for leaf in below {
-                        let leaf = bvh.node(leaf);
-                        for corner in leaf
-                            .lanes()
-                            .flat_map(|lane| bvh.triangles(leaf).corners(lane))
-                        {
-                            let height = normal.as_dvec3().dot(corner.as_dvec3()) as f32;
-                            let slack = corner.abs().max_element() / (1 << 20) as f32;
-                            assert!((height - middle).abs() <= half + 2.0 * slack);
-                        }
-                    }
+                let slabs = bvh.slabs(code);
+                let normal = Vec3::from_array(slabs.normal.map(|axis| axis[lane])).as_dvec3();
+                let (middle, half) = (slabs.middle[lane], slabs.half[lane]);
+                let (corners, leaves) = below(&bvh, node.child[lane]);
+                for corner in corners {
+                    let height = normal.dot(corner.as_dvec3()) as f32;
+                    let slack = corner.abs().max_element() / (1 << 19) as f32;
+                    assert!((height - middle).abs() <= half + slack);
+                }
+                let size = node.boxes.bounds(lane).half_extent().max_element() as f32;
+                if leaves > slabs::FEW_LEAVES {
+                    thinnest = thinnest.min(half / size);
                 }
             }
             assert!(thinnest < 0.1, "{thinnest}");

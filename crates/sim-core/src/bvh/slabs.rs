@@ -86,8 +86,8 @@ fn dot(a: [Vec4; 3], b: [Vec4; 3]) -> Vec4 {
 
 /// Up to so many leaves below a child its slab is that of their corners, above that one around the
 /// slabs below it, which costs the same however many. With 4 instead, two spheres one in the other take
-/// half as many tiles more, and no build is faster; without limit it takes 4 % longer.
-const FEW_LEAVES: u32 = 64;
+/// half as many tiles more; without limit a build takes 4 % more instructions.
+pub(super) const FEW_LEAVES: u32 = 64;
 
 /// The slabs of a node, where those of its children are known, and what it tells its parent. The
 /// triangles below a node lie side by side.

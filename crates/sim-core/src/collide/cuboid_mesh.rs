@@ -7,14 +7,11 @@
 
 use glam::{DVec3, Vec3A, Vec4};
 
-use super::{Placement, Work, predicates::triangles_meet};
+use super::{Work, pairs::LARGEST, predicates::triangles_meet};
 use crate::{
     Aabb,
     bvh::{Boxes, Bvh, Cuboid, LEAF, MAX_DEPTH, WIDTH},
 };
-
-/// Beyond this, m, sums of coordinates may leave f32.
-const LARGEST: f32 = 1e37;
 
 /// A box, and a mesh beside it.
 pub(super) struct Pair<'a> {
@@ -27,18 +24,9 @@ pub(super) struct Pair<'a> {
 }
 
 impl<'a> Pair<'a> {
-    /// Two meshes one of which is a box, the second placed but not turned, where f32 reaches.
+    /// A box by its low and high corner, and a mesh displaced by `offset`, m, where f32 reaches.
     #[inline]
-    pub(super) fn of(first: &'a Bvh, second: &'a Bvh, at: &Placement) -> Option<Pair<'a>> {
-        let (ends, mesh, offset) = match (first.cuboid(), second.cuboid()) {
-            _ if at.turn().is_some() || !at.is_in_range() => return None,
-            (Some(cuboid), _) => (cuboid.ends, second, at.offset()),
-            (None, Some(cuboid)) => {
-                let ends = cuboid.ends.map(|end| end + at.offset());
-                (ends, first, DVec3::ZERO)
-            }
-            (None, None) => return None,
-        };
+    pub(super) fn of(ends: [DVec3; 2], mesh: &'a Bvh, offset: DVec3) -> Option<Pair<'a>> {
         Some(Pair {
             ends,
             mesh,
@@ -219,7 +207,7 @@ impl Seen {
         let Aabb { min, max } = mesh.bounds();
         let mesh = Vec3A::from(min).abs().max(Vec3A::from(max).abs());
         let size = mesh + offset.as_vec3a().abs() + centre.abs() + half;
-        let is_in_reach = size.cmplt(Vec3A::splat(LARGEST)).all();
+        let is_in_reach = size.cmplt(Vec3A::splat(LARGEST as f32)).all();
         let of_axes = |of: Vec3A| of.to_array().map(Vec4::splat);
         is_in_reach.then(|| Seen {
             centre: of_axes(centre),
@@ -253,7 +241,7 @@ impl Seen {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::collide::{Level, pairs::Meshes, tree};
+    use crate::collide::{naive, pairs::Meshes, tree};
     use crate::{
         Mesh,
         test_meshes::{cube, sphere},
@@ -262,28 +250,26 @@ mod tests {
     use alloc::vec::Vec;
     use glam::{DQuat, Vec3};
 
-    fn three(random: &mut Random, most: i64) -> DVec3 {
-        DVec3::from_array(random.three(most).map(|x| x as f64))
+    fn cuboid(size: DVec3) -> Mesh {
+        cube().transformed(DQuat::IDENTITY, size).unwrap()
     }
 
     /// Triangles anywhere on a lattice, some of them without area, which may hang together.
     fn soup(random: &mut Random, scale: f64) -> Mesh {
         let count = 1 + random.up_to(30).unsigned_abs() as u32;
         let apart = random.up_to(1).unsigned_abs() as u32;
-        let corner = |_| (scale * three(random, 6)).as_vec3();
+        let corner = |_| (scale * random.vector(6)).as_vec3();
         let corners: Vec<Vec3> = (0..(2 + apart) * count + 1 - apart).map(corner).collect();
         let triangles = (0..count).map(|i| [0, 1, 2].map(|k| (2 + apart) * i + k));
         Mesh::new(corners, triangles.collect()).unwrap()
     }
 
-    fn agree(first: &Bvh, second: &Bvh, offset: DVec3) -> bool {
+    fn agree(one: &Mesh, other: &Mesh, offset: DVec3) -> Work {
+        let (first, second) = (&Bvh::build(one), &Bvh::build(other));
         let at = &offset.into();
-        let meshes = Meshes { first, second, at };
-        let pair = Pair::of(first, second, at).expect("a box and a mesh");
-        let meet = pair.meet().meet;
-        let by_tiles = tree::meet_by_tiles(Level::best(), meshes);
-        assert_eq!(meet, by_tiles, "{offset} {:?}", pair.ends);
-        meet
+        let work = tree::with_cuboid(Meshes { first, second, at }).expect("a box and a mesh");
+        assert_eq!(work.meet, naive::intersect(one, other, offset), "{offset}");
+        work
     }
 
     #[test]
@@ -292,21 +278,19 @@ mod tests {
         let (mut meet, mut apart) = (0, 0);
         for round in 0..20_000 {
             let scale = libm::ldexp(1.0, [0, -100, 60, -140][round % 4]);
-            let size = scale * (three(&mut random, 3).abs() + 1.0);
-            let cuboid = cube().transformed(DQuat::IDENTITY, size).unwrap();
-            let cuboid = Bvh::build(&cuboid);
-            let soup = Bvh::build(&soup(&mut random, 0.5 * scale));
+            let cuboid = cuboid(scale * (random.vector(3).abs() + 1.0));
+            let soup = soup(&mut random, 0.5 * scale);
             let noise = [0.0, 1e-15, 1e-7, 0.1][round / 4 % 4];
-            let away = 0.25 * three(&mut random, 24)
-                + noise * three(&mut random, 1 << 20) / f64::from(1 << 20);
-            let far = [0.0, 1e8][round / 16 % 2] * three(&mut random, 1);
+            let away =
+                0.25 * random.vector(24) + noise * random.vector(1 << 20) / f64::from(1 << 20);
+            let far = [0.0, 1e8][round / 16 % 2] * random.vector(1);
             let offset = scale * (away + far);
-            let is_met = match round % 3 {
+            let work = match round % 3 {
                 0 => agree(&soup, &cuboid, offset),
                 _ => agree(&cuboid, &soup, offset),
             };
-            meet += u32::from(is_met);
-            apart += u32::from(!is_met);
+            meet += u32::from(work.meet);
+            apart += u32::from(!work.meet);
         }
         assert!(meet > 2_000 && apart > 2_000, "{meet} {apart}");
     }
@@ -328,25 +312,22 @@ mod tests {
 
     #[test]
     fn around_a_surface_and_within_it() {
-        let ball = Bvh::build(&sphere(24));
-        let of_size = |size: f64| {
-            let cuboid = cube().transformed(DQuat::IDENTITY, DVec3::splat(size));
-            Bvh::build(&cuboid.unwrap())
-        };
-        let (around, within) = (of_size(2.5), of_size(0.9));
-        assert!(!agree(&around, &ball, DVec3::ZERO) && !agree(&ball, &within, DVec3::ZERO));
-        assert!(agree(&around, &ball, DVec3::X * 0.3) && agree(&ball, &within, DVec3::X * 0.7));
+        let ball = sphere(24);
+        let (around, within) = (cuboid(DVec3::splat(2.5)), cuboid(DVec3::splat(0.9)));
+        assert!(!agree(&ball, &within, DVec3::ZERO).meet);
+        assert!(agree(&around, &ball, DVec3::X * 0.3).meet);
+        assert!(agree(&ball, &within, DVec3::X * 0.7).meet);
+        // What is all within the box is done with at the root.
+        let work = agree(&around, &ball, DVec3::ZERO);
+        assert_eq!(
+            (work.meet, work.boxes, work.tests),
+            (false, WIDTH as u64, 0)
+        );
         // About where they touch at a pole, which f32 does not tell.
-        let unit = of_size(1.0);
         for k in -40..=40 {
             let offset = DVec3::Y * (1.5 + 1e-8 * f64::from(k));
-            assert_eq!(agree(&ball, &unit, offset), k <= 0, "{k}");
-            assert_eq!(agree(&unit, &ball, offset), k <= 0, "{k}");
+            assert_eq!(agree(&ball, &cube(), offset).meet, k <= 0, "{k}");
+            assert_eq!(agree(&cube(), &ball, offset).meet, k <= 0, "{k}");
         }
-        // Seen from outside all of the mesh is one triangle of the box's boxes or less.
-        let work = Pair::of(&around, &ball, &DVec3::ZERO.into())
-            .unwrap()
-            .meet();
-        assert_eq!((work.boxes, work.tests), (WIDTH as u64, 0));
     }
 }

@@ -249,21 +249,15 @@ mod tests {
     use crate::Mesh;
     use crate::bvh::Bvh;
     use crate::collide::{
-        Level,
-        pairs::Meshes,
+        naive,
         sweep::{Kind, Search},
-        tree,
     };
     use crate::{test_meshes::cube, test_random::Random};
     use alloc::format;
     use glam::DQuat;
 
-    fn three(random: &mut Random, most: i64) -> DVec3 {
-        DVec3::from_array(random.three(most).map(|x| x as f64))
-    }
-
     /// A box, with some of its diagonals turned and its triangles in some order.
-    fn cuboid(random: &mut Random, size: DVec3) -> Bvh {
+    fn cuboid(random: &mut Random, size: DVec3) -> Mesh {
         let unit = cube().transformed(DQuat::IDENTITY, size).unwrap();
         let mut triangles = unit.triangles().to_vec();
         for pair in triangles.chunks_exact_mut(2) {
@@ -276,7 +270,7 @@ mod tests {
             let j = random.up_to(11).unsigned_abs() as usize;
             triangles.swap(i, j);
         }
-        Bvh::build(&Mesh::new(unit.vertices().to_vec(), triangles).unwrap())
+        Mesh::new(unit.vertices().to_vec(), triangles).unwrap()
     }
 
     #[test]
@@ -284,30 +278,26 @@ mod tests {
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         let (mut touches, mut misses, mut untold, mut others) = (0, 0, 0, 0);
         for round in 0..60_000 {
-            let sizes = [(); 2].map(|()| three(&mut random, 2).abs() + 1.0);
+            let sizes = [(); 2].map(|()| random.vector(2).abs() + 1.0);
             // As large as f32 has it, and as small as products bear.
             let scale = libm::ldexp(1.0, [0, -100, 120][round % 7 % 3]);
-            let [first, second] = sizes.map(|size| cuboid(&mut random, scale * size));
-            let offset = 0.5 * three(&mut random, 8);
+            let meshes = sizes.map(|size| cuboid(&mut random, scale * size));
+            let [first, second] = meshes.each_ref().map(Bvh::build);
+            let offset = 0.5 * random.vector(8);
             let aim = if round % 2 == 0 { -1.5 } else { 0.0 };
-            let motion = aim * offset + 0.5 * three(&mut random, 8);
+            let motion = aim * offset + 0.5 * random.vector(8);
             // A lattice on which much is tied; near it; and anything.
             let noise = match round % 3 {
                 0 => 0.0,
                 1 => 1e-15,
                 _ => 0.1,
             };
-            let offset = offset + noise * three(&mut random, 1 << 20) / f64::from(1 << 20);
-            let motion = motion + noise * three(&mut random, 1 << 20) / f64::from(1 << 20);
+            let offset = offset + noise * random.vector(1 << 20) / f64::from(1 << 20);
+            let motion = motion + noise * random.vector(1 << 20) / f64::from(1 << 20);
             let (offset, motion) = (scale * offset, scale * motion);
             let (a, b) = (first.cuboid().unwrap(), second.cuboid().unwrap());
-            let meshes = Meshes {
-                first: &first,
-                second: &second,
-                at: &offset.into(),
-            };
-            let by_tiles = tree::meet_by_tiles(Level::best(), meshes);
-            assert_eq!(meet(a, b, offset), by_tiles);
+            let [one, other] = &meshes;
+            assert_eq!(meet(a, b, offset), naive::intersect(one, other, offset));
             let expected = Search::run(Kind::Entering, (&first, &second), offset, motion).best();
             match first_touch(a, b, offset, motion) {
                 Err(Untold) => untold += 1,

@@ -2,11 +2,13 @@
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
+use glam::DVec3;
 
 use super::{
     Hit, Level, Placement, Side, Work,
     apart::{Glance, glance},
-    cuboid_mesh, cuboids,
+    cuboid_mesh::Pair,
+    cuboids,
     pairs::{Lanes, Meshes, Question, Reach, TILE, each_pair},
     predicates::{crossing_meet, crossing_orders, segment_meets_triangle, triangles_meet},
 };
@@ -25,27 +27,31 @@ pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, at: impl Into<Place
     let meshes = Meshes { first, second, at };
     match with_cuboid(meshes) {
         Some(work) => work.meet,
-        None => meet_by_tiles(level, meshes),
+        None => each_pair(level, meshes, &mut AnyHit).is_break(),
     }
-}
-
-/// [`intersect_at`] whatever the meshes are.
-pub(super) fn meet_by_tiles(level: Level, meshes: Meshes<'_>) -> bool {
-    each_pair(level, meshes, &mut AnyHit).is_break()
 }
 
 /// The answer and its cost where a mesh is a box, which needs no second tree.
 #[inline]
-fn with_cuboid(Meshes { first, second, at }: Meshes<'_>) -> Option<Work> {
-    match (first.cuboid(), second.cuboid()) {
-        (Some(first), Some(second)) if at.turn().is_none() => Some(Work {
-            meet: cuboids::meet(first, second, at.offset()),
-            boxes: 1,
-            tests: 0,
-        }),
-        (None, None) => None,
-        _ => Some(cuboid_mesh::Pair::of(first, second, at)?.meet()),
-    }
+pub(super) fn with_cuboid(Meshes { first, second, at }: Meshes<'_>) -> Option<Work> {
+    let offset = at.offset();
+    let pair = match (first.cuboid(), second.cuboid()) {
+        (None, None) => return None,
+        _ if at.turn().is_some() || !at.is_in_range() => return None,
+        (Some(first), Some(second)) => {
+            return Some(Work {
+                meet: cuboids::meet(first, second, offset),
+                boxes: 1,
+                tests: 0,
+            });
+        }
+        (Some(cuboid), None) => Pair::of(cuboid.ends, second, offset),
+        (None, Some(cuboid)) => {
+            let ends = cuboid.ends.map(|end| end + offset);
+            Pair::of(ends, first, DVec3::ZERO)
+        }
+    };
+    Some(pair?.meet())
 }
 
 /// Stops at the first pair of triangles that meet.
@@ -282,7 +288,6 @@ mod tests {
     use super::*;
     use crate::collide::naive;
     use crate::test_meshes::sphere;
-    use glam::DVec3;
 
     #[test]
     fn work_is_counted_and_far_less_through_trees() {

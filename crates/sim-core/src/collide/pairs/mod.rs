@@ -20,7 +20,7 @@ use crate::bvh::{Boxes, Bvh, LEAF, Slabs, WIDTH};
 pub(super) use lanes::{InLanes, Lanes, Portable};
 pub use level::Level;
 pub(super) use overlap::{Meshes, Question, each_pair};
-pub(super) use reach::{Reach, dot0, splat};
+pub(super) use reach::{LARGEST, Reach, dot0, splat};
 pub(super) use stack::Stack;
 
 /// Pairs in a tile.

@@ -17,7 +17,7 @@ pub(in crate::collide) struct Reach {
 }
 
 /// Beyond this, m, sums of products of coordinates with unit vectors leave f32.
-const LARGEST: f64 = 1e37;
+pub(in crate::collide) const LARGEST: f64 = 1e37;
 /// Beyond this, m, products of three coordinates do: with sides and distances up to twice the sizes
 /// a height above a plane stays below `3 · 8 S² · 2 S`.
 const LARGEST_FOR_PLANES: f64 = 1e12;

@@ -11,32 +11,36 @@ use super::super::{World, stepping::Cause};
 use super::{
     Event,
     respond::{Answer, Rest, SLIGHTEST},
+    seek::TOUCHING,
 };
 use crate::collide::{first_contact, snap};
 
 impl World {
     /// Holds bodies of pairs that came near, and tells whether there are any.
     pub(super) fn hold(&mut self) -> Result<bool, (usize, Cause)> {
-        let (mut group, mut gaps): (Vec<Event>, Vec<f64>) = Default::default();
+        let (mut group, mut rooms): (Vec<Event>, Vec<f64>) = Default::default();
         let mut bodies: Vec<usize> = Vec::new();
+        let mut left = self.continuous.near.clone();
         // What lies on what is held is pressed once that is.
         loop {
-            let known = |pair: (usize, usize)| group.iter().any(|event| event.bodies == pair);
-            let near = self.continuous.near.iter().filter(|&&pair| !known(pair));
-            let held = near.filter_map(|&(i, j)| self.held(i, j));
-            let (new, of_new): (Vec<Event>, Vec<f64>) = held.unzip();
-            if new.is_empty() {
+            let before = group.len();
+            left.retain(|&(i, j)| {
+                let held = self.held(i, j);
+                let is_held = held.is_some();
+                if let Some((event, room)) = held {
+                    group.push(event);
+                    rooms.push(room);
+                }
+                !is_held
+            });
+            if group.len() == before {
                 break;
             }
-            bodies.extend(
-                new.iter()
-                    .flat_map(|event| [event.bodies.0, event.bodies.1]),
-            );
+            let new = group[before..].iter().map(|event| event.bodies);
+            bodies.extend(new.flat_map(|(i, j)| [i, j]));
             bodies.sort_unstable();
             bodies.dedup();
             bodies.retain(|&body| self.is_moved(body));
-            group.extend(new);
-            gaps.extend(of_new);
             for &body in &bodies {
                 self.continuous.start.velocity[body] = self.previous.velocity[body];
             }
@@ -47,21 +51,18 @@ impl World {
             let ways = &mut self.continuous;
             ways.start.velocity[body] += ways.lag * ways.acceleration[body];
         }
-        // Room for roundings, as before an impact.
-        for (event, gap) in group.iter().zip(gaps) {
-            let (i, j) = event.bodies;
-            let room = (self.grain(i, j) - gap).max(0.0);
-            self.move_apart((i, j), room * event.contact.normal);
+        for (event, room) in group.iter().zip(rooms) {
+            self.move_apart(event.bodies, room * event.contact.normal);
         }
+        // Under a method of first order each body goes its own way.
         for &body in &bodies {
-            let unit = self.unit(body).map_or(body..body + 1, |(unit, _)| unit);
-            self.finish_way(unit)?;
+            self.finish_way(body..body + 1)?;
         }
         Ok(!group.is_empty())
     }
 
-    /// The contact of two bodies that touch, that forces press together, and that do not part; and how far
-    /// apart they are, m.
+    /// The contact of two bodies that touch, that forces press together, and that do not part; and by how
+    /// much to move them apart, m, to leave room for roundings as before an impact.
     fn held(&self, i: usize, j: usize) -> Option<(Event, f64)> {
         let (first, second) = (self.form(i)?, self.form(j)?);
         let at = |of: &[DVec3]| of[j] - of[i];
@@ -69,8 +70,8 @@ impl World {
         let push = dt * at(&self.continuous.acceleration);
         let contact = first_contact(first, second, snap(at(&start.position)), snap(dt * push))?;
         let pressure = -push.dot(contact.normal);
-        let gap = contact.time * dt * pressure;
-        if gap > self.touching(i, j) {
+        let (gap, grain) = (contact.time * dt * pressure, self.grain(i, j));
+        if gap > TOUCHING * grain {
             return None;
         }
         let kept = &self.previous.velocity;
@@ -85,6 +86,6 @@ impl World {
             answer: Answer::Rest,
             pressure,
         };
-        (parting.abs() <= slow).then_some((event, gap))
+        (parting.abs() <= slow).then_some((event, (grain - gap).max(0.0)))
     }
 }

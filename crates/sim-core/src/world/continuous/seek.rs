@@ -23,6 +23,9 @@ const DEEPEST: u32 = 64;
 /// two bodies are kept apart by at an impact.
 const ULPS: f64 = 4.0;
 
+/// How far apart bodies may be that touch but for rounding, in grains.
+pub(super) const TOUCHING: f64 = 4.0;
+
 /// A pair of bodies in search of its next impact.
 #[derive(Clone, Copy)]
 struct Pair {
@@ -141,7 +144,7 @@ impl World {
         let fall = -contact.normal.dot(motion);
         let departure = pair.bend * length * length;
         let is_straight = departure <= pair.grain || depth == DEEPEST;
-        let is_there = contact.time * fall <= self.touching(pair.i, pair.j)
+        let is_there = contact.time * fall <= TOUCHING * pair.grain
             && from.0 == self.start_of(pair)
             && self.is_closing(pair, contact.normal, probe);
         if is_straight || is_there {
@@ -246,11 +249,6 @@ impl World {
         velocities.is_some_and(|(v1, v2)| {
             (v2 - v1).dot(normal) <= 8.0 * f64::EPSILON * (v1.length() + v2.length())
         })
-    }
-
-    /// How far apart bodies may be that touch but for rounding, m.
-    pub(super) fn touching(&self, i: usize, j: usize) -> f64 {
-        4.0 * self.grain(i, j)
     }
 
     /// What the rounding of positions and placed vertices may be, m.
