@@ -247,7 +247,7 @@ mod tests {
         test_meshes::{cube, sphere},
         test_random::Random,
     };
-    use alloc::vec::Vec;
+    use alloc::{vec, vec::Vec};
     use glam::{DQuat, Vec3};
 
     fn cuboid(size: DVec3) -> Mesh {
@@ -307,6 +307,23 @@ mod tests {
                     assert!(!tree::work(first, second, offset).meet, "{offset}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn pieces_within_and_without_meet_where_one_joins_them() {
+        let corner = |x: f32, y: f32| Vec3::new(x, y, 0.1);
+        let small = |x: f32| [corner(x, 0.0), corner(x + 0.1, 0.0), corner(x, 0.1)];
+        let vertices: Vec<Vec3> = [0.0, 2.0, -2.0].into_iter().flat_map(small).collect();
+        let mut triangles = vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]];
+        let apart = Mesh::new(vertices.clone(), triangles.clone()).unwrap();
+        triangles.extend([[1, 3, 4], [0, 6, 7]]);
+        let joined = Mesh::new(vertices, triangles).unwrap();
+        for (one, other) in [(&cube(), &apart), (&apart, &cube())] {
+            assert!(!agree(one, other, DVec3::ZERO).meet);
+        }
+        for (one, other) in [(&cube(), &joined), (&joined, &cube())] {
+            assert!(agree(one, other, DVec3::ZERO).meet);
         }
     }
 
