@@ -57,6 +57,9 @@ pub struct SceneBody {
     pub mass: f64,
     /// Part of the approaching speed with which it leaves an impact, 0 to 1.
     pub restitution: f64,
+    /// Coefficient of friction, from 0 (smooth) to infinity (never slips); of two bodies the
+    /// geometric mean counts ([`sim_core::Body::friction`]).
+    pub friction: f64,
     /// Colour as sRGB-encoded red, green and blue from 0 to 1, if the scene chooses one.
     pub colour: Option<[f32; 3]>,
 }
@@ -79,7 +82,7 @@ pub enum SceneShape {
 }
 
 impl SceneBody {
-    /// An elastic body at rest at the origin: of 1 kg, or a half-space that is immovable.
+    /// An elastic, smooth body at rest at the origin: of 1 kg, or a half-space that is immovable.
     pub fn new(name: String, shape: SceneShape) -> SceneBody {
         let is_half_space = matches!(shape, SceneShape::HalfSpace { .. });
         SceneBody {
@@ -92,6 +95,7 @@ impl SceneBody {
             force: DVec3::ZERO,
             mass: if is_half_space { f64::INFINITY } else { 1.0 },
             restitution: 1.0,
+            friction: 0.0,
             colour: None,
         }
     }

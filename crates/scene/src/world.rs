@@ -45,6 +45,7 @@ impl Scene {
                 mass: body.mass,
                 force: body.force,
                 restitution: body.restitution,
+                friction: body.friction,
             });
             added.map_err(|error| self.world_error(Some(body), None, error))?;
         }

@@ -33,6 +33,7 @@ fn only_the_step_and_names_must_be_there() {
     assert_eq!(scene.collision, Collision::Continuous);
     let body = SceneBody::new("a".into(), mesh("cube.obj"));
     assert_eq!((body.mass, body.restitution), (1.0, 1.0));
+    assert_eq!(body.friction, 0.0);
     assert_eq!((body.position, body.velocity), (DVec3::ZERO, DVec3::ZERO));
     assert_eq!((body.rotation, body.scale), (DVec3::ZERO, DVec3::ONE));
     assert_eq!(scene.bodies, [body]);
@@ -66,10 +67,12 @@ fn everything_can_be_said() {
         name = "c"
         sphere = 0.5
         restitution = 0.25
+        friction = 0.3
         immovable = false
         [[body]]
         name = "d"
         half-space = [0, 2, 0]
+        friction = inf
     "##;
     let scene = parse(text).expect("a scene");
     assert_eq!(
@@ -95,10 +98,13 @@ fn everything_can_be_said() {
     let normal = DVec3::new(0.0, 2.0, 0.0);
     assert_eq!(d.shape, SceneShape::HalfSpace { normal });
     assert_eq!((d.mass, d.restitution), (f64::INFINITY, 1.0));
+    let friction = [0.0, 0.0, 0.3, f64::INFINITY];
+    assert_eq!([a, b, c, d].map(|body| body.friction), friction);
     let world = scene.world().expect("a world");
     assert_eq!(world.shape(2), Some(&Shape::Sphere { radius: 0.5 }));
     assert_eq!(world.shape(3), Some(&Shape::HalfSpace { normal: DVec3::Y }));
     assert_eq!((world.mass(3), world.restitution(2)), (f64::INFINITY, 0.25));
+    assert_eq!([0, 1, 2, 3].map(|i| world.friction(i)), friction);
 }
 
 #[test]
@@ -571,12 +577,13 @@ fn body() -> impl Strategy<Value = SceneBody> {
     let colour = proptest::option::of(any::<[u8; 3]>());
     let mass = prop_oneof![1e-100..1e100_f64, Just(f64::INFINITY)];
     let restitution = prop_oneof![0.0..=1.0_f64, Just(1.0)];
-    let impact = (mass, restitution);
+    let friction = prop_oneof![0.0..1e100_f64, Just(0.0), Just(f64::INFINITY)];
+    let impact = (mass, restitution, friction);
     (any::<String>(), shape(), moved, turned, impact, colour).prop_map(
-        |(name, shape, moved, (rotation, scale), (mass, restitution), colour)| {
+        |(name, shape, moved, (rotation, scale), (mass, restitution, friction), colour)| {
             let mut body = SceneBody::new(name, shape);
             (body.position, body.velocity, body.force) = moved;
-            body.restitution = restitution;
+            (body.restitution, body.friction) = (restitution, friction);
             body.colour = colour.map(|bytes| bytes.map(|byte| f32::from(byte) / 255.0));
             if body.mesh().is_some() {
                 (body.rotation, body.scale) = (rotation, scale);

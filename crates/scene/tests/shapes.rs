@@ -88,6 +88,23 @@ fn wrong_shapes_get_a_message_with_line_body_and_field() {
             "sphere = 1\nrestitution = nan",
             "5: body `a`, restitution: must be from 0",
         ),
+        (
+            "sphere = 1\nfriction = -0.5",
+            "5: body `a`, friction: must be a coefficient from 0 (smooth) to inf (never slips), is \
+             -0.5",
+        ),
+        (
+            "sphere = 1\nfriction = nan",
+            "5: body `a`, friction: must be a coefficient from 0 (smooth)",
+        ),
+        (
+            "sphere = 1\nfriction = -inf",
+            "5: body `a`, friction: must be a coefficient from 0 (smooth)",
+        ),
+        (
+            "sphere = 1\nfriction = 'ice'",
+            "5: body `a`, friction: invalid type: string \"ice\", expected a number",
+        ),
     ] {
         let error = complaint(fields);
         assert!(error.starts_with(expected), "{error}\nnot\n{expected}");
@@ -170,6 +187,7 @@ fn copies_are_apart_in_their_box_and_the_same_everywhere() {
         scale = 0.5
         rotation = [10, 20, 30]
         velocity = [0, 5, 0]
+        friction = 0.3
         copies = 60
         inside = [[4, -1, 4], [-1, 4, -1]]
         speed = 3
@@ -196,6 +214,7 @@ fn copies_are_apart_in_their_box_and_the_same_everywhere() {
         let own = world.velocity(i) - DVec3::new(0.0, if i < 62 { 5.0 } else { 0.0 }, 0.0);
         let speed = if i < 62 { 3.0 } else { 0.0 };
         assert!((own.length() - speed).abs() < 1e-12);
+        assert_eq!(world.friction(i), if i < 62 { 0.3 } else { 0.0 });
     }
     // By SplitMix64 from seed 0, worked out apart from this program.
     let lone = "rate = 60\n[[body]]\nname = 'a'\nsphere = 0.2\ncopies = 1\n\

@@ -22,10 +22,17 @@ pub struct Body {
     /// Part of the approaching speed with which it leaves an impact, 0 to 1. Of two bodies the
     /// lesser one counts.
     pub restitution: f64,
+    /// Coefficient of Coulomb friction µ: the force along a contact is at most µ times the force
+    /// across it, the same in every direction and whether the bodies slide or not. From 0, smooth,
+    /// to infinity inclusive, which never slips.
+    ///
+    /// Of two bodies the geometric mean `sqrt(µ1 µ2)` counts; where one is smooth it is 0, whatever
+    /// the other is (0 times infinity is 0).
+    pub friction: f64,
 }
 
 impl Default for Body {
-    /// An elastic point of 1 kg at rest at the origin.
+    /// An elastic, smooth point of 1 kg at rest at the origin.
     fn default() -> Body {
         Body {
             shape: None,
@@ -34,6 +41,7 @@ impl Default for Body {
             mass: 1.0,
             force: DVec3::ZERO,
             restitution: 1.0,
+            friction: 0.0,
         }
     }
 }

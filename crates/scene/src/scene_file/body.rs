@@ -55,6 +55,16 @@ pub(super) fn parse(
             return Err(place.error(value.span(), "restitution", what));
         }
     }
+    if let Some(value) = text.friction {
+        body.friction = value.get_ref().0;
+        if !(0.0..=f64::INFINITY).contains(&body.friction) {
+            let what = format!(
+                "must be a coefficient from 0 (smooth) to inf (never slips), is {}",
+                body.friction
+            );
+            return Err(place.error(value.span(), "friction", what));
+        }
+    }
     if let Some(value) = text.colour {
         body.colour = colour::parse(value.get_ref());
         if body.colour.is_none() {

@@ -36,6 +36,7 @@ pub(super) struct Body {
     pub(super) mass: Option<Spanned<Number>>,
     pub(super) immovable: Option<Spanned<bool>>,
     pub(super) restitution: Option<Spanned<Number>>,
+    pub(super) friction: Option<Spanned<Number>>,
     pub(super) colour: Option<Spanned<String>>,
     #[serde(skip_serializing)]
     pub(super) copies: Option<Spanned<usize>>,

@@ -53,6 +53,7 @@ fn body(body: &SceneBody) -> Body {
         mass: (!is_half_space && !is_immovable).then(|| spanned(Number(body.mass))),
         immovable: (!is_half_space && is_immovable).then(|| spanned(true)),
         restitution: (body.restitution != 1.0).then(|| spanned(Number(body.restitution))),
+        friction: (body.friction != 0.0).then(|| spanned(Number(body.friction))),
         colour: body.colour.map(|c| spanned(colour::format(c))),
         copies: None,
         inside: None,

@@ -214,6 +214,18 @@ impl World {
         self.restitution(i).min(self.restitution(j))
     }
 
+    /// The coefficient of friction between two bodies: the geometric mean of theirs, and 0 where one
+    /// is smooth, whatever the other is.
+    #[allow(dead_code)] // until contacts rub
+    pub(super) fn pair_friction(&self, i: usize, j: usize) -> f64 {
+        let (first, second) = (self.friction(i), self.friction(j));
+        if first == 0.0 || second == 0.0 {
+            return 0.0;
+        }
+        // Of the product, so that two equal coefficients give themselves to the bit.
+        libm::sqrt(first * second)
+    }
+
     /// Forgets pairs that have parted since they began in overlap, and keeps the others from
     /// moving closer: an elastic impulse along the line of their centres, nothing put back.
     pub(super) fn part_overlapping(&mut self) {

@@ -34,6 +34,14 @@ pub enum WorldError {
         /// The value refused.
         value: f64,
     },
+    /// A coefficient of friction that is negative or NaN.
+    #[error("friction of body {body} is {value}: it must be between 0 and infinity")]
+    Friction {
+        /// Index of the body.
+        body: usize,
+        /// The value refused.
+        value: f64,
+    },
     /// A sphere of no possible size.
     #[error("radius of body {body} is {value} m: it must be between 0 and 1e100")]
     Radius {
@@ -237,6 +245,15 @@ pub(super) fn check_restitution(body: usize, value: f64) -> Result<(), WorldErro
         Ok(())
     } else {
         Err(WorldError::Restitution { body, value })
+    }
+}
+
+pub(super) fn check_friction(body: usize, value: f64) -> Result<(), WorldError> {
+    // NaN is not above anything.
+    if value >= 0.0 {
+        Ok(())
+    } else {
+        Err(WorldError::Friction { body, value })
     }
 }
 

@@ -66,6 +66,8 @@ pub struct World {
     speed_scale: Option<f64>,
     /// What bodies keep of an approaching speed; empty while all are elastic.
     restitution: Vec<f64>,
+    /// Coefficients of friction; empty while all bodies are smooth.
+    friction: Vec<f64>,
     /// The shape of each body, as an index of `solids`; `None` is a point.
     shape: Vec<Option<u32>>,
     solids: Vec<Solid>,
@@ -154,6 +156,7 @@ impl World {
             scratch: Scratch::default(),
             speed_scale: None,
             restitution: Vec::new(),
+            friction: Vec::new(),
             shape: Vec::new(),
             solids: Vec::new(),
             solid: Vec::new(),
@@ -175,6 +178,7 @@ impl World {
         error::check_vector(index, "force", body.force)?;
         error::check_mass(index, body.mass)?;
         error::check_restitution(index, body.restitution)?;
+        error::check_friction(index, body.friction)?;
         let shape = body.shape.map(|shape| error::check_shape(index, shape));
         let shape = shape.transpose()?.map(|shape| self.share(shape));
         self.current.push(body.position, body.velocity);
@@ -185,6 +189,7 @@ impl World {
         self.plan = None;
         self.speed_scale = None;
         self.set_restitution_column(index, body.restitution);
+        self.set_friction_column(index, body.friction);
         self.solid.extend(shape.map(|_| index));
         self.shape.push(shape);
         self.note_overlaps_of(index);
@@ -294,6 +299,11 @@ impl World {
         self.restitution.get(body).copied().unwrap_or(1.0)
     }
 
+    /// Coefficient of friction of a body ([`Body::friction`]); of two the geometric mean counts.
+    pub fn friction(&self, body: usize) -> f64 {
+        self.friction.get(body).copied().unwrap_or(0.0)
+    }
+
     /// Shape of a body, unless it is a point that meets nothing.
     pub fn shape(&self, body: usize) -> Option<&Shape> {
         self.solid_of(body).map(|solid| &solid.shape)
@@ -367,6 +377,14 @@ impl World {
         Ok(())
     }
 
+    /// Sets the coefficient of friction of a body, 0 to infinity.
+    pub fn set_friction(&mut self, body: usize, friction: f64) -> Result<(), WorldError> {
+        self.check_body(body)?;
+        error::check_friction(body, friction)?;
+        self.set_friction_column(body, friction);
+        Ok(())
+    }
+
     /// How the world steps.
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -395,6 +413,13 @@ impl World {
         if !self.restitution.is_empty() || restitution != 1.0 {
             self.restitution.resize(self.len(), 1.0);
             self.restitution[body] = restitution;
+        }
+    }
+
+    fn set_friction_column(&mut self, body: usize, friction: f64) {
+        if !self.friction.is_empty() || friction != 0.0 {
+            self.friction.resize(self.len(), 0.0);
+            self.friction[body] = friction;
         }
     }
 

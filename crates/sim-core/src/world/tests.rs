@@ -1,4 +1,4 @@
-use alloc::{string::ToString, sync::Arc, vec::Vec};
+use alloc::{format, string::ToString, sync::Arc, vec::Vec};
 use glam::DVec3;
 
 use super::{Collision, Settings, StepError, World, WorldError};
@@ -292,6 +292,66 @@ fn values_out_of_range_are_refused_by_field_and_disturb_nothing() {
         (world.len(), world.mass(0), world.position(0)),
         (1, 1.0, DVec3::ZERO)
     );
+}
+
+#[test]
+fn friction_is_kept_for_each_body_once_one_is_rough() {
+    let mut world = world([Body::default(), Body::default()]);
+    assert!(world.friction.is_empty());
+    assert_eq!((world.friction(0), world.friction(1)), (0.0, 0.0));
+    world.set_friction(0, 0.3).unwrap();
+    let rough = Body {
+        friction: f64::INFINITY,
+        ..Body::default()
+    };
+    assert_eq!(world.add(rough), Ok(2));
+    assert_eq!(world.add(Body::default()), Ok(3));
+    assert_eq!(world.friction, [0.3, 0.0, f64::INFINITY, 0.0]);
+    for bad in [-1.0, -f64::MIN_POSITIVE, f64::NEG_INFINITY, f64::NAN] {
+        let refused = [
+            world.set_friction(1, bad).unwrap_err(),
+            world
+                .add(Body {
+                    friction: bad,
+                    ..Body::default()
+                })
+                .unwrap_err(),
+        ];
+        for (error, index) in refused.into_iter().zip([1, 4]) {
+            let text = error.to_string();
+            let expected = format!("friction of body {index} is {bad}: it must be between 0");
+            assert!(text.starts_with(&expected), "{text}");
+        }
+    }
+    let nobody = WorldError::NoBody { body: 4, bodies: 4 };
+    assert_eq!(world.set_friction(4, 0.5), Err(nobody));
+    assert_eq!(world.friction, [0.3, 0.0, f64::INFINITY, 0.0]);
+    world.set_friction(0, 0.0).unwrap();
+    assert_eq!(world.friction(0), 0.0);
+}
+
+#[test]
+fn two_bodies_have_the_geometric_mean_of_their_friction() {
+    let endless = f64::INFINITY;
+    for (first, second, expected) in [
+        (0.0, 0.0, 0.0),
+        (0.3, 0.3, 0.3),
+        (0.7, 0.7, 0.7),
+        (0.25, 4.0, 1.0),
+        (0.5, 0.0, 0.0),
+        (0.5, endless, endless),
+        (endless, endless, endless),
+        (0.0, endless, 0.0),
+    ] {
+        let of = |friction| Body {
+            friction,
+            ..Body::default()
+        };
+        let world = world([of(first), of(second)]);
+        for (i, j) in [(0, 1), (1, 0)] {
+            assert_eq!(world.pair_friction(i, j), expected, "{first} and {second}");
+        }
+    }
 }
 
 #[test]
