@@ -52,6 +52,14 @@ impl Session {
         });
     }
 
+    /// Gives the selected body a coefficient of friction, from 0 to infinity.
+    pub fn set_friction(&mut self, friction: f64) {
+        self.edit("friction", |session, i| {
+            session.world.set_friction(i, friction)?;
+            Ok(move |body: &mut SceneBody| body.friction = friction)
+        });
+    }
+
     /// Gives the selected body another shape. Layout only.
     pub fn set_shape(&mut self, shape: SceneShape) {
         self.edit_shape("shape", |body| body.shape = shape);

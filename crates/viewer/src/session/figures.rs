@@ -139,12 +139,15 @@ impl Reference {
             let is_driven = world.mass(i).is_infinite() && world.velocity(i) != DVec3::ZERO;
             world.restitution(i) < 1.0 || is_driven
         };
-        let inelastic = !same_impacts && bodies.clone().any(changes_in_impacts);
+        // One rough body among smooth ones slides freely.
+        let is_rough = bodies.clone().filter(|&i| world.friction(i) > 0.0).count() > 1;
+        let changes = is_rough || bodies.clone().any(changes_in_impacts);
+        let dissipates_in_impacts = !same_impacts && changes;
         let closed = same_impacts || bodies.all(|i| world.mass(i).is_finite());
         let kept = |force| is_weight(force) || is_internal(force);
         Drift {
             energy: Some(ratio(change, scale)).filter(|change| change.is_finite()),
-            dissipates: inelastic || forces.iter().any(dissipates),
+            dissipates: dissipates_in_impacts || forces.iter().any(dissipates),
             momentum: (closed && forces.iter().all(kept)).then_some(momentum),
             position: (same_impacts && forces.iter().all(is_weight)).then_some(away),
         }

@@ -18,7 +18,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     let world = session.world();
     let (position, velocity) = (world.position(i), world.velocity(i));
     let (force, mass) = (world.force(i), world.mass(i));
-    let restitution = world.restitution(i);
+    let (restitution, friction) = (world.restitution(i), world.friction(i));
     let layout = session.state() == State::Layout;
     let place = match shape {
         SceneShape::Mesh(_) => "Where the mesh's origin is",
@@ -54,6 +54,12 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         session.set_force(value);
     }
     mass_and_restitution(ui, session, mass, restitution);
+    let meaning = "Coefficient of friction µ from 0, smooth, to inf, which never slips: the force \
+                   along a contact is at most µ times that across it, |F_t| ≤ µ F_n; of two bodies \
+                   √(µ₁ µ₂) counts, 0 where one is smooth";
+    if let Some(value) = field::scalar(ui, "Friction", "", meaning, friction) {
+        session.set_friction(value);
+    }
     ui.horizontal(|ui| {
         ui.add_enabled_ui(layout, |ui| {
             if ui

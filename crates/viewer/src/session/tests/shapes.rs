@@ -166,6 +166,27 @@ fn energy_and_momentum_are_judged_by_what_was_hit() {
 }
 
 #[test]
+fn friction_may_take_energy_only_between_two_rough_bodies() {
+    for (rough, expected) in [(&[][..], false), (&[1], false), (&[1, 2], true)] {
+        let mut session = balls();
+        session.select(Some(2));
+        session.set_restitution(1.0);
+        for &i in rough {
+            session.select(Some(i));
+            session.set_friction(0.5);
+        }
+        session.start();
+        advance(&mut session, FRAME, free());
+        assert!(!session.drift().dissipates, "nothing has met");
+        for _ in 0..80 {
+            advance(&mut session, FRAME, free());
+        }
+        assert_eq!(session.world().impacts(), 1);
+        assert_eq!(session.drift().dissipates, expected, "{rough:?}");
+    }
+}
+
+#[test]
 fn immovable_bodies_are_made_and_unmade() {
     let mut session = balls();
     session.select(Some(1));
@@ -187,6 +208,33 @@ fn immovable_bodies_are_made_and_unmade() {
     session.set_shape(scene::SceneShape::Sphere { radius: 0.25 });
     assert_eq!(complaint(&mut session, "shape"), None);
     assert_eq!(session.contest(), Contest::NoPair, "no meshes to compare");
+}
+
+#[test]
+fn friction_is_edited_and_kept_as_restitution_is() {
+    let mut session = balls();
+    session.select(Some(1));
+    session.set_friction(0.3);
+    for bad in [-0.1, f64::NAN] {
+        session.set_friction(bad);
+        assert!(complaint(&mut session, "friction").is_some(), "{bad}");
+    }
+    session.set_friction(f64::INFINITY);
+    assert_eq!(complaint(&mut session, "friction"), None);
+    session.set_friction(0.3);
+    // Made anew, of another shape and with a copy of it.
+    session.set_shape(scene::SceneShape::Sphere { radius: 0.25 });
+    session.duplicate_selected();
+    let friction = |session: &Session| [0, 1, 2, 3].map(|i| session.world().friction(i));
+    assert_eq!(friction(&session), [0.0, 0.3, 0.0, 0.3]);
+    // Once physics has begun, an edit lasts until the reset.
+    session.start();
+    advance(&mut session, FRAME, free());
+    session.set_friction(2.0);
+    assert_eq!(friction(&session), [0.0, 0.3, 0.0, 2.0]);
+    session.reset();
+    assert_eq!(friction(&session), [0.0, 0.3, 0.0, 0.3]);
+    assert_eq!(session.scene().bodies[3].friction, 0.3);
 }
 
 #[test]
