@@ -4,6 +4,7 @@ mod collision;
 mod continuous;
 mod error;
 mod forces;
+mod marks;
 mod plan;
 mod state;
 mod stepping;
@@ -23,6 +24,7 @@ use crate::{
 pub use collision::Impact;
 use continuous::Continuous;
 pub use error::{StepError, WorldError};
+use marks::Marks;
 use plan::Plan;
 use state::State;
 
@@ -64,6 +66,8 @@ pub struct World {
     /// Greatest component of a velocity, m/s, from which growth is counted; `None` before the
     /// first step under a force that depends on the motion.
     speed_scale: Option<f64>,
+    /// The motion from which growth is counted, and on the way since.
+    marks: Marks,
     /// What bodies keep of an approaching speed; empty while all are elastic.
     restitution: Vec<f64>,
     /// The shape of each body, as an index of `solids`; `None` is a point.
@@ -153,6 +157,7 @@ impl World {
             plan: None,
             scratch: Scratch::default(),
             speed_scale: None,
+            marks: Marks::default(),
             restitution: Vec::new(),
             shape: Vec::new(),
             solids: Vec::new(),
