@@ -31,6 +31,8 @@ Figures, by their names in --json; drifts and errors count from the start, and n
   momentum_error   the same in kg m/s
   path_error       largest distance of a body from its exact path, m; null after an impact, and
                    under forces that are not constant
+  state_hash       64 bits over motion, time and impacts, in hexadecimal digits: runs of a scene with
+                   equal ones are equal to the last bit
   potential_energy, total_energy
                    J; null at a centre of attraction, where they are unbounded";
 

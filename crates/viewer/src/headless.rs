@@ -34,6 +34,8 @@ struct RunReport<'a> {
     path_error: Option<f64>,
     momentum: [f64; 3],
     last_impact: Option<ImpactReport<'a>>,
+    /// [`World::state_hash`], in hexadecimal digits.
+    state_hash: String,
     bodies: Vec<BodyReport<'a>>,
 }
 
@@ -178,6 +180,7 @@ impl<'a> RunReport<'a> {
                 approaching: impact.speeds.0,
                 parting: impact.speeds.1,
             }),
+            state_hash: format!("{:016x}", world.state_hash()),
             bodies: scene
                 .bodies
                 .iter()
@@ -220,6 +223,7 @@ impl<'a> RunReport<'a> {
                 format!("{} kg m/s", vector(self.momentum.into()).trim_start()),
             ),
             ("Speed", format!("{:.3} µs a step", seconds_per_step * 1e6)),
+            ("State hash", self.state_hash.clone()),
             ("Energy drift", energy_drift(drift)),
             (
                 "Momentum drift",

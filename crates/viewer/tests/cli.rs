@@ -74,6 +74,7 @@ fn run_prints_the_final_state() {
             "momentum_error",
             "path_error",
             "potential_energy",
+            "state_hash",
             "steps",
             "time",
             "total_energy"
@@ -264,6 +265,7 @@ fn numbers_survive_json_bit_for_bit() {
         }
     }
     assert_eq!(state["impacts"], world.impacts());
+    assert_eq!(state["state_hash"], format!("{:016x}", world.state_hash()));
 }
 
 #[test]

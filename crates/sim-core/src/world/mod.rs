@@ -4,6 +4,7 @@ mod collision;
 mod continuous;
 mod error;
 mod forces;
+mod hash;
 mod marks;
 mod plan;
 mod state;
