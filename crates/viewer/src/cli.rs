@@ -17,6 +17,25 @@ use crate::{app, failure::Failure, headless, shot};
 /// Scene of the window when none is named.
 const FIRST_SCENE: &str = "cube-cow";
 
+/// What `run` says, as far as the names do not say it.
+const FIGURES: &str = "\
+Figures, by their names in --json; drifts and errors count from the start, and null is unknown:
+  energy_drift     change of kinetic and potential energy, relative to the energy at the start;
+                   null where that is 0 or unbounded
+  energy_error     the same in J
+  dissipates       friction or inelastic impacts may have taken energy: a loss is no error
+  driven           moving immovable bodies may have given or taken it: no change is an error
+  momentum_drift   momentum less the impulse of constant forces and of what it was, relative to the
+                   sum of mass times speed at the start and of force times time since; null where
+                   that is 0, and where a force or an immovable body may have changed it from outside
+  momentum_error   the same in kg m/s
+  path_error       largest distance of a body from its exact path, m; null after an impact, and
+                   under forces that are not constant
+  state_hash       64 bits over motion, time and impacts, in hexadecimal digits: runs of a scene with
+                   equal ones are equal to the last bit
+  potential_energy, total_energy
+                   J; null at a centre of attraction, where they are unbounded";
+
 /// Cowbell simulates colliding triangle meshes. Without a command it opens its window.
 #[derive(Parser)]
 #[command(
@@ -39,6 +58,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Run a scene without a window and print its final state
+    #[command(after_help = FIGURES)]
     Run {
         /// Name from the gallery or path of a .toml file
         #[arg(value_name = "NAME|PATH")]

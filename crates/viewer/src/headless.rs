@@ -21,15 +21,21 @@ struct RunReport<'a> {
     kinetic_energy: f64,
     potential_energy: Option<f64>,
     total_energy: Option<f64>,
-    /// Relative change of both together since the start.
+    /// Change of both together since the start, relative to what they were: none where that is 0.
     energy_drift: Option<f64>,
-    /// Whether a force, an inelastic impact or a driven body may change it: then the drift is no
-    /// error.
+    /// The same in J.
+    energy_error: Option<f64>,
+    /// Whether friction or an inelastic impact may have taken energy: then a loss is no error.
     dissipates: bool,
+    /// Whether something may have given or taken energy: then no change is an error.
+    driven: bool,
     momentum_drift: Option<f64>,
+    momentum_error: Option<f64>,
     path_error: Option<f64>,
     momentum: [f64; 3],
     last_impact: Option<ImpactReport<'a>>,
+    /// [`World::state_hash`], in hexadecimal digits.
+    state_hash: String,
     bodies: Vec<BodyReport<'a>>,
 }
 
@@ -84,11 +90,11 @@ pub fn run(scene: &Scene, steps: u64, json: bool) -> Result<String, Failure> {
     }
     let seconds_per_step = stopwatch.read().as_secs_f64() / steps.max(1) as f64;
     let drift = reference.drift(&world);
-    let report = RunReport::of(scene, &world, drift);
+    let report = RunReport::of(scene, &world, &drift);
     Ok(if json {
         to_json(&report)
     } else {
-        report.table(scene, seconds_per_step)
+        report.table(scene, &drift, seconds_per_step)
     })
 }
 
@@ -148,7 +154,7 @@ fn repairs(repairs: &Repairs) -> Vec<RepairReport> {
 }
 
 impl<'a> RunReport<'a> {
-    fn of(scene: &'a Scene, world: &World, drift: Drift) -> Self {
+    fn of(scene: &'a Scene, world: &World, drift: &Drift) -> Self {
         Self {
             time: world.time(),
             steps: world.steps(),
@@ -157,9 +163,12 @@ impl<'a> RunReport<'a> {
             potential_energy: Some(world.potential_energy()).filter(|energy| energy.is_finite()),
             total_energy: Some(world.kinetic_energy() + world.potential_energy())
                 .filter(|energy| energy.is_finite()),
-            energy_drift: drift.energy,
+            energy_drift: drift.relative_energy,
+            energy_error: drift.energy,
             dissipates: drift.dissipates,
-            momentum_drift: drift.momentum,
+            driven: drift.driven,
+            momentum_drift: drift.relative_momentum,
+            momentum_error: drift.momentum,
             path_error: drift.position,
             momentum: world.momentum().to_array(),
             last_impact: world.last_impact().map(|impact| ImpactReport {
@@ -171,6 +180,7 @@ impl<'a> RunReport<'a> {
                 approaching: impact.speeds.0,
                 parting: impact.speeds.1,
             }),
+            state_hash: format!("{:016x}", world.state_hash()),
             bodies: scene
                 .bodies
                 .iter()
@@ -185,26 +195,7 @@ impl<'a> RunReport<'a> {
         }
     }
 
-    /// How far the result has drifted since the start.
-    fn errors(&self) -> String {
-        let relative =
-            |drift: Option<f64>| drift.map_or_else(|| "unknown".to_owned(), number::relative);
-        let mut text = format!("energy {}", relative(self.energy_drift));
-        if self.dissipates {
-            text += " (friction or impacts change it: no error)";
-        }
-        match self.momentum_drift {
-            Some(drift) => text += &format!(", momentum {}", number::relative(drift)),
-            None => text += ", momentum not kept by what acts from outside",
-        }
-        text += " (drift since the start, relative)";
-        if let Some(away) = self.path_error {
-            text += &format!(", position {} m", number::figure(away));
-        }
-        text
-    }
-
-    fn table(&self, scene: &Scene, seconds_per_step: f64) -> String {
+    fn table(&self, scene: &Scene, drift: &Drift, seconds_per_step: f64) -> String {
         let mut text = String::new();
         let settings = format!(
             "{} steps of {} s, {}, {}",
@@ -232,7 +223,21 @@ impl<'a> RunReport<'a> {
                 format!("{} kg m/s", vector(self.momentum.into()).trim_start()),
             ),
             ("Speed", format!("{:.3} µs a step", seconds_per_step * 1e6)),
-            ("Error", self.errors()),
+            ("State hash", self.state_hash.clone()),
+            ("Energy drift", energy_drift(drift)),
+            (
+                "Momentum drift",
+                drift.momentum_text().unwrap_or_else(|| {
+                    "unknown: what acts from outside, or is immovable, changes it".to_owned()
+                }),
+            ),
+            (
+                "Path error",
+                drift.position.map_or_else(
+                    || "unknown after an impact, or under forces that are not constant".to_owned(),
+                    |away| format!("{} m", number::figure(away)),
+                ),
+            ),
         ];
         for (what, value) in lines {
             // Writing to a String cannot fail.
@@ -277,6 +282,18 @@ impl ImpactReport<'_> {
             number::figure(self.parting)
         )
     }
+}
+
+/// The change of the energy, and whether it is an error where that is not plain.
+fn energy_drift(drift: &Drift) -> String {
+    let why = match (drift.energy, drift.energy_is_error()) {
+        (None, _) => "",
+        (_, true) if drift.dissipates => ", an error: friction and impacts only take energy",
+        (_, true) => "",
+        (_, false) if drift.driven => ", no error: what drives the bodies changes it",
+        (_, false) => ", no error: friction or impacts take it",
+    };
+    drift.energy_text() + why
 }
 
 fn joules(energy: Option<f64>) -> String {

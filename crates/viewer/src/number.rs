@@ -50,8 +50,8 @@ pub fn energy(value: f64) -> String {
     }
 }
 
-/// A relative error: 0, or sign and magnitude.
-pub fn relative(value: f64) -> String {
+/// An error: 0, or sign and magnitude.
+pub fn error(value: f64) -> String {
     if value == 0.0 {
         "0".to_owned()
     } else {
@@ -61,7 +61,7 @@ pub fn relative(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{count, energy, figure, relative, seconds};
+    use super::{count, energy, error, figure, seconds};
 
     #[test]
     fn figures_stay_short() {
@@ -106,8 +106,8 @@ mod tests {
 
     #[test]
     fn errors_keep_their_sign() {
-        assert_eq!(relative(0.0), "0");
-        assert_eq!(relative(1.23e-16), "+1.2e-16");
-        assert_eq!(relative(-0.5), "-5.0e-1");
+        assert_eq!(error(0.0), "0");
+        assert_eq!(error(1.23e-16), "+1.2e-16");
+        assert_eq!(error(-0.5), "-5.0e-1");
     }
 }

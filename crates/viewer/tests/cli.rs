@@ -63,14 +63,18 @@ fn run_prints_the_final_state() {
         [
             "bodies",
             "dissipates",
+            "driven",
             "energy_drift",
+            "energy_error",
             "impacts",
             "kinetic_energy",
             "last_impact",
             "momentum",
             "momentum_drift",
+            "momentum_error",
             "path_error",
             "potential_energy",
+            "state_hash",
             "steps",
             "time",
             "total_energy"
@@ -136,6 +140,109 @@ fn energies_and_errors_are_told_as_far_as_they_are_known() {
     );
 }
 
+/// Runs a scene written here: its JSON, and what the table says in the row of that name.
+fn scene_text(name: &str, text: &str, steps: &str) -> (Value, impl Fn(&str) -> String + use<>) {
+    let path = file(name, text);
+    let run = ["run", &path.to_string_lossy(), "--steps", steps];
+    let state = json(&[&run[..], &["--json"]].concat());
+    let table = String::from_utf8(answer(&run).stdout).expect("text");
+    fs::remove_file(path).expect("the file is removed");
+    let row = move |name: &str| {
+        let mut lines = table.lines();
+        let line = lines.find_map(|line| line.strip_prefix(name));
+        line.unwrap_or_else(|| panic!("{name} is not in\n{table}"))
+            .trim()
+            .to_owned()
+    };
+    (state, row)
+}
+
+#[test]
+fn an_energy_without_bound_is_not_told_as_a_small_drift() {
+    let text = "rate = 60\nmethod = 'forward-euler'\n[[body]]\nname = 'weight'\nsphere = 0.1\n\
+                position = [1, 0, 0]\n[[force]]\nkind = 'anchor'\nbody = 'weight'\n\
+                anchor = [0, 0, 0]\nstiffness = 8\n";
+    let (state, row) = scene_text("gains.toml", text, "1200");
+    // Forward Euler multiplies the energy by 1 + k dt²/m in each step.
+    let exact = (1.0_f64 + 8.0 / 3600.0).powi(1200) - 1.0;
+    let drift = state["energy_drift"].as_f64().expect("a number");
+    assert!((drift / exact - 1.0).abs() < 1e-9, "{drift}, not {exact}");
+    let error = state["energy_error"].as_f64().expect("a number");
+    assert!((error / (4.0 * exact) - 1.0).abs() < 1e-9, "{error} J");
+    assert_eq!(
+        (&state["dissipates"], &state["driven"]),
+        (&Value::Bool(false), &Value::Bool(false))
+    );
+    assert_eq!(row("Energy drift"), "+1.3e1 (+5.3e1 J)");
+    assert!(row("Momentum drift").contains("unknown"));
+    // Friction takes energy. A method that makes it grow all the same errs.
+    let damped = format!("{text}damping = 0.01\n");
+    let (state, row) = scene_text("gains-damped.toml", &damped, "1200");
+    assert!(
+        state["energy_drift"]
+            .as_f64()
+            .is_some_and(|drift| drift > 1.0)
+    );
+    assert_eq!(state["dissipates"], true);
+    assert!(
+        row("Energy drift").contains("an error"),
+        "{}",
+        row("Energy drift")
+    );
+    let braked = format!("{text}damping = 1\n");
+    let (_, row) = scene_text("loses.toml", &braked, "1200");
+    assert!(
+        row("Energy drift").contains("no error"),
+        "{}",
+        row("Energy drift")
+    );
+}
+
+#[test]
+fn without_energy_at_the_start_its_drift_is_told_in_joules() {
+    // One falls from the height that weight is counted from, two from both sides of it.
+    for places in [&["0"][..], &["0.1", "-0.1"]] {
+        let mut text = "rate = 60\nmethod = 'forward-euler'\n\
+                        [[force]]\nkind = 'gravity'\nacceleration = [0, -9.81, 0]\n"
+            .to_owned();
+        for (i, y) in places.iter().enumerate() {
+            text +=
+                &format!("[[body]]\nname = 'stone {i}'\nsphere = 0.01\nposition = [{i}, {y}, 0]\n");
+        }
+        let (state, row) = scene_text(&format!("falls-{}.toml", places.len()), &text, "60");
+        assert!(state["energy_drift"].is_null(), "{state}");
+        // It falls 9.81/2 m less half a step's fall a step: g² t dt / 2 too high.
+        let exact = places.len() as f64 * 9.81 * 9.81 / 120.0;
+        let error = state["energy_error"].as_f64().expect("a number");
+        assert!((error / exact - 1.0).abs() < 1e-9, "{error} J, not {exact}");
+        assert!(row("Energy drift").ends_with("J (0 at the start)"));
+        // The weight's impulse is what the momentum is measured by.
+        assert!(
+            state["momentum_drift"]
+                .as_f64()
+                .is_some_and(|drift| drift < 1e-12)
+        );
+    }
+}
+
+#[test]
+fn help_explains_every_figure_that_its_name_does_not() {
+    let help = String::from_utf8(answer(&["run", "--help"]).stdout).expect("text");
+    let state = json(&["run", "parabola", "--steps", "1", "--json"]);
+    let plain = [
+        "bodies",
+        "impacts",
+        "kinetic_energy",
+        "last_impact",
+        "momentum",
+        "steps",
+        "time",
+    ];
+    for key in keys(&state) {
+        assert!(plain.contains(&key) || help.contains(key), "{key}");
+    }
+}
+
 #[test]
 fn numbers_survive_json_bit_for_bit() {
     let steps = 1234;
@@ -158,6 +265,7 @@ fn numbers_survive_json_bit_for_bit() {
         }
     }
     assert_eq!(state["impacts"], world.impacts());
+    assert_eq!(state["state_hash"], format!("{:016x}", world.state_hash()));
 }
 
 #[test]

@@ -114,14 +114,14 @@ pub enum StepError {
         step: u64,
         /// Title of the method.
         method: &'static str,
-        /// The largest `dt` at which the method is stable on the forces there, s, if it can be
-        /// told: 0 for none at all.
+        /// The largest `dt`, s, at which the method is stable on the forces where the growth began,
+        /// as in [`StepError::Unstable`], if `dt` is longer: 0 if it is stable at none at all.
         stable_dt: Option<f64>,
     },
     /// Speeds have grown a millionfold, and the step is longer than the method is stable for.
     #[error(
         "step {step}: the motion of body {body} grows without bound: dt is too long for \
-         {method}, which is stable here up to {stable_dt:.4e} s"
+         {method}, which is stable up to {stable_dt:.4e} s where the growth began"
     )]
     Unstable {
         /// Index of the fastest body.
@@ -130,7 +130,14 @@ pub enum StepError {
         step: u64,
         /// Title of the method.
         method: &'static str,
-        /// The largest stable `dt`, s.
+        /// The largest `dt`, s, at which the method is stable on the forces where the growth began.
+        ///
+        /// That is not where the step failed: under a force that grows faster than the motion, as
+        /// quadratic drag does, what has blown up is stiffer by as much as it has grown. The world
+        /// keeps the motion at the start, or when bodies, forces or settings were last set, and
+        /// each time that the greatest speed has doubled since. This is the limit at the first of
+        /// these, and of where each leads in a step by a stable method, at which it is below `dt`.
+        /// Where forces get stiffer still on a stable way, a run with this `dt` says so in its turn.
         stable_dt: f64,
     },
     /// An implicit method found no solution of its equations.
@@ -210,7 +217,9 @@ impl StepError {
 fn remedy(stable_dt: Option<f64>) -> String {
     match stable_dt {
         Some(0.0) => "the method is unstable here at every dt: choose another one".into(),
-        Some(dt) if dt.is_finite() => format!("the method is stable here up to dt = {dt:.4e} s"),
+        Some(dt) if dt.is_finite() => {
+            format!("the method is stable up to dt = {dt:.4e} s where the growth began")
+        }
         _ => "lower dt, the force or the velocity".into(),
     }
 }

@@ -4,6 +4,8 @@ mod collision;
 mod continuous;
 mod error;
 mod forces;
+mod hash;
+mod marks;
 mod plan;
 mod state;
 mod stepping;
@@ -23,6 +25,7 @@ use crate::{
 pub use collision::Impact;
 use continuous::Continuous;
 pub use error::{StepError, WorldError};
+use marks::Marks;
 use plan::Plan;
 use state::State;
 
@@ -64,6 +67,8 @@ pub struct World {
     /// Greatest component of a velocity, m/s, from which growth is counted; `None` before the
     /// first step under a force that depends on the motion.
     speed_scale: Option<f64>,
+    /// The motion from which growth is counted, and on the way since.
+    marks: Marks,
     /// What bodies keep of an approaching speed; empty while all are elastic.
     restitution: Vec<f64>,
     /// Coefficients of friction; empty while all bodies are smooth.
@@ -155,6 +160,7 @@ impl World {
             plan: None,
             scratch: Scratch::default(),
             speed_scale: None,
+            marks: Marks::default(),
             restitution: Vec::new(),
             friction: Vec::new(),
             shape: Vec::new(),

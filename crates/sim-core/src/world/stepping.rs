@@ -4,6 +4,7 @@
 //! checks the range. The others are stepped by the method, in blocks small enough for the
 //! processor's first cache where nothing couples them.
 
+use alloc::vec::Vec;
 use core::{mem, ops::Range};
 
 use super::{
@@ -14,7 +15,7 @@ use super::{
 };
 use glam::DVec3;
 
-use crate::integrate::{Failure, Scratch, Step, ballistic, stability};
+use crate::integrate::{Failure, Method, Scratch, Step, ballistic, stability};
 
 /// Bodies in a block: some 200 bytes each for state, acceleration and a few stages fill about
 /// the 32 KiB of a first cache.
@@ -219,28 +220,47 @@ impl World {
     fn watch_growth(&mut self, plan: &Plan, fastest: (f64, usize)) -> Result<(), (usize, Cause)> {
         let (speed, body) = fastest;
         let Some(scale) = self.speed_scale else {
-            self.speed_scale = (speed > 0.0).then_some(speed);
+            self.count_growth_from(plan, speed);
             return Ok(());
         };
+        if self.marks.is_due(speed) {
+            // Of many bodies that no force couples, the one that grows.
+            let section = company(plan, body);
+            let bodies = section.map_or(body..body + 1, |section| section.bodies);
+            let time = self.time();
+            self.marks.add(time, speed, bodies, &self.previous);
+        }
         if speed <= GROWTH * scale {
             return Ok(());
         }
-        let stable_dt = self.stable_dt(plan, body);
-        if stable_dt.is_some_and(|stable| 0.0 < stable && stable < self.settings.dt) {
-            return Err((body, Cause::Growth));
+        match self.stable_dt(plan, body) {
+            Some(stable_dt) if stable_dt > 0.0 => Err((body, Cause::Growth { stable_dt })),
+            _ => {
+                self.count_growth_from(plan, speed);
+                Ok(())
+            }
         }
-        self.speed_scale = Some(speed);
-        Ok(())
     }
 
-    /// The largest stable `dt` where a body was before the step, if its forces are stiff.
-    fn stable_dt(&mut self, plan: &Plan, body: usize) -> Option<f64> {
-        let mut sections = plan.sections.iter();
-        let section = sections.find(|section| section.bodies.contains(&body))?;
-        let bodies = match section.is_coupled {
-            true => section.bodies.clone(),
-            false => body..body + 1,
-        };
+    /// Counts growth from the motion before this step.
+    fn count_growth_from(&mut self, plan: &Plan, speed: f64) {
+        let coupled = plan.sections.iter().filter(|section| section.is_coupled);
+        let most = coupled.map(|section| section.bodies.len()).max();
+        self.marks.begin(self.len(), most.unwrap_or(1));
+        self.speed_scale = (speed > 0.0).then_some(speed);
+        if speed > 0.0 {
+            let (all, time) = (0..self.len(), self.time());
+            self.marks.add(time, speed, all, &self.previous);
+        }
+    }
+
+    /// The largest `dt` at which the method is stable on a body's forces where its growth began: at
+    /// the first motion at which it is below the world's, of those kept, of that before this step,
+    /// and of where each of them leads in a step. 0 if all that is known is that the method is stable
+    /// at no `dt`; `None` where it is stable, and where that cannot be told.
+    fn stable_dt(&self, plan: &Plan, body: usize) -> Option<f64> {
+        let section = company(plan, body)?;
+        let bodies = section.bodies.clone();
         let part = Part {
             forces: &self.forces,
             plan,
@@ -249,11 +269,33 @@ impl World {
             acceleration: &self.acceleration[bodies.clone()],
             bodies: bodies.clone(),
         };
-        let (x, v) = (
+        // Without a scale, what is kept is from before bodies or forces were last set.
+        let marks = self.speed_scale.map(|_| self.marks.of(bodies.clone()));
+        let kept = marks.into_iter().flatten();
+        let last = (
+            self.time(),
             &self.previous.position[bodies.clone()],
-            &self.previous.velocity[bodies],
+            &self.previous.velocity[bodies.clone()],
         );
-        stability::largest_stable_step(self.settings.method, &part, self.time(), x, v)
+        let mut at_all = None;
+        let mut is_below = |time, x: &[DVec3], v: &[DVec3]| {
+            let limit = stability::largest_stable_step(self.settings.method, &part, time, x, v);
+            if limit == Some(0.0) {
+                at_all = limit;
+            }
+            limit.filter(|&dt| 0.0 < dt && dt < self.settings.dt)
+        };
+        for (time, x, v) in kept.chain([last]) {
+            // What begins at rest may have blown up within its first step.
+            let limit = is_below(time, x, v).or_else(|| {
+                let (x, v) = followed(&part, time, self.settings.dt, (x, v))?;
+                is_below(time + self.settings.dt, &x, &v)
+            });
+            if limit.is_some() {
+                return limit;
+            }
+        }
+        at_all
     }
 
     /// Puts every body back, and says why.
@@ -261,17 +303,15 @@ impl World {
     pub(super) fn failed(&mut self, body: usize, cause: Cause) -> StepError {
         self.current.copy_from(&self.previous);
         let (step, method) = (self.steps + 1, self.settings.method.title);
-        let stable_dt = self.plan.take().and_then(|plan| {
-            let stable_dt = self.stable_dt(&plan, body);
-            self.plan = Some(plan);
-            stable_dt
-        });
         match cause {
             Cause::Range => StepError::OutOfRange {
                 body,
                 step,
                 method,
-                stable_dt,
+                stable_dt: self
+                    .plan
+                    .as_ref()
+                    .and_then(|plan| self.stable_dt(plan, body)),
             },
             Cause::Squeezed(between) => StepError::Squeezed {
                 body,
@@ -284,11 +324,11 @@ impl World {
                 method,
                 impacts: World::MOST_IMPACTS,
             },
-            Cause::Growth => StepError::Unstable {
+            Cause::Growth { stable_dt } => StepError::Unstable {
                 body,
                 step,
                 method,
-                stable_dt: stable_dt.unwrap_or(0.0),
+                stable_dt,
             },
             Cause::Failure(Failure::NotConverged { iterations, .. }) => StepError::NotConverged {
                 body,
@@ -304,6 +344,43 @@ impl World {
             },
         }
     }
+}
+
+/// Where a motion leads in a step, by a method that is stable at every step; `None` if it finds no
+/// way. That nothing is hit on it does not matter here.
+fn followed(
+    part: &Part<'_>,
+    time: f64,
+    dt: f64,
+    (x, v): (&[DVec3], &[DVec3]),
+) -> Option<(Vec<DVec3>, Vec<DVec3>)> {
+    let (mut new_x, mut new_v) = (x.to_vec(), v.to_vec());
+    let step = Step {
+        time,
+        dt,
+        tolerance: Settings::default().tolerance,
+        position: x,
+        velocity: v,
+        new_position: &mut new_x,
+        new_velocity: &mut new_v,
+        scratch: &mut Scratch::default(),
+    };
+    (Method::named("radau5")?.step)(part, step).ok()?;
+    Some((new_x, new_v))
+}
+
+/// The bodies that a body must be stepped with, or the body alone; `None` under constant forces.
+fn company(plan: &Plan, body: usize) -> Option<Section> {
+    let mut sections = plan.sections.iter();
+    let section = sections.find(|section| section.bodies.contains(&body))?;
+    let bodies = match section.is_coupled {
+        true => section.bodies.clone(),
+        false => body..body + 1,
+    };
+    Some(Section {
+        bodies,
+        is_coupled: section.is_coupled,
+    })
 }
 
 /// Bodies that are stepped at once, and how.
@@ -326,6 +403,9 @@ pub(super) enum Cause {
     Squeezed((usize, usize)),
     /// More impacts than [`World::MOST_IMPACTS`].
     Impacts,
-    Growth,
+    /// Speeds have grown, and the method is unstable above this `dt`, s.
+    Growth {
+        stable_dt: f64,
+    },
     Failure(Failure),
 }

@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use sim_core::{DVec3, Force, World};
 
+use crate::number;
+
 /// A mean in which old values fade: each new one counts a tenth.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Smoothed(Option<f64>);
@@ -58,32 +60,42 @@ impl Figures {
 ///
 /// What constant forces and weight do is known: the work `F . dx`, the impulse `F t`, and between
 /// collisions the path `x + v t + F t^2 / 2m`. What other forces do is known where they have a
-/// potential, to the energy, and where they act between bodies, to the momentum. Drift is what
-/// remains after that is taken away, the error of method and collisions.
+/// potential, to the energy, and where they act between movable bodies, to the momentum. Drift is
+/// what remains after that is taken away, the error of method and collisions.
 #[derive(Clone, Debug)]
 pub struct Reference {
     time: f64,
     energy: f64,
     /// Potential energy of forces that are not constant, J.
     potential: f64,
+    /// Kinetic and potential energy together, J; 0 where it is no more than rounding.
+    total: f64,
     momentum: DVec3,
     impacts: u64,
     /// Position and velocity of each body.
     motion: Vec<(DVec3, DVec3)>,
 }
 
-/// Errors since a [`Reference`].
+/// Errors since a [`Reference`]. Relative ones are relative to what was there at the start and to
+/// what is known to have been added, never to the present motion: that has the error in it, and
+/// would make one without bound look like one of 100 %.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
-    /// Relative change of kinetic plus potential energy; none while it is not finite.
+    /// Change of kinetic plus potential energy, J; none while it is not finite.
     pub energy: Option<f64>,
-    /// Whether friction or an inelastic impact may have taken energy away, or a moving body that
-    /// nothing moves have given it: then the change is no error.
+    /// The same relative to the energy at the start; none where that is 0.
+    pub relative_energy: Option<f64>,
+    /// Whether friction or an inelastic impact may have taken energy away: then a loss is no error.
     pub dissipates: bool,
-    /// Error of the momentum less the impulse of the forces, relative to the sum of `m |v|`;
-    /// known as long as nothing but constant forces acts from outside, and nothing has hit what
-    /// may be immovable.
+    /// Whether a moving body that nothing moves, or a law from outside, may have given or taken
+    /// energy: then no change is an error.
+    pub driven: bool,
+    /// Error of the momentum less the impulse of the forces, kg m/s; known as long as nothing but
+    /// constant forces acts from outside, and nothing has hit what may be immovable.
     pub momentum: Option<f64>,
+    /// The same relative to the sum of `m |v|` at the start and of the constant forces' `|F| t`
+    /// since; none where that is 0.
+    pub relative_momentum: Option<f64>,
     /// Largest distance of a body from its exact path, m; known as long as nothing collides and
     /// no force but constant ones acts.
     pub position: Option<f64>,
@@ -96,6 +108,7 @@ impl Reference {
             time: world.time(),
             energy: world.kinetic_energy(),
             potential: varying_potential(world),
+            total: total_energy(world),
             momentum: world.momentum(),
             impacts: world.impacts(),
             motion: (0..world.len())
@@ -110,48 +123,94 @@ impl Reference {
         let weight = weight(world);
         let mut work = 0.0;
         let mut impulse = DVec3::ZERO;
-        let mut speed = 0.0;
+        let mut pushes = 0.0;
         let mut away: f64 = 0.0;
-        for (i, &(start, velocity)) in self.motion.iter().enumerate() {
-            if world.mass(i).is_infinite() {
-                continue;
-            }
+        for i in movable(world) {
+            let (start, velocity) = self.motion[i];
             let force = world.force(i) + world.mass(i) * weight;
             work += force.dot(world.position(i) - start);
             impulse += force * elapsed;
-            speed += world.mass(i) * world.velocity(i).length();
+            pushes += world.mass(i) * velocity.length() + force.length() * elapsed;
             let bend = force / world.mass(i) * (0.5 * elapsed * elapsed);
             let exact = start + velocity * elapsed + bend;
             away = away.max((world.position(i) - exact).length());
         }
-        let (energy, potential) = (world.kinetic_energy(), varying_potential(world));
-        let change = energy - self.energy - work + (potential - self.potential);
-        // A body at its turning point is at rest: the energy is elsewhere then.
-        let parts = [energy, self.energy, work, potential, self.potential];
-        let scale = parts
-            .into_iter()
-            .fold(0.0, |most: f64, part| most.max(part.abs()));
-        let momentum = (world.momentum() - impulse - self.momentum).length();
-        let momentum = ratio(momentum, speed.max(self.momentum.length()));
+        let energy = (world.kinetic_energy() - self.energy - work)
+            + (varying_potential(world) - self.potential);
+        let energy = Some(energy).filter(|change| change.is_finite());
         let (forces, same_impacts) = (world.forces(), world.impacts() == self.impacts);
         let mut bodies = 0..world.len();
-        let changes_in_impacts = |i| {
-            let is_driven = world.mass(i).is_infinite() && world.velocity(i) != DVec3::ZERO;
-            world.restitution(i) < 1.0 || is_driven
-        };
+        let inelastic = !same_impacts && bodies.clone().any(|i| world.restitution(i) < 1.0);
         // One rough body among smooth ones slides freely.
-        let is_rough = bodies.clone().filter(|&i| world.friction(i) > 0.0).count() > 1;
-        let changes = is_rough || bodies.clone().any(changes_in_impacts);
-        let dissipates_in_impacts = !same_impacts && changes;
+        let rough = bodies.clone().filter(|&i| world.friction(i) > 0.0).count() > 1;
+        let pushed = !same_impacts && bodies.clone().any(|i| is_driven(world, i));
         let closed = same_impacts || bodies.all(|i| world.mass(i).is_finite());
-        let kept = |force| is_weight(force) || is_internal(force);
+        let kept = |force| is_weight(force) || is_internal(world, force);
+        let momentum = (world.momentum() - impulse - self.momentum).length();
+        let momentum = (closed && forces.iter().all(kept)).then_some(momentum);
         Drift {
-            energy: Some(ratio(change, scale)).filter(|change| change.is_finite()),
-            dissipates: dissipates_in_impacts || forces.iter().any(dissipates),
-            momentum: (closed && forces.iter().all(kept)).then_some(momentum),
+            energy,
+            relative_energy: energy.and_then(|change| ratio(change, self.total.abs())),
+            dissipates: inelastic || rough || forces.iter().any(dissipates),
+            driven: pushed || forces.iter().any(|force| drives(world, force)),
+            momentum,
+            relative_momentum: momentum.and_then(|error| ratio(error, pushes)),
             position: (same_impacts && forces.iter().all(is_weight)).then_some(away),
         }
     }
+}
+
+impl Drift {
+    /// Whether the change of the energy is an error: any, unless something may drive the bodies, and
+    /// a gain where something may brake them.
+    pub fn energy_is_error(&self) -> bool {
+        let gains = self.energy.is_some_and(|change| change > 0.0);
+        !self.driven && (!self.dissipates || gains)
+    }
+
+    /// The change of the energy, relative where it can be, and in J.
+    pub fn energy_text(&self) -> String {
+        let Some(change) = self.energy else {
+            return "unknown: unbounded".to_owned();
+        };
+        relative_and_absolute(self.relative_energy, change, "J")
+    }
+
+    /// The error of the momentum likewise; none where it is not known.
+    pub fn momentum_text(&self) -> Option<String> {
+        let error = self.momentum?;
+        Some(relative_and_absolute(
+            self.relative_momentum,
+            error,
+            "kg m/s",
+        ))
+    }
+}
+
+fn relative_and_absolute(relative: Option<f64>, absolute: f64, unit: &str) -> String {
+    let absolute = format!("{} {unit}", number::error(absolute));
+    match relative {
+        Some(relative) => format!("{} ({absolute})", number::error(relative)),
+        None => format!("{absolute} (0 at the start)"),
+    }
+}
+
+fn movable(world: &World) -> impl Iterator<Item = usize> {
+    (0..world.len()).filter(|&i| world.mass(i).is_finite())
+}
+
+/// Kinetic and potential energy together, J; 0 where it is no more than the rounding of its parts,
+/// as of bodies at rest on both sides of the height that weight is counted from.
+fn total_energy(world: &World) -> f64 {
+    let weight = weight(world);
+    let constant = |i| (world.force(i) + world.mass(i) * weight).dot(world.position(i));
+    let total = world.kinetic_energy() + world.potential_energy();
+    let parts = world.kinetic_energy()
+        + varying_potential(world).abs()
+        + movable(world).map(|i| constant(i).abs()).sum::<f64>();
+    // A unit of rounding for each body in a sum of potentials, and for its products.
+    let rounding = f64::EPSILON * (world.len() + 4) as f64 * parts;
+    if total.abs() > rounding { total } else { 0.0 }
 }
 
 /// The part of the potential energy that is not that of a constant force, J.
@@ -161,8 +220,7 @@ fn varying_potential(world: &World) -> f64 {
     }
     let weight = weight(world);
     let constant = |i| (world.force(i) + world.mass(i) * weight).dot(world.position(i));
-    let movable = (0..world.len()).filter(|&i| world.mass(i).is_finite());
-    world.potential_energy() + movable.map(constant).sum::<f64>()
+    world.potential_energy() + movable(world).map(constant).sum::<f64>()
 }
 
 /// Acceleration by all weights, m/s².
@@ -178,15 +236,19 @@ fn is_weight(force: &Force) -> bool {
     matches!(force, Force::Gravity { .. })
 }
 
-/// Whether it acts between bodies, so that their momentum stays.
-fn is_internal(force: &Force) -> bool {
-    matches!(
-        force,
-        Force::Spring { .. } | Force::Gravitation { .. } | Force::Pair { .. }
-    )
+/// Whether it acts between movable bodies alone, so that their momentum stays.
+fn is_internal(world: &World, force: &Force) -> bool {
+    match force {
+        // It leaves out immovable bodies, as does a law for every two.
+        Force::Gravitation { .. } | Force::Pair { bodies: None, .. } => true,
+        Force::Spring { .. } | Force::Pair { .. } => {
+            force.bodies().all(|i| world.mass(i).is_finite())
+        }
+        _ => false,
+    }
 }
 
-/// Whether it may change the energy for good.
+/// Whether it may take energy away for good.
 fn dissipates(force: &Force) -> bool {
     match *force {
         Force::Gravity { .. } | Force::Attraction { .. } | Force::Gravitation { .. } => false,
@@ -198,7 +260,21 @@ fn dissipates(force: &Force) -> bool {
     }
 }
 
-/// `error / scale`, and 0 where nothing moved.
-fn ratio(error: f64, scale: f64) -> f64 {
-    if scale > 0.0 { error / scale } else { 0.0 }
+/// Whether it may give energy: a law from outside, or a pull by a body that nothing stops.
+fn drives(world: &World, force: &Force) -> bool {
+    match force {
+        Force::Body { .. } | Force::Pair { .. } => true,
+        Force::Spring { bodies, .. } => bodies.iter().any(|&i| is_driven(world, i)),
+        _ => false,
+    }
+}
+
+/// Whether a body keeps a velocity, whatever it meets.
+fn is_driven(world: &World, i: usize) -> bool {
+    world.mass(i).is_infinite() && world.velocity(i) != DVec3::ZERO
+}
+
+/// `error / scale`, where there is a scale.
+fn ratio(error: f64, scale: f64) -> Option<f64> {
+    (scale > 0.0).then(|| error / scale)
 }

@@ -81,19 +81,24 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
             number::energy(potential)
         ),
     );
-    let (name, meaning) = match drift.dissipates {
-        true => (
+    let (name, meaning) = match drift.energy_is_error() {
+        false if drift.driven => (
             "  change",
-            "Relative change of the energy since the start or the last edit: friction or inelastic \
-             impacts take it, or a driven wall gives it, so it is no error",
+            "Change of the energy since the start or the last edit, relative to the energy then, and \
+             in J: a driven body or a law from outside may change it, so it is no error",
         ),
         false => (
+            "  change",
+            "Change of the energy since the start or the last edit, relative to the energy then, and \
+             in J: friction or inelastic impacts take it, so a loss is no error",
+        ),
+        true => (
             "  drift",
-            "Relative error of the energy since the start or the last edit",
+            "Error of the energy since the start or the last edit, relative to the energy then, and in \
+             J: nothing that acts here would have changed it so",
         ),
     };
-    let change = drift.energy.map_or_else(none, number::relative);
-    field::figure(ui, name, meaning, change);
+    field::figure(ui, name, meaning, drift.energy_text());
     let p = world.momentum();
     field::figure(
         ui,
@@ -104,10 +109,10 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     field::figure(
         ui,
         "  drift",
-        "Relative error of the momentum since the start or the last edit; what the forces do is \
-         taken into account. Unknown where a spring, drag or attraction acts from outside, or an \
-         immovable body was there to be hit",
-        drift.momentum.map_or_else(none, number::relative),
+        "Error of the momentum since the start or the last edit, relative to what moved then and the \
+         impulses of the forces since, and in kg m/s. Unknown where a spring, drag or attraction acts \
+         from outside, or an immovable body was there to be hit",
+        drift.momentum_text().unwrap_or_else(none),
     );
     field::figure(
         ui,

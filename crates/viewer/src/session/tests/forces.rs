@@ -1,5 +1,6 @@
 //! Forces, what is seen of them, and what is measured beside a run.
 
+use std::path::Path;
 use std::time::Duration;
 
 use scene::Scene;
@@ -130,7 +131,11 @@ fn drift_knows_potentials_and_claims_no_more() {
         advance(&mut spring, FRAME, free());
         // Close to a turning point too.
         let drift = spring.drift();
-        assert!(drift.energy.is_some_and(|change| change.abs() < 1e-7));
+        assert!(
+            drift
+                .relative_energy
+                .is_some_and(|change| change.abs() < 1e-7)
+        );
         assert_eq!((drift.momentum, drift.position), (None, None));
         assert!(!drift.dissipates);
     }
@@ -152,6 +157,62 @@ fn drift_knows_potentials_and_claims_no_more() {
     advance(&mut drag, FRAME, free());
     let drift = drag.drift();
     assert!(drift.dissipates && drift.position.is_none() && drift.momentum.is_none());
+}
+
+/// A weight on a spring to a body that nothing moves.
+fn weight_at(anchor: &str, method: &str) -> Session {
+    let text = format!(
+        "rate = 60
+        method = '{method}'
+        [[body]]
+        name = 'hook'
+        sphere = 0
+        {anchor}
+        [[body]]
+        name = 'weight'
+        sphere = 0
+        position = [1, 0, 0]
+        [[force]]
+        kind = 'spring'
+        bodies = ['hook', 'weight']
+        stiffness = 8"
+    );
+    let scene = Scene::parse(&text, Path::new("hook.toml")).expect("the text is a scene");
+    let mut session = Session::new(scene).expect("the scene makes a world");
+    session.start();
+    for _ in 0..300 {
+        advance(&mut session, FRAME, free());
+    }
+    session
+}
+
+#[test]
+fn drift_tells_what_is_wrong_from_what_drives() {
+    // The wall takes the momentum of what hangs on it.
+    let still = weight_at("immovable = true", "rk4").drift();
+    assert_eq!((still.momentum, still.relative_momentum), (None, None));
+    assert!(still.energy_is_error());
+    assert!(
+        still
+            .relative_energy
+            .is_some_and(|drift| drift.abs() < 1e-3)
+    );
+    // A hook that moves pulls the weight along, and gives it energy.
+    let moving = weight_at("immovable = true\nvelocity = [1, 0, 0]", "rk4").drift();
+    assert!(moving.driven && !moving.energy_is_error());
+    // Between free bodies momentum stays, whatever becomes of the energy: bodies at rest have none
+    // to measure it by, so that there is the error alone.
+    let blown = weight_at("", "forward-euler").drift();
+    assert!(
+        blown.relative_energy.is_some_and(|drift| drift > 2.0),
+        "{blown:?}"
+    );
+    assert!(blown.energy_is_error() && !blown.dissipates && !blown.driven);
+    assert!(
+        blown.momentum.is_some_and(|error| error < 1e-12),
+        "{blown:?}"
+    );
+    assert_eq!(blown.relative_momentum, None);
 }
 
 #[test]

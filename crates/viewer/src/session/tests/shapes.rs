@@ -161,7 +161,7 @@ fn energy_and_momentum_are_judged_by_what_was_hit() {
     assert!(drift.dissipates);
     // Half of the speed along the normal is left: 3/4 of the energy of the relative motion, which
     // is half of it all, has gone.
-    let change = drift.energy.expect("a number");
+    let change = drift.relative_energy.expect("a number");
     assert!((change + 0.375).abs() < 1e-12, "{change}");
 }
 
