@@ -33,6 +33,7 @@ use crate::collide::{
     predicates::{orient3d, segment_meets_triangle},
     solid::each_in_box,
     touch::Feature,
+    tree,
     triple::{Difference, Time, direction, sign},
 };
 
@@ -67,9 +68,22 @@ impl Search<'_> {
             return !is_unclear;
         }
         self.look_around(contact);
+        if !is_unclear || !self.around.blocks {
+            return self.around.blocks;
+        }
+        let is_start = contact.time.is_start();
+        // Meshes that are apart at the start come out of each other after an earlier contact.
+        if !is_start && !self.meet_at_start() {
+            return true;
+        }
         let (around, motion) = (&self.around, self.motion);
-        let parts = || contact.time.is_start() && !around.goes_in(motion);
-        around.blocks && !(is_unclear && (parts() || around.comes_out(motion)))
+        (!is_start || around.goes_in(motion)) && !around.comes_out(motion)
+    }
+
+    fn meet_at_start(&mut self) -> bool {
+        let (first, second, offset) = (self.first, self.second, self.offset);
+        let meet = || tree::intersect(first, second, offset);
+        *self.meet_at_start.get_or_insert_with(meet)
     }
 
     /// Collects the triangles around a contact on the border.
@@ -146,13 +160,13 @@ impl Search<'_> {
         match (spot, other) {
             (Spot::Vertex(v, at), _) => {
                 each_near(mesh, offset, at, DVec3::ZERO, |names, corners| {
-                    let ways = corners.map(|corner| Difference(corner, at));
-                    let named = names.iter().position(|&name| name == v);
-                    if named.is_some() || segment_meets_triangle(at, at, corners) {
-                        visit(Cone::new(corners, ways, self.motion, || match named {
-                            Some(corner) => At::Corner(corner),
-                            None => At::line(line_sides(at, self.motion, corners)),
-                        }));
+                    let place = match names.iter().position(|&name| name == v) {
+                        Some(corner) => Some(At::Corner(corner)),
+                        None => self.place_at(at, corners),
+                    };
+                    if let Some(place) = place {
+                        let ways = corners.map(|corner| Difference(corner, at));
+                        visit(Cone::new(corners, ways, self.motion, place));
                     }
                 });
             }
@@ -167,7 +181,7 @@ impl Search<'_> {
                     };
                     if let Some(place) = place {
                         let ways = place.ways(corners);
-                        visit(Cone::new(corners, ways, self.motion, || place));
+                        visit(Cone::new(corners, ways, self.motion, place));
                     }
                 });
             }
@@ -175,18 +189,26 @@ impl Search<'_> {
         }
     }
 
+    /// Where in a triangle of other vertices a vertex is.
+    fn place_at(&self, vertex: DVec3, corners: [DVec3; 3]) -> Option<At> {
+        let sides = line_sides(vertex, self.motion, corners);
+        let is_in = line_passes(sides) && segment_meets_triangle(vertex, vertex, corners);
+        is_in.then(|| At::line(sides))
+    }
+
     /// Where in a triangle of other vertices the point is in which a line along the motion, through
     /// `p`, meets an edge. `None` if it is not there, nor where the edge and one of the triangle's,
     /// not on one line, cross there: the surface then goes through itself.
     fn place_beside(&self, [a, b]: [DVec3; 2], p: DVec3, corners: [DVec3; 3]) -> Option<At> {
+        let sides = line_sides(p, self.motion, corners);
         let [u, v, w] = corners;
-        if [a, b].iter().any(|&end| orient3d(u, v, w, end) != 0.0) {
+        let is_beside = |end: &DVec3| orient3d(u, v, w, *end) == 0.0;
+        if !(line_passes(sides) && [a, b].iter().all(is_beside)) {
             return None;
         }
-        let sides = line_sides(p, self.motion, corners);
         let motion = Difference::from(self.motion);
         if sign([Difference(v, u), Difference(w, u), motion]) != Ordering::Equal {
-            return line_passes(sides).then(|| At::line(sides));
+            return Some(At::line(sides));
         }
         // Along the motion, it has the point on its border.
         let along = Difference(b, a);

@@ -45,6 +45,8 @@ pub(super) struct Search<'a> {
     /// When a vertex first slides into a triangle, rounded down.
     slide: Option<f64>,
     around: Around,
+    /// Once that was needed.
+    meet_at_start: Option<bool>,
 }
 
 impl<'a> Search<'a> {
@@ -67,6 +69,7 @@ impl<'a> Search<'a> {
             best: None,
             slide: None,
             around: Around::default(),
+            meet_at_start: None,
         };
         if motion != DVec3::ZERO {
             search.visit(first.root(), second.root());

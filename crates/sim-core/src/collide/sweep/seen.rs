@@ -60,17 +60,16 @@ enum Seen {
 }
 
 fn turn(u: Difference, v: Difference, motion: Difference) -> Ordering {
+    // Triangles side by side have an edge in common.
+    if (u.0, u.1) == (v.0, v.1) {
+        return Ordering::Equal;
+    }
     sign([u, v, motion])
 }
 
 impl Cone {
     /// Of a triangle, by its ways, which lead to the corners where these are not the point.
-    pub(super) fn new(
-        [a, b, c]: [DVec3; 3],
-        ways: [Difference; 3],
-        motion: DVec3,
-        at: impl FnOnce() -> At,
-    ) -> Cone {
+    pub(super) fn new([a, b, c]: [DVec3; 3], ways: [Difference; 3], motion: DVec3, at: At) -> Cone {
         let sector = |at: At| match at {
             At::Corner(i) => Some((ways[(i + 1) % 3], ways[(i + 2) % 3])),
             At::Side(i) => Some((ways[(i + 1) % 3], ways[i])),
@@ -79,7 +78,7 @@ impl Cone {
         let order = turn(Difference(b, a), Difference(c, a), motion.into());
         let seen = match order {
             Ordering::Equal => Seen::Rays,
-            _ => match (sector(at()), order) {
+            _ => match (sector(at), order) {
                 (None, _) => Seen::All,
                 (Some((right, left)), Ordering::Greater) => Seen::Sector(right, left),
                 (Some((left, right)), _) => Seen::Sector(right, left),
@@ -108,6 +107,10 @@ impl Cone {
 /// way along the motion, with rays of it to both sides as well.
 pub(super) fn slips_past(first: &[Cone], second: &[Cone], motion: DVec3) -> bool {
     let motion = Difference::from(motion);
+    // Most that do not have a ray of a triangle inside another one.
+    if has_ray_of(first, second, motion) || has_ray_of(second, first, motion) {
+        return false;
+    }
     let Some(circle) = Circle::new([first, second], motion) else {
         return false;
     };
@@ -135,6 +138,18 @@ pub(super) fn slips_past(first: &[Cone], second: &[Cone], motion: DVec3) -> bool
         })
 }
 
+/// Whether a triangle of one surface has, inside, a ray of one of the other surface.
+fn has_ray_of(cones: &[Cone], others: &[Cone], motion: Difference) -> bool {
+    cones.iter().any(|cone| match cone.seen {
+        Seen::All => true,
+        Seen::Sector(right, left) => others.iter().flat_map(|other| other.ways).any(|way| {
+            turn(right, way, motion) == Ordering::Greater
+                && turn(way, left, motion) == Ordering::Greater
+        }),
+        Seen::Rays => false,
+    })
+}
+
 /// The rays from a point, by all that are ends of a sector of either surface and by what is between
 /// them: at even places those, at odd places what is to their left up to the next one.
 struct Circle {
@@ -149,55 +164,48 @@ impl Circle {
 
     /// `None` if one of the surfaces is everywhere.
     fn new(surfaces: [&[Cone]; 2], motion: Difference) -> Option<Circle> {
-        let mut sectors: Vec<(usize, [usize; 2])> = Vec::new();
-        let mut ends: Vec<(Difference, usize)> = Vec::new();
-        for (of, cones) in surfaces.into_iter().enumerate() {
-            for cone in cones {
-                match cone.seen {
-                    Seen::All => return None,
-                    Seen::Sector(right, left) => {
-                        ends.push((right, 2 * sectors.len()));
-                        ends.push((left, 2 * sectors.len() + 1));
-                        sectors.push((of, [0; 2]));
-                    }
-                    Seen::Rays => {
-                        for &way in &cone.ways {
-                            if along(way, way, motion) != Ordering::Equal {
-                                ends.push((way, 2 * sectors.len()));
-                                ends.push((way, 2 * sectors.len() + 1));
-                                sectors.push((of, [0; 2]));
-                            }
-                        }
-                    }
-                }
-            }
-        }
-        let mut count = 0;
-        if let Some(&(start, _)) = ends.first() {
+        let most = 3 * (surfaces[0].len() + surfaces[1].len());
+        let mut sectors: Vec<(usize, [usize; 2])> = Vec::with_capacity(most);
+        let mut ends: Vec<(u8, Difference, usize)> = Vec::with_capacity(2 * most);
+        let mut add = |of: usize, right: Difference, left: Difference| {
             // By quarters that begin with a ray, so that those between are less than half a turn.
+            let start = ends.first().map_or(right, |&(_, start, _)| start);
             let quarter = |way: Difference| match turn(start, way, motion) {
                 Ordering::Equal if along(start, way, motion) == Ordering::Less => 2,
                 Ordering::Equal => 0,
                 Ordering::Greater => 1,
                 Ordering::Less => 3,
             };
-            let mut placed: Vec<(u8, Difference, usize)> = ends
-                .iter()
-                .map(|&(way, end)| (quarter(way), way, end))
-                .collect();
-            let order = |x: &(u8, Difference, usize), y: &(u8, Difference, usize)| {
-                x.0.cmp(&y.0).then_with(|| match x.0 {
-                    0 | 2 => Ordering::Equal,
-                    _ => turn(y.1, x.1, motion),
-                })
-            };
-            placed.sort_unstable_by(order);
-            for run in placed.chunk_by(|x, y| order(x, y) == Ordering::Equal) {
-                for &(_, _, end) in run {
-                    sectors[end / 2].1[end % 2] = 2 * count;
+            ends.push((quarter(right), right, 2 * sectors.len()));
+            ends.push((quarter(left), left, 2 * sectors.len() + 1));
+            sectors.push((of, [0; 2]));
+        };
+        for (of, cones) in surfaces.into_iter().enumerate() {
+            for cone in cones {
+                match cone.seen {
+                    Seen::All => return None,
+                    Seen::Sector(right, left) => add(of, right, left),
+                    Seen::Rays => {
+                        let leads = |way: &Difference| along(*way, *way, motion) != Ordering::Equal;
+                        let rays = cone.ways.into_iter().filter(leads);
+                        rays.for_each(|way| add(of, way, way));
+                    }
                 }
-                count += 1;
             }
+        }
+        let order = |x: &(u8, Difference, usize), y: &(u8, Difference, usize)| {
+            x.0.cmp(&y.0).then_with(|| match x.0 {
+                0 | 2 => Ordering::Equal,
+                _ => turn(y.1, x.1, motion),
+            })
+        };
+        ends.sort_unstable_by(order);
+        let mut count = 0;
+        for run in ends.chunk_by(|x, y| order(x, y) == Ordering::Equal) {
+            for &(_, _, end) in run {
+                sectors[end / 2].1[end % 2] = 2 * count;
+            }
+            count += 1;
         }
         let mut covered = alloc::vec![[false; 2]; 2 * count];
         for (of, [from, to]) in sectors {
