@@ -2,6 +2,8 @@
 
 #[path = "moving_oracle/borders.rs"]
 mod borders;
+#[path = "moving_oracle/crossing.rs"]
+mod crossing;
 mod moving_oracle;
 mod rational;
 

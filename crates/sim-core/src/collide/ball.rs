@@ -199,36 +199,45 @@ impl Ball {
 
 /// The point of a closed triangle, which may be a segment or a point, that is nearest to `p`: in
 /// its plane if it is there (Ericson 2005, "Real-Time Collision Detection", sec. 5.1.5), else on an
-/// edge.
+/// edge. To the bit the same whichever of `b` and `c` is the first, so that mirrored triangles, which
+/// turn the other way round, have mirrored points.
 fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac);
     let area = |x: DVec3, y: DVec3| normal.dot((x - p).cross(y - p));
     let parts = [area(b, c), area(c, a), area(a, b)];
     if normal != DVec3::ZERO && parts.iter().all(|&part| part > 0.0) {
-        let whole: f64 = parts.iter().sum();
-        return a + (parts[1] / whole) * ab + (parts[2] / whole) * ac;
+        let whole = parts[0] + (parts[1] + parts[2]);
+        return a + ((parts[1] / whole) * ab + (parts[2] / whole) * ac);
     }
-    let on_edges = [(a, b), (b, c), (c, a)].map(|(a, b)| nearest_on_edge(p, a, b));
+    let on_edges = [(a, b), (a, c), (b, c)].map(|(a, b)| nearest_on_edge(p, a, b));
     let [x, y, z] = on_edges;
+    // Lengths that are rounded to the same number may be those of different ways.
     let nearer = |x: DVec3, y: DVec3| {
-        if (p - y).length_squared() < (p - x).length_squared() {
-            y
-        } else {
-            x
-        }
+        let key = |x: DVec3| {
+            let DVec3 { x, y, z } = (p - x).abs();
+            [x * x + y * y + z * z, x, y, z]
+        };
+        if key(y) < key(x) { y } else { x }
     };
     nearer(nearer(x, y), z)
 }
 
+/// From the end that is nearer, so that it does not matter which one is the first.
 fn nearest_on_edge(p: DVec3, a: DVec3, b: DVec3) -> DVec3 {
     let along = b - a;
     let length = along.length_squared();
-    let part = (p - a).dot(along) / length;
-    if part > 0.0 {
-        a + part.min(1.0) * along
-    } else {
+    let (from_a, from_b) = ((p - a).dot(along), (b - p).dot(along));
+    if from_a <= 0.0 {
         a
+    } else if from_b <= 0.0 {
+        b
+    } else if from_a < from_b {
+        a + (from_a / length) * along
+    } else if from_b < from_a {
+        b - (from_b / length) * along
+    } else {
+        0.5 * (a + b)
     }
 }
 
@@ -293,6 +302,36 @@ mod tests {
         ] {
             assert_eq!(ball_touch(&cube, from, radius, motion), None, "{from}");
         }
+    }
+
+    /// A triangle's mirror image turns the other way round. It is touched alike, to the bit.
+    #[test]
+    fn mirrored_triangles_are_touched_alike() {
+        let mut random = crate::test_random::Random(0x9e37_79b9_7f4a_7c15);
+        let mut hits = 0;
+        for round in 0..20_000 {
+            // On a lattice, where ways to two edges are of one length, and anywhere.
+            let (most, unit) = [(3, 0.5), (1 << 20, 0.5_f64.powi(19))][round % 2];
+            let corners = [0; 3].map(|_| random.vector(most) * unit);
+            let (from, aim) = (random.vector(3 * most) * unit, random.vector(most) * unit);
+            let touch = |mirror: DVec3, order: [usize; 3]| {
+                let corners = order.map(|i| mirror * corners[i]);
+                let ball = Ball {
+                    centre: mirror * from,
+                    radius: 0.3,
+                    motion: mirror * (1.5 * aim - 1.5 * from),
+                };
+                let touch = ball.touch(0, corners, 1.0)?;
+                Some((touch.time, mirror * touch.point, mirror * touch.normal))
+            };
+            let plain = touch(DVec3::ONE, [0, 1, 2]);
+            hits += u32::from(plain.is_some());
+            for axis in DVec3::AXES {
+                let mirrored = touch(DVec3::ONE - 2.0 * axis, [0, 2, 1]);
+                assert_eq!(mirrored, plain, "{round} {corners:?} {from} {aim}");
+            }
+        }
+        assert!(hits > 4000, "{hits}");
     }
 
     #[test]

@@ -8,13 +8,14 @@
 //! coordinates so large or small that exact products leave the range of f64, where it is at most
 //! eight units in the last place less.
 //!
-//! Coordinates must lie within ±1e100 and be multiples of 2^-340, as in [`super::predicates`].
-//! Components of the motion below 2^-250 count as zero.
+//! Coordinates must be multiples of 2^-340, as in [`super::predicates`]. What is no number or beyond
+//! ±1e100 meets nothing, the motion included, whose components below 2^-250 count as zero.
 
 use core::cmp::Ordering;
 use glam::DVec3;
 
 use super::{
+    placement::is_in_range,
     predicates::{orient3d, segment_meets_triangle, segments_meet},
     snap,
     triple::{Difference, Time, sign},
@@ -27,6 +28,9 @@ use super::{
 /// first meets an edge.
 pub fn point_meets_triangle(p: DVec3, motion: DVec3, triangle: [DVec3; 3]) -> Option<f64> {
     let (motion, [a, b, c]) = (snap(motion), triangle);
+    if ![p, motion, a, b, c].into_iter().all(is_in_range) {
+        return None;
+    }
     let time = Time::new(Difference(b, a), Difference(c, a), Difference(a, p), motion);
     match time.course() {
         Ordering::Equal => point_slides_into_triangle(p, motion, triangle),
@@ -39,6 +43,9 @@ pub fn point_meets_triangle(p: DVec3, motion: DVec3, triangle: [DVec3; 3]) -> Op
 /// may be a point. `None` if it does not from time 0 to 1.
 pub fn edge_meets_edge([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DVec3) -> Option<f64> {
     let motion = snap(motion);
+    if ![a, b, c, d, motion].into_iter().all(is_in_range) {
+        return None;
+    }
     let (u, w) = (Difference(b, a), Difference(d, c));
     let time = Time::new(u, w, Difference(a, c), motion);
     match time.course() {
@@ -61,10 +68,13 @@ pub fn edge_meets_edge([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DVec3) ->
 /// When a point that moves by `motion` first meets a closed edge at rest, which may be a point;
 /// `None` if it does not from time 0 to 1.
 pub fn point_meets_edge(p: DVec3, motion: DVec3, [a, b]: [DVec3; 2]) -> Option<f64> {
+    let motion = snap(motion);
+    if ![p, motion, a, b].into_iter().all(is_in_range) {
+        return None;
+    }
     if segments_meet(p, p, a, b) {
         return Some(0.0);
     }
-    let motion = snap(motion);
     let (along, from, to) = (Difference(b, a), Difference(a, p), Difference(b, p));
     let way = Difference::from(motion);
     // Seen along an axis along which motion and edge are not parallel.
@@ -140,4 +150,41 @@ pub(super) fn edge_sides([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DVec3) 
         (u, Difference(d, a)),
     ]
     .map(|(along, apart)| sign([along, apart, motion.into()]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_or_too_far_meets_nothing() {
+        let v = DVec3::new;
+        let (p, down) = (v(0.2, 0.2, 1.0), v(0.0, 0.0, -2.0));
+        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let edges = [
+            [v(0.2, -1.0, 1.0), v(0.2, 1.0, 1.0)],
+            [DVec3::ZERO, DVec3::X],
+        ];
+        assert_eq!(point_meets_triangle(p, down, triangle), Some(0.5));
+        assert_eq!(edge_meets_edge(edges[1], edges[0], down), Some(0.5));
+        assert_eq!(
+            point_meets_edge(v(0.2, 0.0, 1.0), down, edges[1]),
+            Some(0.5)
+        );
+        for bad in [1e101, 1e200, 1.7e308, f64::INFINITY, f64::NAN] {
+            for motion in [DVec3::NEG_Z * bad, v(1e200, 1e100, bad)] {
+                assert_eq!(point_meets_triangle(p, motion, triangle), None);
+                assert_eq!(edge_meets_edge(edges[1], edges[0], motion), None);
+                assert_eq!(point_meets_edge(p, motion, edges[1]), None);
+            }
+            let far = v(0.0, bad, -bad);
+            assert_eq!(point_meets_triangle(far, down, triangle), None);
+            assert_eq!(
+                point_meets_triangle(p, down, [far, DVec3::X, DVec3::Y]),
+                None
+            );
+            assert_eq!(edge_meets_edge([far, DVec3::X], edges[0], down), None);
+            assert_eq!(point_meets_edge(p, down, [DVec3::ZERO, far]), None);
+        }
+    }
 }

@@ -76,8 +76,10 @@ pub struct Touch {
 /// The first entering contact of two meshes, with the second displaced by `offset` and then moving by
 /// `motion` (m), both in the first one's frame. `None` if there is none on the way.
 ///
-/// A contact enters if its normal opposes the motion, which is decided exactly: to slide along a face
-/// is no contact, nor is to part from what is touched at the start. Which contacts there are is
+/// A contact enters if its normal opposes the motion and the meshes do not slip past each other there
+/// after a small move to the side, which is decided exactly: to slide along a face is no contact, nor
+/// is to part from what is touched at the start. So meshes that are apart at the start and cross as
+/// soon as they touch have a contact at their [`time_of_impact`]. Which contacts there are is
 /// exact for the placed vertices ([`super::Placement`]); the time is the greatest f64 that is not
 /// above the exact one ([`super::moving`]). Meshes that meet at the start in no such feature are
 /// not found to. Components of `offset` and `motion` below 2^-250 m count as zero, and what is no

@@ -12,7 +12,7 @@ use super::{Jacobians, Method, Scratch, Step, System};
 
 impl Method {
     /// The largest `dt`, s, up to which the method is stable on `x'' = -k x - c x'`, with `k` in
-    /// 1/s² and `c` in 1/s: 0 if it is at no `dt`, infinite if it is at all. Windows of instability
+    /// 1/s² and `c` in 1/s: 0 if it is at no `dt`, as where these are not finite, infinite if it is at all. Windows of instability
     /// below it that are narrower than 0.2 % may be passed over.
     ///
     /// ```
@@ -25,6 +25,9 @@ impl Method {
         if self.adaptive || rate == 0.0 || k < 0.0 || c < 0.0 {
             // It follows the motion, or the motion itself grows.
             return f64::INFINITY;
+        }
+        if !(k.is_finite() && c.is_finite()) {
+            return 0.0;
         }
         let (mut stable, factor) = (1e-2 / rate, 1.002);
         if unstable(stable) {
@@ -174,4 +177,29 @@ fn quotient(d: &[DVec3], apply: impl Fn(&[DVec3], &mut [DVec3])) -> f64 {
     let along: f64 = d.iter().zip(&image).map(|(d, i)| d.dot(*i)).sum();
     let squared: f64 = d.iter().map(|d| d.dot(*d)).sum();
     along / squared
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::METHODS;
+
+    /// None loops for ever.
+    #[test]
+    fn no_step_is_stable_where_the_rate_is_no_number() {
+        for method in METHODS {
+            for (k, c) in [
+                (1.0, f64::INFINITY),
+                (f64::INFINITY, 0.0),
+                (f64::INFINITY, 1.0),
+                (f64::NAN, 1.0),
+                (1.0, f64::NAN),
+            ] {
+                let dt = method.stable_dt(k, c);
+                assert_eq!(dt, if method.adaptive { f64::INFINITY } else { 0.0 });
+            }
+            for huge in [1e300, f64::MAX] {
+                assert!(method.stable_dt(huge, 0.0) >= 0.0 && method.stable_dt(1.0, huge) >= 0.0);
+            }
+        }
+    }
 }

@@ -1,12 +1,22 @@
-//! Contacts at the borders of faces and at the ends of edges: whether they block the motion.
+//! Contacts at the borders of faces, at the ends of edges and at the start: whether they block the
+//! motion.
 //!
-//! Inside a face, and where edges cross, the plane of contact is the only one that parts what
-//! touches. At a border there may be others, and what touches slips past along a plane that holds
-//! the motion. So a contact there counts only if there is none: seen along the motion, no line
-//! through the point has the one mesh, near it, on one side and the other one on the other. With
-//! the directions along which the meshes lead away from the point, those of the first one reversed,
-//! that is the question whether they all lie in a half-plane.
+//! Inside a face, and where edges cross, what touches is stopped. At a border it may slip past, which
+//! [`slips_past`] decides for all triangles at the point together, and at the start it may part.
+//!
+//! No point where nothing slips past is without a contact that has a normal. If surfaces touch for the
+//! first time, they do so in a point with a vertex of one of them, or with edges that cross
+//! ([`time_of_impact`]); where they share more than a point and nothing slips past, nothing does at a
+//! corner of what they share. A vertex and a triangle that the motion leads through are a contact, and so
+//! are two edges whose common plane it leads through. If there are none, then one of the surfaces has
+//! a vertex there and the other one triangles along the motion alone, and so has the first one, since
+//! a triangle that the motion leads through has two edges there that are not parallel, seen along it,
+//! and one of them would be a contact with an edge of the other surface. Both are then seen as rays,
+//! on one line, and slip past each other.
+//!
+//! [`time_of_impact`]: crate::collide::touch::time_of_impact
 
+use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::ops::ControlFlow;
 use glam::{DVec3, Vec3};
@@ -14,42 +24,89 @@ use glam::{DVec3, Vec3};
 use super::{
     Search,
     candidate::{Candidate, Spot},
+    seen::{At, Cone, meet_after, slips_past},
 };
 use crate::bvh::Bvh;
 use crate::collide::{
     Side,
+    moving::{line_passes, line_sides},
+    predicates::{orient3d, segment_meets_triangle},
     solid::each_in_box,
     touch::Feature,
+    tree,
     triple::{Difference, Time, direction, sign},
 };
+
+/// The surfaces at the spots that were looked at last.
+#[derive(Default)]
+pub(super) struct Around {
+    /// Of each spot the vertex, twice, or the ends of the edge.
+    names: Option<[[u32; 2]; 2]>,
+    cones: [Vec<Cone>; 2],
+    blocks: bool,
+}
+
+impl Around {
+    /// Whether what touches goes into each other.
+    fn goes_in(&self, motion: DVec3) -> bool {
+        meet_after(&self.cones[0], &self.cones[1], motion, false)
+    }
+
+    /// Whether what touches has been in each other.
+    fn comes_out(&self, motion: DVec3) -> bool {
+        meet_after(&self.cones[0], &self.cones[1], -motion, true)
+    }
+}
 
 impl Search<'_> {
     /// Whether an entering contact on the brink is one. Sets whether it is doubtful.
     #[inline(never)]
-    pub(super) fn counts(&self, contact: &mut Candidate) -> bool {
-        if contact.is_from_inside {
-            return false;
-        }
-        let mut fan = Fan::new(self.motion);
-        contact.is_doubtful = !self.parts(contact, &mut fan);
-        // Where edges meet at an end, a corner meets the faces there.
-        if contact.is_doubtful && (contact.is_edges() || contact.time.is_start()) {
-            return false;
-        }
+    pub(super) fn counts(&mut self, contact: &mut Candidate) -> bool {
+        contact.is_doubtful = !self.parts(contact);
+        let is_unclear = contact.is_doubtful || contact.is_from_inside;
         if !contact.is_on_border() {
+            return !is_unclear;
+        }
+        self.look_around(contact);
+        if !is_unclear || !self.around.blocks {
+            return self.around.blocks;
+        }
+        let is_start = contact.time.is_start();
+        // Meshes that are apart at the start come out of each other after an earlier contact.
+        if !is_start && !self.meet_at_start() {
             return true;
         }
-        // What touches a vertex has not been looked at.
-        match contact.feature {
-            Feature::FaceVertex { .. } => {
-                self.visit_around(Side::First, contact, &mut fan, |_| true)
-            }
-            Feature::VertexFace { .. } => {
-                self.visit_around(Side::Second, contact, &mut fan, |_| true)
-            }
-            Feature::EdgeEdge { .. } => true,
+        let (around, motion) = (&self.around, self.motion);
+        (!is_start || around.goes_in(motion)) && !around.comes_out(motion)
+    }
+
+    fn meet_at_start(&mut self) -> bool {
+        let (first, second, offset) = (self.first, self.second, self.offset);
+        let meet = || tree::intersect(first, second, offset);
+        *self.meet_at_start.get_or_insert_with(meet)
+    }
+
+    /// Collects the triangles around a contact on the border.
+    fn look_around(&mut self, contact: &mut Candidate) {
+        let names = contact.spots.map(|spot| match spot {
+            Spot::Vertex(v, _) => [v; 2],
+            Spot::Edge(ends, _) => ends,
+            Spot::Face => [u32::MAX; 2],
+        });
+        if self.around.names == Some(names) {
+            return;
+        }
+        let time = contact.rounded();
+        let mut cones = core::mem::take(&mut self.around.cones);
+        for (side, cones) in [Side::First, Side::Second].into_iter().zip(&mut cones) {
+            cones.clear();
+            self.each_cone(side, &contact.spots, time, |cone| cones.push(cone));
+        }
+        self.around = Around {
+            names: Some(names),
+            blocks: !slips_past(&cones[0], &cones[1], self.motion),
+            cones,
         };
-        fan.is_all()
     }
 
     /// Whether a vertex comes to a face of a closed mesh from its inner side: with the vertex at the
@@ -67,56 +124,116 @@ impl Search<'_> {
     /// Whether the plane of a contact has the one mesh, near it, on one side and the other one on the
     /// side from which it comes. Then what comes to touch is stopped, and what has touched and
     /// leaves is not.
-    fn parts(&self, contact: &Candidate, fan: &mut Fan) -> bool {
+    fn parts(&self, contact: &Candidate) -> bool {
         let (first, second) = (contact.course, contact.course.reverse());
-        let is_on = |mesh: &Bvh, side: Ordering, spot: Spot| {
+        let is_on = |side: Side, above: Ordering| {
+            let (mesh, offset) = self.placed(side);
+            let spot = contact.spots[side as usize];
             let is_solid = mesh.is_closed() && mesh.topology().oriented;
-            let time = &contact.time;
-            move |corners: [DVec3; 3]| is_on(side, time, spot, corners, is_solid)
+            let mut all = true;
+            each_at(mesh, offset, spot, |corners| {
+                all = all && is_on(above, &contact.time, spot, corners, is_solid);
+            });
+            all
         };
-        let of_first = is_on(self.first, first, contact.spots[0]);
-        let of_second = is_on(self.second, second, contact.spots[1]);
         match contact.feature {
-            Feature::FaceVertex { .. } => self.visit_around(Side::Second, contact, fan, of_second),
-            Feature::VertexFace { .. } => self.visit_around(Side::First, contact, fan, of_first),
-            Feature::EdgeEdge { .. } => {
-                self.visit_around(Side::First, contact, fan, of_first)
-                    && self.visit_around(Side::Second, contact, fan, of_second)
-            }
+            Feature::FaceVertex { .. } => is_on(Side::Second, second),
+            Feature::VertexFace { .. } => is_on(Side::First, first),
+            Feature::EdgeEdge { .. } => is_on(Side::First, first) && is_on(Side::Second, second),
         }
     }
 
-    /// Adds the directions along which a mesh leads away from a contact, those of the first one
-    /// reversed, and tells whether something holds for all its triangles there.
-    fn visit_around(
-        &self,
-        side: Side,
-        contact: &Candidate,
-        fan: &mut Fan,
-        mut holds: impl FnMut([DVec3; 3]) -> bool,
-    ) -> bool {
-        let mut all = true;
-        let (mesh, offset, spot) = match side {
-            Side::First => (self.first, DVec3::ZERO, contact.spots[0]),
-            Side::Second => (self.second, self.offset, contact.spots[1]),
+    fn placed(&self, side: Side) -> (&Bvh, DVec3) {
+        match side {
+            Side::First => (self.first, DVec3::ZERO),
+            Side::Second => (self.second, self.offset),
+        }
+    }
+
+    /// Visits the triangles of a mesh at a contact on the border, where one of the spots is a vertex.
+    fn each_cone(&self, side: Side, spots: &[Spot; 2], time: f64, mut visit: impl FnMut(Cone)) {
+        let (mesh, offset) = self.placed(side);
+        let (spot, other, way) = match side {
+            Side::First => (spots[0], spots[1], time * self.motion),
+            Side::Second => (spots[1], spots[0], -time * self.motion),
         };
-        each_at(mesh, offset, spot, |corners, from| {
-            all = all && holds(corners);
-            away(corners, from).for_each(|(p, q)| {
-                fan.add(match side {
-                    Side::First => Difference(p, q),
-                    Side::Second => Difference(q, p),
+        match (spot, other) {
+            (Spot::Vertex(v, at), _) => {
+                each_near(mesh, offset, at, DVec3::ZERO, |names, corners| {
+                    let place = match names.iter().position(|&name| name == v) {
+                        Some(corner) => Some(At::Corner(corner)),
+                        None => self.place_at(at, corners),
+                    };
+                    if let Some(place) = place {
+                        let ways = corners.map(|corner| Difference(corner, at));
+                        visit(Cone::new(corners, ways, self.motion, place));
+                    }
                 });
-            });
-        });
-        all
+            }
+            (Spot::Edge(ends, edge), Spot::Vertex(_, at)) => {
+                let near = at + way;
+                each_near(mesh, offset, near, way, |names, corners| {
+                    let is_named =
+                        |i: usize| ends.contains(&names[i]) && ends.contains(&names[(i + 1) % 3]);
+                    let place = match (0..3).find(|&i| is_named(i)) {
+                        Some(side) => Some(At::Side(side)),
+                        None => self.place_beside(edge, at, corners),
+                    };
+                    if let Some(place) = place {
+                        let ways = place.ways(corners);
+                        visit(Cone::new(corners, ways, self.motion, place));
+                    }
+                });
+            }
+            (Spot::Edge(..) | Spot::Face, _) => {}
+        }
+    }
+
+    /// Where in a triangle of other vertices a vertex is.
+    fn place_at(&self, vertex: DVec3, corners: [DVec3; 3]) -> Option<At> {
+        let sides = line_sides(vertex, self.motion, corners);
+        let is_in = line_passes(sides) && segment_meets_triangle(vertex, vertex, corners);
+        is_in.then(|| At::line(sides))
+    }
+
+    /// Where in a triangle of other vertices the point is in which a line along the motion, through
+    /// `p`, meets an edge. `None` if it is not there, nor where the edge and one of the triangle's,
+    /// not on one line, cross there: the surface then goes through itself.
+    fn place_beside(&self, [a, b]: [DVec3; 2], p: DVec3, corners: [DVec3; 3]) -> Option<At> {
+        let sides = line_sides(p, self.motion, corners);
+        let [u, v, w] = corners;
+        let is_beside = |end: &DVec3| orient3d(u, v, w, *end) == 0.0;
+        if !(line_passes(sides) && [a, b].iter().all(is_beside)) {
+            return None;
+        }
+        let motion = Difference::from(self.motion);
+        if sign([Difference(v, u), Difference(w, u), motion]) != Ordering::Equal {
+            return Some(At::line(sides));
+        }
+        // Along the motion, it has the point on its border.
+        let along = Difference(b, a);
+        let axes = DVec3::AXES.map(Difference::from);
+        let axis = axes
+            .into_iter()
+            .find(|&axis| sign([along, motion, axis]) != Ordering::Equal)?;
+        (0..3)
+            .map(|i| (i, corners[i], corners[(i + 1) % 3]))
+            .find_map(|(i, from, to)| {
+                let is_on = |end: DVec3| {
+                    let off = |axis| sign([along, Difference(end, a), axis]);
+                    axes.into_iter().all(|axis| off(axis) == Ordering::Equal)
+                };
+                let [back, ahead] = [from, to].map(|end| sign([Difference(end, p), motion, axis]));
+                let is_between = back != ahead || back == Ordering::Equal;
+                (is_between && is_on(from) && is_on(to)).then_some(At::Side(i))
+            })
     }
 }
 
 /// Whether a triangle lies on one side of a plane of contact. Of one that lies in it, the winding
 /// tells on which side a solid is. The plane is laid through a point of the mesh.
 fn is_on(side: Ordering, plane: &Time, spot: Spot, corners: [DVec3; 3], is_solid: bool) -> bool {
-    let (Spot::Vertex(_, origin) | Spot::Edge(_, origin)) = spot else {
+    let (Spot::Vertex(_, origin) | Spot::Edge(_, [origin, _])) = spot else {
         return true;
     };
     let sides = corners.map(|p| sign([plane.u, plane.v, Difference(p, origin)]));
@@ -129,121 +246,42 @@ fn is_on(side: Ordering, plane: &Time, spot: Spot, corners: [DVec3; 3], is_solid
     !(is_solid && up == Some(side))
 }
 
-/// Visits the triangles at a vertex or an edge: their corners, and for each whether it is what
-/// touches.
-fn each_at(mesh: &Bvh, offset: DVec3, spot: Spot, mut visit: impl FnMut([DVec3; 3], [bool; 3])) {
+/// Visits the triangles at a vertex or an edge.
+fn each_at(mesh: &Bvh, offset: DVec3, spot: Spot, mut visit: impl FnMut([DVec3; 3])) {
     let (at, origin) = match spot {
         Spot::Vertex(v, origin) => ([v; 2], origin),
-        Spot::Edge(ends, origin) => (ends, origin),
+        Spot::Edge(ends, [origin, _]) => (ends, origin),
         Spot::Face => return,
     };
+    each_near(mesh, offset, origin, DVec3::ZERO, |names, corners| {
+        if at.iter().all(|v| names.contains(v)) {
+            visit(corners);
+        }
+    });
+}
+
+/// Visits the triangles at a point, and some others: their vertices and corners. The point has come
+/// `way`, and has been rounded then.
+fn each_near(
+    mesh: &Bvh,
+    offset: DVec3,
+    point: DVec3,
+    way: DVec3,
+    mut visit: impl FnMut([u32; 3], [DVec3; 3]),
+) {
     let topology = mesh.topology();
-    // Around where the origin was placed from.
-    let slack = DVec3::splat(4.0 * f64::EPSILON) * (origin.abs() + offset.abs());
-    let from = origin - offset;
+    // Around where the point was placed from.
+    let size = point.abs() + offset.abs() + way.abs();
+    let slack = DVec3::splat(8.0 * f64::EPSILON) * size;
+    let from = point - offset;
     let _ = each_in_box(
         mesh,
         from - slack,
         from + slack,
         |face, corners: [Vec3; 3]| {
-            let names = topology.triangles[face as usize];
-            if at.iter().all(|v| names.contains(v)) {
-                let corners = corners.map(|v| v.as_dvec3() + offset);
-                visit(corners, names.map(|v| at.contains(&v)));
-            }
+            let corners = corners.map(|v| v.as_dvec3() + offset);
+            visit(topology.triangles[face as usize], corners);
             ControlFlow::Continue(())
         },
     );
-}
-
-/// The sides of a triangle that lead away from those of its corners that touch, along an edge that
-/// touches both ways: from where, and to where.
-fn away(corners: [DVec3; 3], touches: [bool; 3]) -> impl Iterator<Item = (DVec3, DVec3)> {
-    let sides = [(0, 1), (1, 2), (2, 0), (1, 0), (2, 1), (0, 2)].into_iter();
-    sides
-        .filter(move |&(from, _)| touches[from])
-        .map(move |(from, to)| (corners[from], corners[to]))
-}
-
-/// Directions seen along the motion: the least sector that holds all.
-struct Fan {
-    motion: Difference,
-    sector: Sector,
-}
-
-#[derive(Clone, Copy)]
-enum Sector {
-    Nothing,
-    Ray(Difference),
-    /// Both ways.
-    Line(Difference),
-    /// Less than a half-plane, counter-clockwise from the one to the other.
-    Acute(Difference, Difference),
-    /// To the left of a direction.
-    Half(Difference),
-    All,
-}
-
-impl Fan {
-    fn new(motion: DVec3) -> Fan {
-        Fan {
-            motion: motion.into(),
-            sector: Sector::Nothing,
-        }
-    }
-
-    fn is_all(&self) -> bool {
-        matches!(self.sector, Sector::All)
-    }
-
-    fn add(&mut self, v: Difference) {
-        use Ordering::{Equal, Greater, Less};
-        let turn = |u: Difference| sign([u, v, self.motion]);
-        self.sector = match self.sector {
-            Sector::All => return,
-            Sector::Nothing => match self.along(v, v) {
-                Equal => return,
-                _ => Sector::Ray(v),
-            },
-            Sector::Ray(u) => match turn(u) {
-                Greater => Sector::Acute(u, v),
-                Less => Sector::Acute(v, u),
-                Equal if self.along(u, v) == Less => Sector::Line(u),
-                Equal => return,
-            },
-            Sector::Line(u) => match turn(u) {
-                Greater => Sector::Half(u),
-                Less => Sector::Half(Difference(u.1, u.0)),
-                Equal => return,
-            },
-            Sector::Acute(right, left) => match (turn(right), turn(left)) {
-                (Greater | Equal, Less) | (Greater | Equal, Equal) => return,
-                (Greater, Greater) => Sector::Acute(right, v),
-                (Less, Less) => Sector::Acute(v, left),
-                (Equal, Greater) => Sector::Half(right),
-                (Less, Equal) => Sector::Half(v),
-                (Less, Greater) => Sector::All,
-            },
-            Sector::Half(right) => match turn(right) {
-                Less => Sector::All,
-                _ => return,
-            },
-        };
-    }
-
-    /// Of two directions that are parallel, seen along the motion: whether they lead the same way, or
-    /// `Equal` if one of them leads nowhere.
-    fn along(&self, u: Difference, v: Difference) -> Ordering {
-        for axis in DVec3::AXES.map(Difference::from) {
-            let [u, v] = [u, v].map(|way| sign([way, axis, self.motion]));
-            if u != Ordering::Equal {
-                return match v {
-                    Ordering::Equal => v,
-                    _ if u == v => Ordering::Greater,
-                    _ => Ordering::Less,
-                };
-            }
-        }
-        Ordering::Equal
-    }
 }

@@ -33,12 +33,12 @@ pub(super) struct Candidate {
     pub(super) is_from_inside: bool,
 }
 
-/// What of a mesh touches, and where it has a vertex at the start.
+/// What of a mesh touches, and where its vertices are at the start.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Spot {
     Vertex(u32, DVec3),
-    /// Between its ends, the first of which is there.
-    Edge([u32; 2], DVec3),
+    /// Between its ends.
+    Edge([u32; 2], [DVec3; 2]),
     /// A face, within its border.
     Face,
 }

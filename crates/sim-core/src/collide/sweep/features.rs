@@ -301,9 +301,9 @@ impl Search<'_> {
         let on = |i: usize| sides[i] == Ordering::Equal;
         let spot = match [on(0), on(1), on(2)] {
             [false, false, false] => Spot::Face,
-            [true, false, false] => Spot::Edge(names.edge(0), a),
-            [false, true, false] => Spot::Edge(names.edge(1), b),
-            [false, false, true] => Spot::Edge(names.edge(2), c),
+            [true, false, false] => Spot::Edge(names.edge(0), [a, b]),
+            [false, true, false] => Spot::Edge(names.edge(1), [b, c]),
+            [false, false, true] => Spot::Edge(names.edge(2), [c, a]),
             [_, true, true] => Spot::Vertex(names.vertices[2], c),
             [true, false, true] => Spot::Vertex(names.vertices[0], a),
             [true, true, false] => Spot::Vertex(names.vertices[1], b),
@@ -390,7 +390,7 @@ impl Search<'_> {
             } else if at_from == Ordering::Equal {
                 Spot::Vertex(from.0, from.1)
             } else {
-                Spot::Edge([from.0, to.0], from.1)
+                Spot::Edge([from.0, to.0], [from.1, to.1])
             }
         };
         let spots = [

@@ -9,12 +9,14 @@ mod border;
 mod boxes;
 mod candidate;
 mod features;
+mod seen;
 
 use core::cmp::Ordering;
 use glam::DVec3;
 
 use super::{pairs::TILE, touch::Touch};
 use crate::bvh::{Bvh, LEAF, WIDTH};
+use border::Around;
 use boxes::Moving;
 use candidate::Candidate;
 pub(super) use candidate::opposing_cmp;
@@ -42,6 +44,9 @@ pub(super) struct Search<'a> {
     best: Option<Candidate>,
     /// When a vertex first slides into a triangle, rounded down.
     slide: Option<f64>,
+    around: Around,
+    /// Once that was needed.
+    meet_at_start: Option<bool>,
 }
 
 impl<'a> Search<'a> {
@@ -63,6 +68,8 @@ impl<'a> Search<'a> {
             horizon: 1.0,
             best: None,
             slide: None,
+            around: Around::default(),
+            meet_at_start: None,
         };
         if motion != DVec3::ZERO {
             search.visit(first.root(), second.root());

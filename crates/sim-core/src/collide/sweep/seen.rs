@@ -1,0 +1,337 @@
+//! Triangles about a point of contact, seen along the motion.
+
+use alloc::vec::Vec;
+use core::cmp::Ordering;
+use glam::DVec3;
+
+use crate::collide::triple::{Difference, sign};
+
+/// Where in a triangle a point is.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum At {
+    Corner(usize),
+    /// Between this corner and the next one.
+    Side(usize),
+    Inside,
+}
+
+impl At {
+    /// Where a line passes a triangle, given the sides on which it has the edges.
+    pub(super) fn line(sides: [Ordering; 3]) -> At {
+        let on = |i: usize| sides[i] == Ordering::Equal;
+        match [on(0), on(1), on(2)] {
+            [false, false, false] => At::Inside,
+            [true, false, false] => At::Side(0),
+            [false, true, false] => At::Side(1),
+            [false, false, true] => At::Side(2),
+            [_, true, true] => At::Corner(2),
+            [true, false, true] => At::Corner(0),
+            [true, true, false] => At::Corner(1),
+        }
+    }
+
+    /// Ways that span what the triangle is about the point, those to its corners where these count.
+    pub(super) fn ways(self, corners: [DVec3; 3]) -> [Difference; 3] {
+        let origin = match self {
+            At::Corner(i) | At::Side(i) => i,
+            At::Inside => 0,
+        };
+        let mut ways = corners.map(|corner| Difference(corner, corners[origin]));
+        if let At::Side(i) = self {
+            ways[i] = Difference(corners[i], corners[(i + 1) % 3]);
+        }
+        ways
+    }
+}
+
+/// What a triangle is about a point of it: all sums of multiples, none negative, of some ways.
+pub(super) struct Cone {
+    ways: [Difference; 3],
+    seen: Seen,
+}
+
+/// The same seen along the motion. Turning left is turning as [`turn`] has it.
+enum Seen {
+    All,
+    /// From one ray to the left to another one, a half-plane at most.
+    Sector(Difference, Difference),
+    /// The triangle is along the motion, and the rays are those of the ways that are not.
+    Rays,
+}
+
+fn turn(u: Difference, v: Difference, motion: Difference) -> Ordering {
+    // Triangles side by side have an edge in common.
+    if (u.0, u.1) == (v.0, v.1) {
+        return Ordering::Equal;
+    }
+    sign([u, v, motion])
+}
+
+impl Cone {
+    /// Of a triangle, by its ways, which lead to the corners where these are not the point.
+    pub(super) fn new([a, b, c]: [DVec3; 3], ways: [Difference; 3], motion: DVec3, at: At) -> Cone {
+        let sector = |at: At| match at {
+            At::Corner(i) => Some((ways[(i + 1) % 3], ways[(i + 2) % 3])),
+            At::Side(i) => Some((ways[(i + 1) % 3], ways[i])),
+            At::Inside => None,
+        };
+        let order = turn(Difference(b, a), Difference(c, a), motion.into());
+        let seen = match order {
+            Ordering::Equal => Seen::Rays,
+            _ => match (sector(at), order) {
+                (None, _) => Seen::All,
+                (Some((right, left)), Ordering::Greater) => Seen::Sector(right, left),
+                (Some((left, right)), _) => Seen::Sector(right, left),
+            },
+        };
+        Cone { ways, seen }
+    }
+}
+
+/// Whether two surfaces that touch in a point, given by their triangles there, slip past each other
+/// along the motion after a small move of one of them.
+///
+/// About the point a surface is a cone, and seen along the motion a set of rays that start there. One
+/// of the sets, moved by however little, misses the other one if and only if it lies in a gap of that,
+/// a sector without rays but for those at its ends. A set that misses the other one hangs together and
+/// so is in one sector between rays of that, as are then all its directions, the ends included. The
+/// other way round, either the gap or what is left of the plane is convex, and a move into the gap,
+/// or of the other set out of it, along its bisector will do. Only where the one set is a single ray
+/// does its gap come round to both sides of it, and the other set may have the ray within.
+///
+/// Surfaces that are apart before they touch and then have an edge of one at once pass through the
+/// inside of a triangle of the other one do not slip past. Where the edge passes through is seen on a
+/// ray of both surfaces, or in the point. A triangle that is seen as a sector has the ray within, and
+/// so no gap there. One along the motion is seen as rays, and an edge on these is in its plane, so the
+/// edge passes through in the point, with rays to both sides, and between them in the triangle is the
+/// way along the motion, with rays of it to both sides as well.
+pub(super) fn slips_past(first: &[Cone], second: &[Cone], motion: DVec3) -> bool {
+    let motion = Difference::from(motion);
+    // Most that do not have a ray of a triangle inside another one.
+    if has_ray_of(first, second, motion) || has_ray_of(second, first, motion) {
+        return false;
+    }
+    let Some(circle) = Circle::new([first, second], motion) else {
+        return false;
+    };
+    let is_of = |of: usize, place: usize| circle.covered[place % circle.len()][of];
+    let places = || 0..circle.len();
+    for (one, other) in [(0, 1), (1, 0)] {
+        let is_within = |i: usize| {
+            [circle.len() - 1, 0, 1]
+                .iter()
+                .all(|on| is_of(other, i + on))
+        };
+        if places().all(|i| is_of(one, i)) || places().any(|i| is_of(one, i) && is_within(i)) {
+            return false;
+        }
+    }
+    let mut ends = places().filter(|&i| is_of(0, i)).peekable();
+    let whole = places().filter(|&i| is_of(1, i)).count();
+    ends.peek().is_none()
+        || ends.any(|start| {
+            let gap = (1..circle.len())
+                .take_while(|on| !is_of(0, start + on))
+                .count();
+            let last = (gap + 1).min(circle.len() - 1);
+            (0..=last).filter(|on| is_of(1, start + on)).count() == whole
+        })
+}
+
+/// Whether a triangle of one surface has, inside, a ray of one of the other surface.
+fn has_ray_of(cones: &[Cone], others: &[Cone], motion: Difference) -> bool {
+    cones.iter().any(|cone| match cone.seen {
+        Seen::All => true,
+        Seen::Sector(right, left) => others.iter().flat_map(|other| other.ways).any(|way| {
+            turn(right, way, motion) == Ordering::Greater
+                && turn(way, left, motion) == Ordering::Greater
+        }),
+        Seen::Rays => false,
+    })
+}
+
+/// The rays from a point, by all that are ends of a sector of either surface and by what is between
+/// them: at even places those, at odd places what is to their left up to the next one.
+struct Circle {
+    /// Whether the first and the second surface are there.
+    covered: Vec<[bool; 2]>,
+}
+
+impl Circle {
+    fn len(&self) -> usize {
+        self.covered.len()
+    }
+
+    /// `None` if one of the surfaces is everywhere.
+    fn new(surfaces: [&[Cone]; 2], motion: Difference) -> Option<Circle> {
+        let most = 3 * (surfaces[0].len() + surfaces[1].len());
+        let mut sectors: Vec<(usize, [usize; 2])> = Vec::with_capacity(most);
+        let mut ends: Vec<(u8, Difference, usize)> = Vec::with_capacity(2 * most);
+        let mut add = |of: usize, right: Difference, left: Difference| {
+            // By quarters that begin with a ray, so that those between are less than half a turn.
+            let start = ends.first().map_or(right, |&(_, start, _)| start);
+            let quarter = |way: Difference| match turn(start, way, motion) {
+                Ordering::Equal if along(start, way, motion) == Ordering::Less => 2,
+                Ordering::Equal => 0,
+                Ordering::Greater => 1,
+                Ordering::Less => 3,
+            };
+            ends.push((quarter(right), right, 2 * sectors.len()));
+            ends.push((quarter(left), left, 2 * sectors.len() + 1));
+            sectors.push((of, [0; 2]));
+        };
+        for (of, cones) in surfaces.into_iter().enumerate() {
+            for cone in cones {
+                match cone.seen {
+                    Seen::All => return None,
+                    Seen::Sector(right, left) => add(of, right, left),
+                    Seen::Rays => {
+                        let leads = |way: &Difference| along(*way, *way, motion) != Ordering::Equal;
+                        let rays = cone.ways.into_iter().filter(leads);
+                        rays.for_each(|way| add(of, way, way));
+                    }
+                }
+            }
+        }
+        let order = |x: &(u8, Difference, usize), y: &(u8, Difference, usize)| {
+            x.0.cmp(&y.0).then_with(|| match x.0 {
+                0 | 2 => Ordering::Equal,
+                _ => turn(y.1, x.1, motion),
+            })
+        };
+        ends.sort_unstable_by(order);
+        let mut count = 0;
+        for run in ends.chunk_by(|x, y| order(x, y) == Ordering::Equal) {
+            for &(_, _, end) in run {
+                sectors[end / 2].1[end % 2] = 2 * count;
+            }
+            count += 1;
+        }
+        let mut covered = alloc::vec![[false; 2]; 2 * count];
+        for (of, [from, to]) in sectors {
+            let mut place = from;
+            covered[place][of] = true;
+            while place != to {
+                place = (place + 1) % (2 * count);
+                covered[place][of] = true;
+            }
+        }
+        Some(Circle { covered })
+    }
+}
+
+/// Whether surfaces that touch, given by their triangles there, share a point as soon as the second
+/// one goes some way; certainly so if they do for all ways near it.
+pub(super) fn meet_after(first: &[Cone], second: &[Cone], way: DVec3, certainly: bool) -> bool {
+    first.iter().any(|one| {
+        second.iter().any(|other| {
+            // The way is from a point of the second one to a point of the first one.
+            let [a, b, c] = one.ways;
+            let [d, e, f] = other.ways.map(|Difference(to, from)| Difference(from, to));
+            let ways = [a, b, c, d, e, f];
+            let is_amid = || {
+                let mut fan = Fan::new(way);
+                ways.iter().for_each(|&way| fan.add(way));
+                fan.is_all()
+            };
+            (!certainly || is_amid()) && is_sum(&ways, way.into())
+        })
+    })
+}
+
+/// Whether a way is a sum of multiples, none negative, of three of some others that span the space.
+fn is_sum(ways: &[Difference; 6], way: Difference) -> bool {
+    let spans = |i: usize, j: usize, k: usize| {
+        let [u, v, w] = [ways[i], ways[j], ways[k]];
+        let whole = sign([u, v, w]);
+        let is_positive = |rows| [whole, Ordering::Equal].contains(&sign(rows));
+        whole != Ordering::Equal
+            && is_positive([way, v, w])
+            && is_positive([u, way, w])
+            && is_positive([u, v, way])
+    };
+    (0..6).any(|i| (i + 1..6).any(|j| (j + 1..6).any(|k| spans(i, j, k))))
+}
+
+/// Directions seen along the motion: the least sector that holds all.
+struct Fan {
+    motion: Difference,
+    sector: Sector,
+}
+
+#[derive(Clone, Copy)]
+enum Sector {
+    Nothing,
+    Ray(Difference),
+    /// Both ways.
+    Line(Difference),
+    /// Less than a half-plane, counter-clockwise from the one to the other.
+    Acute(Difference, Difference),
+    /// To the left of a direction.
+    Half(Difference),
+    All,
+}
+
+impl Fan {
+    fn new(motion: DVec3) -> Fan {
+        Fan {
+            motion: motion.into(),
+            sector: Sector::Nothing,
+        }
+    }
+
+    fn is_all(&self) -> bool {
+        matches!(self.sector, Sector::All)
+    }
+
+    fn add(&mut self, v: Difference) {
+        use Ordering::{Equal, Greater, Less};
+        let turn = |u: Difference| sign([u, v, self.motion]);
+        self.sector = match self.sector {
+            Sector::All => return,
+            Sector::Nothing => match along(v, v, self.motion) {
+                Equal => return,
+                _ => Sector::Ray(v),
+            },
+            Sector::Ray(u) => match turn(u) {
+                Greater => Sector::Acute(u, v),
+                Less => Sector::Acute(v, u),
+                Equal if along(u, v, self.motion) == Less => Sector::Line(u),
+                Equal => return,
+            },
+            Sector::Line(u) => match turn(u) {
+                Greater => Sector::Half(u),
+                Less => Sector::Half(Difference(u.1, u.0)),
+                Equal => return,
+            },
+            Sector::Acute(right, left) => match (turn(right), turn(left)) {
+                (Greater | Equal, Less) | (Greater | Equal, Equal) => return,
+                (Greater, Greater) => Sector::Acute(right, v),
+                (Less, Less) => Sector::Acute(v, left),
+                (Equal, Greater) => Sector::Half(right),
+                (Less, Equal) => Sector::Half(v),
+                (Less, Greater) => Sector::All,
+            },
+            Sector::Half(right) => match turn(right) {
+                Less => Sector::All,
+                _ => return,
+            },
+        };
+    }
+}
+
+/// Of two directions that are parallel, seen along the motion: whether they lead the same way, or
+/// `Equal` if one of them leads nowhere.
+fn along(u: Difference, v: Difference, motion: Difference) -> Ordering {
+    for axis in DVec3::AXES.map(Difference::from) {
+        let [u, v] = [u, v].map(|way| sign([way, axis, motion]));
+        if u != Ordering::Equal {
+            return match v {
+                Ordering::Equal => v,
+                _ if u == v => Ordering::Greater,
+                _ => Ordering::Less,
+            };
+        }
+    }
+    Ordering::Equal
+}
