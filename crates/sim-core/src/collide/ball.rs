@@ -48,6 +48,8 @@ pub fn ball_touch(mesh: &Bvh, centre: DVec3, radius: f64, motion: DVec3) -> Opti
         motion,
     };
     let mut best: Option<BallTouch> = None;
+    // Near the border of a face an edge is as near as the face, but for rounding.
+    let mut best_inside: Option<BallTouch> = None;
     // The nearest on top.
     let mut stack = [(0.0, mesh.root()); 3 * MAX_DEPTH + 1];
     let mut top = 1;
@@ -75,14 +77,25 @@ pub fn ball_touch(mesh: &Bvh, centre: DVec3, radius: f64, motion: DVec3) -> Opti
             let triangles = mesh.triangles(node);
             let corners = triangles.corners(lane).map(|v| v.as_dvec3());
             let horizon = best.map_or(1.0, |best| best.time);
-            let touch = ball.touch(triangles.face[lane], corners, horizon);
-            best = match (best, touch) {
-                (Some(old), Some(new)) if !ball.is_before(&new, &old) => Some(old),
-                (old, new) => new.or(old),
+            let Some(touch) = ball.touch(triangles.face[lane], corners, horizon) else {
+                continue;
             };
+            let first = |old: Option<BallTouch>| match old {
+                Some(old) if !ball.is_before(&touch, &old) => Some(old),
+                _ => Some(touch),
+            };
+            if is_inside(ball.centre + touch.time * motion, corners) {
+                best_inside = first(best_inside);
+            }
+            best = first(best);
         }
     }
-    best
+    let (first, inside) = (best?, best_inside);
+    let is_tie = |inside: &BallTouch| {
+        let speed = -inside.normal.dot(motion);
+        (inside.time - first.time) * speed <= 2.0 * ball.error(inside.point.abs())
+    };
+    inside.filter(is_tie).or(best)
 }
 
 /// Whether a closed ball and the surface of a mesh share a point, in the mesh's frame, m: whether
@@ -157,9 +170,16 @@ impl Ball {
             let distance = apart.length();
             let gap = distance - self.radius;
             // Once there, the direction of a point is rounding and nothing else.
+            // Over a face its normal, which a small distance does not spoil; at an edge, once there, the
+            // last one, as the direction of a point is rounding and nothing else.
+            let across = (b - a).cross(c - a);
+            let side = apart.dot(across);
             let normal = match last {
                 Some(normal) if distance <= error => normal,
-                None if distance <= error => (b - a).cross(c - a).try_normalize()?,
+                None if distance <= error => across.try_normalize()?,
+                _ if is_inside(centre, corners) && side != 0.0 => {
+                    libm::copysign(1.0, side) * across.try_normalize()?
+                }
                 _ => apart / distance,
             };
             let speed = -normal.dot(self.motion);
@@ -221,6 +241,13 @@ fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
         if key(y) < key(x) { y } else { x }
     };
     nearer(nearer(x, y), z)
+}
+
+/// Whether the point of a triangle that is nearest to `p` is none of its edges.
+fn is_inside(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+    let normal = (b - a).cross(c - a);
+    let area = |x: DVec3, y: DVec3| normal.dot((x - p).cross(y - p));
+    normal != DVec3::ZERO && area(b, c) > 0.0 && area(c, a) > 0.0 && area(a, b) > 0.0
 }
 
 /// From the end that is nearer, so that it does not matter which one is the first.

@@ -41,6 +41,8 @@ pub(crate) struct Contact {
     pub(crate) normal: DVec3,
     /// What touches, where both are meshes.
     pub(crate) feature: Option<Feature>,
+    /// The triangle that a sphere touches.
+    pub(crate) face: Option<u32>,
 }
 
 impl From<Touch> for Contact {
@@ -50,6 +52,7 @@ impl From<Touch> for Contact {
             point: touch.point,
             normal: touch.normal,
             feature: Some(touch.feature),
+            face: None,
         }
     }
 }
@@ -61,6 +64,7 @@ impl From<BallTouch> for Contact {
             point: touch.point,
             normal: touch.normal,
             feature: None,
+            face: Some(touch.face),
         }
     }
 }
@@ -183,6 +187,7 @@ fn plane(normal: DVec3, other: Form<'_>, offset: DVec3, motion: DVec3) -> Option
         point: at - normal.dot(at) * normal,
         normal,
         feature: None,
+        face: None,
     })
 }
 
@@ -212,6 +217,7 @@ fn spheres(first: f64, second: f64, offset: DVec3, motion: DVec3) -> Option<Cont
         point: first * normal,
         normal,
         feature: None,
+        face: None,
     })
 }
 

@@ -145,6 +145,7 @@ fn above_plane(normal: DVec3, other: Form<'_>, way: &Parabola, length: f64) -> O
         point: at - normal.dot(at) * normal,
         normal,
         feature: None,
+        face: None,
     })
 }
 
@@ -202,6 +203,7 @@ fn spheres(first: f64, second: f64, way: &Parabola, length: f64) -> Option<Conta
         point: first * normal,
         normal,
         feature: None,
+        face: None,
     })
 }
 

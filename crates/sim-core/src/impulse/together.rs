@@ -72,17 +72,16 @@ pub fn reflect(
             break;
         }
         if round + 1 == ROUNDS {
-            for (impulse, given) in
-                impulse
-                    .iter_mut()
-                    .zip(project(contacts, inverse_mass, velocity))
-            {
+            let missing = missing_speeds(contacts, velocity);
+            let given = project(contacts, inverse_mass, velocity, &missing);
+            for (impulse, given) in impulse.iter_mut().zip(given) {
                 *impulse += given;
             }
             break;
         }
         let part: Vec<Joined> = closing.iter().map(|&k| contacts[k]).collect();
-        let mut given = multipliers(&part, inverse_mass, velocity);
+        let missing = missing_speeds(&part, velocity);
+        let mut given = multipliers(&part, inverse_mass, &missing);
         // Of an exact projection the contacts give up all that they give; the ratio makes up for
         // rounding, so that energy is kept where the equations are solved badly.
         let mut change = vec![DVec3::ZERO; velocity.len()];
@@ -105,12 +104,22 @@ pub fn reflect(
     impulse
 }
 
-/// The nearest velocities, or accelerations, with which no contact closes, and the impulse (or
-/// force) of each contact.
-pub fn project(contacts: &[Joined], inverse_mass: &[f64], velocity: &mut [DVec3]) -> Vec<f64> {
-    let given = multipliers(contacts, inverse_mass, velocity);
+/// The nearest velocities, or accelerations, with which contacts open by at least as much more as is
+/// missing (m/s, or m/s²), and the impulse (or force) of each contact.
+pub fn project(
+    contacts: &[Joined],
+    inverse_mass: &[f64],
+    velocity: &mut [DVec3],
+    missing: &[f64],
+) -> Vec<f64> {
+    let given = multipliers(contacts, inverse_mass, missing);
     push(contacts, inverse_mass, velocity, &given);
     given
+}
+
+/// What is missing where contacts may not close.
+fn missing_speeds(contacts: &[Joined], velocity: &[DVec3]) -> Vec<f64> {
+    contacts.iter().map(|c| -c.opening(velocity)).collect()
 }
 
 /// Adds the impulses of contacts to the velocities.
@@ -129,17 +138,16 @@ fn push(contacts: &[Joined], inverse_mass: &[f64], velocity: &mut [DVec3], impul
 }
 
 /// The impulses of a projection.
-fn multipliers(contacts: &[Joined], inverse_mass: &[f64], velocity: &[DVec3]) -> Vec<f64> {
-    let wanted: Vec<f64> = contacts.iter().map(|c| -c.opening(velocity)).collect();
+fn multipliers(contacts: &[Joined], inverse_mass: &[f64], wanted: &[f64]) -> Vec<f64> {
     let own = |k: usize| contacts[k].shared(&contacts[k], inverse_mass);
     match contacts.len() {
         0 => Vec::new(),
         1 => vec![wanted[0].max(0.0) / own(0)],
         2 => {
             let shared = contacts[0].shared(&contacts[1], inverse_mass);
-            two(&wanted, [own(0), own(1)], shared)
+            two(wanted, [own(0), own(1)], shared)
         }
-        _ => Matrix::of(contacts, inverse_mass).multipliers(&wanted),
+        _ => Matrix::of(contacts, inverse_mass).multipliers(wanted),
     }
 }
 
@@ -223,7 +231,8 @@ mod tests {
             let count = 1 + seed as usize % 9;
             let (contacts, inverse, start) = scene(seed, 5, count);
             let mut velocity = start.clone();
-            let given = project(&contacts, &inverse, &mut velocity);
+            let missing = missing_speeds(&contacts, &velocity);
+            let given = project(&contacts, &inverse, &mut velocity, &missing);
             for (contact, &given) in contacts.iter().zip(&given) {
                 let opening = contact.opening(&velocity);
                 assert!(given >= 0.0 && opening > -1e-12, "{seed}: {opening:e}");
@@ -247,7 +256,8 @@ mod tests {
             }
             let rounding = if is_uneven { 1e-9 } else { 1e-12 };
             let mut velocity = start.clone();
-            let given = project(&contacts, &inverse, &mut velocity);
+            let missing = missing_speeds(&contacts, &velocity);
+            let given = project(&contacts, &inverse, &mut velocity, &missing);
             let most = given.iter().fold(1.0_f64, |most, &given| most.max(given));
             for (contact, &given) in contacts.iter().zip(&given) {
                 let opening = contact.opening(&velocity);

@@ -41,6 +41,9 @@ pub struct Impact {
 impl World {
     /// Lets bodies that meet bounce, and puts them back to where the step began.
     pub(super) fn collide(&mut self) {
+        // What this mode does to bodies in contact it does where a step ends.
+        self.contacts.clear();
+        self.continuous.placed = true;
         if self.any_pair(World::collides) {
             self.bounce_all();
         }
@@ -147,6 +150,7 @@ impl World {
                 point: offset + motion,
                 normal: -motion.try_normalize()?,
                 feature: None,
+                face: None,
             })
         };
         if let Some(contact) = contact.or_else(turned_back) {
@@ -226,6 +230,21 @@ impl World {
         libm::sqrt(first * second)
     }
 
+    /// Forgets pairs that have parted since they began in overlap.
+    pub(super) fn forget_parted_overlaps(&mut self) {
+        if self.overlapping.is_empty() {
+            return;
+        }
+        let mut pairs = core::mem::take(&mut self.overlapping);
+        pairs.retain(|&(i, j)| {
+            let offset = self.current.position[j] - self.current.position[i];
+            self.meet_at(i, j, offset)
+        });
+        self.contacts
+            .retain(|constraint| !constraint.is_overlap || pairs.contains(&constraint.bodies));
+        self.overlapping = pairs;
+    }
+
     /// Forgets pairs that have parted since they began in overlap, and keeps the others from
     /// moving closer: an elastic impulse along the line of their centres, nothing put back.
     pub(super) fn part_overlapping(&mut self) {
@@ -241,6 +260,7 @@ impl World {
                 point: 0.5 * (from + to),
                 normal: self.apart_along(i, j),
                 feature: None,
+                face: None,
             };
             self.exchange_now((i, j), &contact, self.time() + self.settings.dt);
         }

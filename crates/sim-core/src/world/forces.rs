@@ -92,6 +92,7 @@ impl World {
 
     fn forces_changed(&mut self) {
         self.plan = None;
+        self.continuous.wake_all();
         self.speed_scale = None;
         let weights = self.forces.iter().filter_map(|force| match force {
             Force::Gravity { acceleration } => Some(*acceleration),

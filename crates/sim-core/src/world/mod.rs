@@ -23,7 +23,7 @@ use crate::{
     integrate::{Method, Scratch},
 };
 pub use collision::Impact;
-use continuous::Continuous;
+use continuous::{ContactSet, Continuous};
 pub use error::{StepError, WorldError};
 use marks::Marks;
 use plan::Plan;
@@ -85,6 +85,8 @@ pub struct World {
     last_impact: Option<Impact>,
     /// Where impacts are listed, while someone asks.
     report: Option<Vec<Impact>>,
+    /// Who is in touch, and along which normals.
+    contacts: ContactSet,
     continuous: Continuous,
     /// Time and step at which `dt` was last set: time since is steps times `dt`, without drift.
     since: (f64, u64),
@@ -171,6 +173,7 @@ impl World {
             impacts: 0,
             last_impact: None,
             report: None,
+            contacts: ContactSet::default(),
             continuous: Continuous::default(),
             since: (0.0, 0),
         })
@@ -339,7 +342,7 @@ impl World {
         self.current.position[body] = position;
         self.previous.position[body] = position;
         self.speed_scale = None;
-        self.overlapping.retain(|&(i, j)| i != body && j != body);
+        self.forget_contacts_of(body);
         self.note_overlaps_of(body);
         Ok(())
     }
@@ -350,6 +353,7 @@ impl World {
         error::check_vector(body, "velocity", velocity)?;
         self.current.velocity[body] = velocity;
         self.speed_scale = None;
+        self.continuous.wake_all();
         Ok(())
     }
 
@@ -359,6 +363,7 @@ impl World {
         error::check_vector(body, "force", force)?;
         self.force[body] = force;
         self.acceleration[body] = self.constant_acceleration(body);
+        self.continuous.wake_all();
         Ok(())
     }
 
@@ -366,9 +371,9 @@ impl World {
     pub fn set_mass(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_mass(body, mass)?;
+        self.forget_contacts_of(body);
         self.mass[body] = mass;
         // Immovable bodies may be in each other.
-        self.overlapping.retain(|&(i, j)| i != body && j != body);
         self.note_overlaps_of(body);
         self.acceleration[body] = self.constant_acceleration(body);
         self.speed_scale = None;
@@ -380,6 +385,7 @@ impl World {
         self.check_body(body)?;
         error::check_restitution(body, restitution)?;
         self.set_restitution_column(body, restitution);
+        self.continuous.wake_all();
         Ok(())
     }
 
@@ -405,7 +411,16 @@ impl World {
             self.since = (self.time(), self.steps);
         }
         self.settings = settings;
+        self.continuous.wake_all();
         Ok(())
+    }
+
+    /// Forgets whom a body touches or overlaps.
+    fn forget_contacts_of(&mut self, body: usize) {
+        self.overlapping.retain(|&(i, j)| i != body && j != body);
+        self.contacts
+            .retain(|contact| contact.bodies.0 != body && contact.bodies.1 != body);
+        self.continuous.wake_all();
     }
 
     fn check_body(&self, body: usize) -> Result<(), WorldError> {

@@ -124,18 +124,39 @@ impl View {
         let heights = [normal.dot(p - a), normal.dot(q - a), normal.dot(r - a)];
         let fall = normal.dot(self.motion);
         let [h, i, j] = heights;
-        let stays = |lowest: f64, fall: f64| {
-            // Doubled for the roundings here.
-            let (lowest, fall) = (
-                lowest - 2.0 * self.height_error,
-                fall - 2.0 * self.fall_error,
-            );
-            lowest > 0.0 && lowest + until * fall > 0.0
-        };
-        if stays(h.min(i).min(j), way * fall) || stays(-h.max(i).max(j), -way * fall) {
+        if self.stays(h.min(i).min(j), way * fall, until)
+            || self.stays(-h.max(i).max(j), -way * fall, until)
+        {
             return None;
         }
         Some(Heights { heights, fall })
+    }
+
+    /// Whether what is so high above a plane at least, and falls, stays above it until a time.
+    #[inline(always)]
+    fn stays(&self, lowest: f64, fall: f64, until: f64) -> bool {
+        // Doubled for the roundings here.
+        let (lowest, fall) = (
+            lowest - 2.0 * self.height_error,
+            fall - 2.0 * self.fall_error,
+        );
+        lowest > 0.0 && lowest + until * fall > 0.0
+    }
+
+    /// Whether a box, given by its centre and half extents, stays on one side of a triangle's plane until
+    /// a time; `way` is 1 if the box moves, -1 if the triangle does.
+    #[inline(always)]
+    pub(super) fn parts(
+        &self,
+        [a, b, c]: [DVec3; 3],
+        (centre, half): (DVec3, DVec3),
+        way: f64,
+        until: f64,
+    ) -> bool {
+        let normal = (b - a).cross(c - a);
+        let (height, reach) = (normal.dot(centre - a), normal.abs().dot(half));
+        let fall = way * normal.dot(self.motion);
+        self.stays(height - reach, fall, until) || self.stays(-height - reach, -fall, until)
     }
 }
 

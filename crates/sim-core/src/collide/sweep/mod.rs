@@ -15,7 +15,7 @@ use core::cmp::Ordering;
 use glam::DVec3;
 
 use super::{pairs::TILE, touch::Touch};
-use crate::bvh::{Bvh, LEAF, WIDTH};
+use crate::bvh::{Bvh, LEAF, Node, WIDTH};
 use border::Around;
 use boxes::Moving;
 use candidate::Candidate;
@@ -102,7 +102,10 @@ impl<'a> Search<'a> {
     /// stays for the node's children, once for all its triangles.
     fn visit(&mut self, a: u32, b: u32) {
         let (node, other) = (self.first.node(a), self.second.node(b));
-        let (pairs, enter) = self.boxes.meet(&node.boxes, &other.boxes, self.horizon);
+        let (mut pairs, enter) = self.boxes.meet(&node.boxes, &other.boxes, self.horizon);
+        if (a ^ b) & LEAF != 0 {
+            pairs = self.not_parted(pairs, (a, node), other);
+        }
         if pairs == 0 {
             return;
         }
@@ -125,6 +128,39 @@ impl<'a> Search<'a> {
                 self.visit(node.child[i], other.child[j]);
             }
         }
+    }
+
+    /// Of pairs of a leaf and a node, those whose box does not stay on one side of the plane of the
+    /// triangle: the box of a large triangle says little of where it is.
+    fn not_parted(&self, pairs: u32, (a, first): (u32, &Node), second: &Node) -> u32 {
+        let (mut left, mut kept) = (pairs, 0);
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let (i, j) = (lane / WIDTH, lane % WIDTH);
+            let is_first_leaf = a & LEAF != 0;
+            let (mesh, leaf, node, of_leaf, of_node, way) = match is_first_leaf {
+                true => (self.first, first, second, i, j, 1.0),
+                false => (self.second, second, first, j, i, -1.0),
+            };
+            let (to_leaf, to_box) = match is_first_leaf {
+                true => (DVec3::ZERO, self.offset),
+                false => (self.offset, DVec3::ZERO),
+            };
+            let corners = mesh.triangles(leaf).corners(of_leaf);
+            let corners = corners.map(|corner| corner.as_dvec3() + to_leaf);
+            let of_lane = |x: &[[f32; WIDTH]; 3]| {
+                DVec3::from_array([0, 1, 2].map(|axis| f64::from(x[axis][of_node])))
+            };
+            let placed = (
+                of_lane(&node.boxes.centre) + to_box,
+                of_lane(&node.boxes.half),
+            );
+            if !self.view.parts(corners, placed, way, self.horizon) {
+                kept |= 1 << lane;
+            }
+        }
+        kept
     }
 
     fn slide(&mut self, time: Option<f64>) {

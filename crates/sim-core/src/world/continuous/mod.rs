@@ -1,24 +1,34 @@
-//! Impacts at the time at which they happen.
+//! Impacts at the time at which they happen, and contacts that last.
 //!
-//! Each body has a *way* through the step ([`way`]). For each pair whose swept boxes meet, the next
-//! impact on their ways is sought ([`seek`]) and waits in a queue. The earliest one is answered
-//! ([`respond`]): the bodies' ways end there, an impulse is exchanged, and new ways start, with new
-//! impacts to be sought. What happens at the same instant is answered together. At the end of the
-//! step an exact test makes sure that no two bodies meet, and moves apart by a rounding those that
-//! do ([`part`]).
+//! A step goes through these phases, a file each:
 //!
-//! A step costs a box test for each pair that comes near, a search for each whose swept boxes
-//! meet, and two searches or so for each impact. Nothing but the motion goes from step to step,
-//! beside an order of boxes that saves time.
+//! 1. [`trajectory`]: each body has a trajectory through the step, as its method makes it.
+//! 2. [`initial_contacts`]: of bodies that have just been placed it is found out who touches.
+//! 3. [`contact_motion`]: the contacts that the last step has left are measured;
+//!    [`constraint_solve`]: the bodies of each island get the velocities and accelerations with which
+//!    none of its contacts closes.
+//! 4. [`impact_search`]: for each pair whose swept boxes meet, the next impact is found and waits in a
+//!    queue, and so does the end of each contact that is left behind.
+//! 5. [`resolve`]: the earliest event is resolved, with all of its instant: impulses are exchanged, or a
+//!    contact begins or ends and its island is solved; new trajectories start, and their events
+//!    are found.
+//! 6. [`position_correction`]: an exact test makes sure that no two bodies meet.
+//!
+//! A step costs a box test for each pair that comes near, a search for each whose swept boxes meet, and
+//! two searches or so for each event.
 
-mod hold;
-mod part;
-mod respond;
-mod seek;
-mod squeeze;
+mod constraint_solve;
+mod contact_motion;
+mod contact_set;
+mod crush;
+mod impact_search;
+mod initial_contacts;
+mod position_correction;
+mod resolve;
+mod sleep;
 #[cfg(test)]
 mod tests;
-mod way;
+mod trajectory;
 
 use alloc::{collections::BinaryHeap, vec::Vec};
 use core::{cmp::Ordering, mem};
@@ -29,47 +39,54 @@ use crate::{
     Extent, Shape,
     collide::{Broad, Contact, Front, Swept},
 };
-use respond::{Answer, Rest};
-use squeeze::Squeeze;
-use way::Probe;
+use constraint_solve::Visited;
+pub(super) use contact_set::ContactSet;
+use crush::CrushDetector;
+use trajectory::Probe;
 
 /// What a step with continuous collision needs beside the state; empty while there is none.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Continuous {
-    /// Motion of each body where its way starts, and when that is, s from the step's start.
+    /// Motion of each body where its trajectory starts, and when that is, s from the step's start.
     start: State,
     since: Vec<f64>,
-    /// How often a body's way has changed in this step; an impact of an older way is void.
+    /// How often a body's trajectory has changed in this step; an event of an older one is void.
     version: Vec<u32>,
-    /// What forces do to each body all along its way, m/s²: constant ones, or under a method of
+    /// What forces do to each body all along its trajectory, m/s²: constant ones, or under a method of
     /// first order all of them.
-    given: Vec<DVec3>,
-    /// The same together with what resting contacts do.
+    applied_acceleration: Vec<DVec3>,
+    /// The same together with what contacts do.
     acceleration: Vec<DVec3>,
-    /// How long before that of its way a body's velocity is the one that the method keeps, s.
-    lag: f64,
-    /// How often each body has come to rest in this step, once one has; one that has too often stops
-    /// for the rest of it.
+    /// How long before that of its trajectory a body's velocity is the one that the method keeps, s.
+    velocity_stagger: f64,
+    /// How often each body has come to rest in this step, once one has.
     rests: Vec<u32>,
     /// What impacts each body has had in this step, once one has, where some give back a part only.
     bounces: Vec<Bounces>,
-    /// Contacts whose bodies stay together for the rest of the step.
-    resting: Vec<Rest>,
+    /// Bodies that are at rest, to which nothing happens until something comes.
+    asleep: Vec<bool>,
     events: BinaryHeap<Event>,
+    /// Events resolved in this step.
+    resolved: u64,
     /// Pairs that have come near in this step.
-    near: Vec<(usize, usize)>,
+    candidate_pairs: Vec<(usize, usize)>,
     broad: Broad,
     probe: Probe,
-    renewed_motion: Vec<(DVec3, DVec3)>,
-    /// Bodies whose ways are new, and bodies that may come near one of them.
-    renewed: Vec<usize>,
+    visited: Visited,
+    restarted_motion: Vec<(DVec3, DVec3)>,
+    /// Bodies whose trajectories are new, and bodies that may come near one of them.
+    restarted: Vec<usize>,
     partners: Vec<usize>,
-    /// What happens at one instant.
+    crush: CrushDetector,
+    /// What happens at one instant, and what is found after it.
     group: Vec<Event>,
-    /// Whether every way is a parabola.
+    found: Vec<Event>,
+    /// Whether every trajectory is a parabola.
     is_free: bool,
-    /// Whether overlapping pairs have been placed since it was seen whether they just touch.
+    /// Whether bodies have been placed since it was found out who touches.
     pub(super) placed: bool,
+    /// The contacts before the step.
+    contacts_before: ContactSet,
 }
 
 /// Impacts of a body in a step.
@@ -80,19 +97,48 @@ struct Bounces {
     fastest: f64,
 }
 
-/// An impact to come.
+/// What happens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum EventKind {
+    Impact,
+    /// The surface of a contact ends, or begins to turn.
+    ContactEnd,
+}
+
+/// What becomes of an impact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Outcome {
+    Bounce,
+    /// The bodies stay in contact.
+    Rest,
+}
+
+/// An event to come.
 #[derive(Clone, Debug)]
 struct Event {
     /// From the start of the step, s.
     time: f64,
     bodies: (usize, usize),
     versions: (u32, u32),
+    kind: EventKind,
     /// Its point is in the world.
     contact: Contact,
     /// What becomes of it, once its time has come.
-    answer: Answer,
+    outcome: Outcome,
     /// Speed at which forces would close it in a step, m/s.
-    pressure: f64,
+    load_speed: f64,
+    /// How far the bodies are apart where it is taken for a contact before its time, m.
+    gap: f64,
+}
+
+impl Event {
+    fn is_rest(&self) -> bool {
+        self.kind == EventKind::Impact && self.outcome == Outcome::Rest
+    }
+
+    fn plane(&self) -> ((usize, usize), DVec3) {
+        (self.bodies, self.contact.normal)
+    }
 }
 
 impl Ord for Event {
@@ -121,76 +167,111 @@ impl Eq for Event {}
 #[cfg(feature = "rayon")]
 const PAIRS_A_TASK: usize = 32;
 
-/// A body that comes to rest so often in one step is wedged in, and stops for what is left of it: so
-/// a step ends whatever lies on what.
-const MOST_RESTS: u32 = 32;
-
 /// Pairs that are listed before they are sorted, and named once each.
-const MOST_NEAR: usize = 1 << 16;
+const MAX_LISTED: usize = 1 << 16;
 
 impl World {
-    /// Impacts in one step after which it is given up, as without end.
+    /// Events in one step after which it is given up, as without end.
     pub const MOST_IMPACTS: u64 = 4_000_000;
 
-    /// Lets bodies have their impacts on the way from the previous state to the current one.
+    /// Lets bodies have their impacts and contacts on the way from the previous state to the current one.
     pub(super) fn collide_continuously(&mut self) -> Result<(), StepError> {
         let before = (self.impacts, self.last_impact.clone());
-        self.part_touching();
-        self.start_ways();
+        self.continuous.contacts_before.copy_from(&self.contacts);
+        self.separate_placed();
+        self.begin_trajectories();
         let done = self
-            .seek_all()
-            .and_then(|()| self.answer_all())
-            .and_then(|()| self.part_near());
+            .keep_contacts()
+            .and_then(|()| self.find_all_impacts())
+            .and_then(|()| self.resolve_all())
+            .and_then(|()| self.separate_meeting());
         if let Err((body, cause)) = done {
             (self.impacts, self.last_impact) = before;
+            mem::swap(&mut self.contacts, &mut self.continuous.contacts_before);
             return Err(self.failed(body, cause));
         }
-        self.part_overlapping();
+        self.forget_parted_overlaps();
         Ok(())
     }
 
-    /// Seeks the first impact of every pair that may have one.
-    fn seek_all(&mut self) -> Result<(), (usize, Cause)> {
-        self.find_near();
-        self.continuous.resting.clear();
-        if self.continuous.lag < 0.0 && self.hold()? {
-            self.find_near();
-        }
+    /// Solves the islands of contacts that the last step has left.
+    fn keep_contacts(&mut self) -> Result<(), (usize, Cause)> {
         self.continuous.events.clear();
-        self.seek_near()
+        self.continuous.resolved = 0;
+        self.find_initial_contacts();
+        if self.contacts.is_empty() {
+            return Ok(());
+        }
+        self.sleep_on();
+        self.measure_contacts();
+        self.unstagger_velocities();
+        self.release_bouncing();
+        let mut restarted = mem::take(&mut self.continuous.restarted);
+        restarted.clear();
+        let awake = |body: &usize| !self.is_asleep(*body);
+        let seeds: Vec<usize> = self.solid.iter().copied().filter(awake).collect();
+        self.solve_islands_of(&seeds, 0.0, &mut restarted)?;
+        restarted.sort_unstable();
+        restarted.dedup();
+        self.stagger_velocities(&restarted);
+        for &body in &restarted {
+            if let Some((bodies, _)) = self.coupled_group(body)
+                && bodies.start != body
+            {
+                continue;
+            }
+            let group = self.coupled_group(body);
+            let bodies = group.map_or(body..body + 1, |(bodies, _)| bodies);
+            self.finish_trajectories(bodies)?;
+        }
+        let mut events = mem::take(&mut self.continuous.found);
+        self.contact_ends(&restarted, &mut events);
+        self.continuous.events.extend(events.drain(..));
+        self.continuous.found = events;
+        self.continuous.restarted = restarted;
+        Ok(())
+    }
+
+    /// Finds the first impact of every pair that may have one.
+    fn find_all_impacts(&mut self) -> Result<(), (usize, Cause)> {
+        self.find_candidate_pairs();
+        self.find_impacts_of_candidates()
     }
 
     /// Finds the pairs whose swept boxes meet.
-    fn find_near(&mut self) {
+    fn find_candidate_pairs(&mut self) {
         let mut broad = mem::take(&mut self.continuous.broad);
-        let mut near = mem::take(&mut self.continuous.near);
+        let mut pairs = mem::take(&mut self.continuous.candidate_pairs);
         broad.fill(
             &self.solid,
             |body| self.swept(body),
             |body| self.front(body),
         );
-        near.clear();
-        broad.each_pair(|i, j| near.push((i, j)));
-        near.retain(|&(i, j)| self.may_collide(i, j));
-        let count = near.len();
+        pairs.clear();
+        broad.each_pair(|i, j| pairs.push((i, j)));
+        pairs.retain(|&(i, j)| self.may_collide(i, j));
+        let count = pairs.len();
         self.continuous.broad = broad;
-        self.continuous.near = near;
+        self.continuous.candidate_pairs = pairs;
         for place in 0..count {
-            let (i, j) = self.continuous.near[place];
+            let (i, j) = self.continuous.candidate_pairs[place];
             self.need_bvh(i);
             self.need_bvh(j);
         }
     }
 
-    /// Seeks the first impact of each pair that comes near.
+    /// Finds the first impact of each pair that comes near.
     #[cfg(not(feature = "rayon"))]
-    fn seek_near(&mut self) -> Result<(), (usize, Cause)> {
+    fn find_impacts_of_candidates(&mut self) -> Result<(), (usize, Cause)> {
         let mut probe = mem::take(&mut self.continuous.probe);
         let mut events = mem::take(&mut self.continuous.events);
-        let found = self.continuous.near.iter().try_for_each(|&(i, j)| {
-            events.extend(self.seek(i, j, &mut probe)?);
-            Ok(())
-        });
+        let pairs = self.continuous.candidate_pairs.iter();
+        let found = pairs
+            .filter(|&&(i, j)| !self.sleep_together(i, j))
+            .try_for_each(|&(i, j)| {
+                events.extend(self.find_impact(i, j, &mut probe)?);
+                Ok(())
+            });
         (self.continuous.probe, self.continuous.events) = (probe, events);
         found
     }
@@ -198,11 +279,15 @@ impl World {
     /// The same on many threads. What is found depends on the pair alone, and the queue puts it in
     /// order.
     #[cfg(feature = "rayon")]
-    fn seek_near(&mut self) -> Result<(), (usize, Cause)> {
+    fn find_impacts_of_candidates(&mut self) -> Result<(), (usize, Cause)> {
         use rayon::prelude::*;
-        let seek = |probe: &mut Probe, &(i, j): &(usize, usize)| self.seek(i, j, probe).transpose();
-        let pairs = self.continuous.near.par_iter().with_min_len(PAIRS_A_TASK);
-        let found = pairs.map_init(Probe::default, seek).flatten_iter();
+        let find = |probe: &mut Probe, &(i, j): &(usize, usize)| match self.sleep_together(i, j) {
+            true => None,
+            false => self.find_impact(i, j, probe).transpose(),
+        };
+        let pairs = self.continuous.candidate_pairs.par_iter();
+        let pairs = pairs.with_min_len(PAIRS_A_TASK);
+        let found = pairs.map_init(Probe::default, find).flatten_iter();
         // The first error in the order of pairs, whatever the threads do.
         let found: Vec<Result<Event, (usize, Cause)>> = found.collect();
         for event in found {
@@ -211,10 +296,9 @@ impl World {
         Ok(())
     }
 
-    /// Answers impacts in the order of time until none is left.
-    fn answer_all(&mut self) -> Result<(), (usize, Cause)> {
-        let mut answered = 0;
-        let mut squeeze = Squeeze::default();
+    /// Resolves events in the order of time until none is left.
+    fn resolve_all(&mut self) -> Result<(), (usize, Cause)> {
+        self.continuous.crush = CrushDetector::default();
         let mut group = mem::take(&mut self.continuous.group);
         while let Some(first) = self.next_event(f64::INFINITY) {
             let time = first.time;
@@ -225,22 +309,30 @@ impl World {
             while let Some(event) = self.next_event(until) {
                 group.push(event);
             }
-            answered += group.len() as u64;
-            if answered > World::MOST_IMPACTS {
+            self.continuous.resolved += group.len() as u64;
+            if self.continuous.resolved > World::MOST_IMPACTS {
                 return Err((group[0].bodies.1, Cause::Impacts));
             }
-            self.watch(&group, &mut squeeze)?;
-            self.answer(&mut group, time)?;
-            if self.continuous.near.len() > MOST_NEAR {
-                self.continuous.near.sort_unstable();
-                self.continuous.near.dedup();
+            self.watch_crush(&group)?;
+            self.resolve(&mut group, time)?;
+            if self.continuous.candidate_pairs.len() > MAX_LISTED {
+                self.continuous.candidate_pairs.sort_unstable();
+                self.continuous.candidate_pairs.dedup();
             }
         }
         self.continuous.group = group;
         Ok(())
     }
 
-    /// The next impact no later than a time, of bodies that are still on the ways that led to it.
+    /// Notes impacts with immovable bodies, and stops where they would go on for ever.
+    fn watch_crush(&mut self, group: &[Event]) -> Result<(), (usize, Cause)> {
+        let mut crush = mem::take(&mut self.continuous.crush);
+        let watched = self.watch(group, &mut crush);
+        self.continuous.crush = crush;
+        watched
+    }
+
+    /// The next event no later than a time, of bodies that are still on the trajectories that led to it.
     fn next_event(&mut self, until: f64) -> Option<Event> {
         while let Some(event) = self.continuous.events.peek() {
             if event.time > until {
@@ -254,14 +346,14 @@ impl World {
         None
     }
 
-    /// Whether the bodies of an impact are still on the ways that lead to it.
+    /// Whether the bodies of an event are still on the trajectories that lead to it.
     fn is_current(&self, event: &Event) -> bool {
         let ((i, j), version) = (event.bodies, &self.continuous.version);
         event.versions == (version[i], version[j])
     }
 
-    /// Takes what a body sweeps on its new way in the place of what it swept.
-    fn replace(&mut self, body: usize) {
+    /// Takes what a body sweeps on its new trajectory in the place of what it swept.
+    fn update_swept(&mut self, body: usize) {
         if let Some(front) = self.front(body) {
             self.continuous.broad.replace_front(front);
         } else if self.shape[body].is_some() {
@@ -270,8 +362,8 @@ impl World {
         }
     }
 
-    /// Seeks the next impacts of a body whose way is new. Of two such, the pair is sought once.
-    fn seek_from(&mut self, body: usize, renewed: &[usize]) -> Result<(), (usize, Cause)> {
+    /// Finds the next impacts of a body whose trajectory is new. Of two such, the pair is asked once.
+    fn find_impacts_of(&mut self, body: usize, restarted: &[usize]) -> Result<(), (usize, Cause)> {
         if self.shape(body).is_none() {
             return Ok(());
         }
@@ -280,15 +372,16 @@ impl World {
         let broad = &self.continuous.broad;
         broad.each_partner(body, |other| partners.push(other));
         for &other in &partners {
-            if !self.may_collide(body, other) || (other < body && renewed.contains(&other)) {
+            let pair = (body.min(other), body.max(other));
+            let is_asked = other < body && restarted.binary_search(&other).is_ok();
+            if is_asked || !self.may_collide(pair.0, pair.1) {
                 continue;
             }
-            let pair = (body.min(other), body.max(other));
-            self.continuous.near.push(pair);
+            self.continuous.candidate_pairs.push(pair);
             self.need_bvh(body);
             self.need_bvh(other);
             let mut probe = mem::take(&mut self.continuous.probe);
-            let event = self.seek(pair.0, pair.1, &mut probe);
+            let event = self.find_impact(pair.0, pair.1, &mut probe);
             self.continuous.probe = probe;
             if let Some(event) = event? {
                 self.continuous.events.push(event);
@@ -298,7 +391,7 @@ impl World {
         Ok(())
     }
 
-    /// A box around a body all along its way.
+    /// A box around a body all along its trajectory.
     fn swept(&self, body: usize) -> Swept {
         let (from, to) = (
             self.continuous.start.position[body],
@@ -312,7 +405,7 @@ impl World {
         } = self.extent(body);
         // More than is lost in rounding, here and where vertices are placed.
         let size = from.abs() + to.abs() + 2.0 * farthest;
-        let reach = self.bulge(body) + 8.0 * f64::EPSILON * size;
+        let reach = self.chord_deviation(body) + 8.0 * f64::EPSILON * size;
         Swept {
             min: from.min(to) + low - reach,
             max: from.max(to) + high + reach,
@@ -320,7 +413,20 @@ impl World {
         }
     }
 
-    /// The farthest that the plane of a body comes on its way, if it is a half-space.
+    /// The plane of a body at a place, if it is a half-space.
+    fn front_at(&self, wall: usize, at: DVec3) -> Option<Front> {
+        let &Shape::HalfSpace { normal } = self.shape(wall)? else {
+            return None;
+        };
+        Some(Front {
+            normal,
+            body: wall,
+            level: normal.dot(at),
+            slack: 32.0 * f64::EPSILON * at.length(),
+        })
+    }
+
+    /// The farthest that the plane of a body comes on its trajectory, if it is a half-space.
     fn front(&self, wall: usize) -> Option<Front> {
         let &Shape::HalfSpace { normal } = self.shape(wall)? else {
             return None;
@@ -329,11 +435,11 @@ impl World {
             self.continuous.start.position[wall],
             self.current.position[wall],
         );
-        let bulge = self.bulge(wall).dot(normal.abs());
+        let deviation = self.chord_deviation(wall).dot(normal.abs());
         Some(Front {
             normal,
             body: wall,
-            level: normal.dot(from).max(normal.dot(to)) + bulge,
+            level: normal.dot(from).max(normal.dot(to)) + deviation,
             // More than is lost in rounding.
             slack: 16.0 * f64::EPSILON * (from.length() + to.length()),
         })

@@ -227,8 +227,8 @@ fn what_is_put_back_leaves_immovable_bodies_where_they_are() {
     world.current.position[0].y += 0.5;
     world.current.position[1].y -= 0.5;
     let lifted = world.current.position[0];
-    world.continuous.near = alloc::vec![(0, 1)];
-    assert!(world.part_near().is_ok());
+    world.continuous.candidate_pairs = alloc::vec![(0, 1)];
+    assert!(world.separate_meeting().is_ok());
     assert_eq!(world.position(0), lifted);
     for (i, j) in [(0, 1), (1, 2), (0, 2)] {
         assert!(!world.meet(i, j), "{i} and {j}");

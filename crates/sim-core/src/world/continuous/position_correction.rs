@@ -13,7 +13,7 @@ use super::super::{World, stepping::Cause};
 use crate::collide::parting_normals;
 
 /// Units in the last place, a few parts in 10^12, before it is an overlap.
-const MOST_GRAINS: f64 = 1024.0;
+const MAX_CORRECTION: f64 = 1024.0;
 /// Rounds in which a body that is moved out of one may get into another.
 const ROUNDS: usize = 32;
 
@@ -47,41 +47,9 @@ impl Back {
 }
 
 impl World {
-    /// Moves apart those that touch without overlap since they were placed.
-    pub(super) fn part_touching(&mut self) {
-        if !mem::take(&mut self.continuous.placed) || self.overlapping.is_empty() {
-            return;
-        }
-        let moved = self.current.clone();
-        self.current.clone_from(&self.previous);
-        let mut pairs = mem::take(&mut self.overlapping);
-        for _ in 0..ROUNDS {
-            let meeting = pairs.iter().filter(|&&(i, j)| self.meet_now(i, j));
-            let meeting: Vec<_> = meeting.copied().collect();
-            let parted = meeting.iter().filter(|&&(i, j)| {
-                // Vertices are f32: what looks flush is so to their rounding.
-                let rounding =
-                    f64::from(f32::EPSILON) * (self.extent(i).farthest + self.extent(j).farthest);
-                self.part(i, j, 4.0 * rounding)
-            });
-            let parted = parted.count();
-            if parted == 0 {
-                break;
-            }
-        }
-        pairs.retain(|&(i, j)| self.meet_now(i, j));
-        self.overlapping = pairs;
-        for body in 0..self.len() {
-            let by = self.current.position[body] - self.previous.position[body];
-            self.previous.position[body] = self.current.position[body];
-            self.current.position[body] = moved.position[body] + by;
-        }
-        self.current.velocity.copy_from_slice(&moved.velocity);
-    }
-
     /// Makes sure that no two bodies meet that came near in the step.
-    pub(super) fn part_near(&mut self) -> Result<(), (usize, Cause)> {
-        let mut near = mem::take(&mut self.continuous.near);
+    pub(super) fn separate_meeting(&mut self) -> Result<(), (usize, Cause)> {
+        let mut near = mem::take(&mut self.continuous.candidate_pairs);
         near.sort_unstable();
         near.dedup();
         let mut back = Back::default();
@@ -90,10 +58,10 @@ impl World {
             let mut parted = 0;
             for &(i, j) in &near {
                 if self.meet_now(i, j) {
-                    let most = self.grain(i, j) * MOST_GRAINS;
+                    let most = self.position_resolution(i, j) * MAX_CORRECTION;
                     let is_back = back.of(i).or(back.of(j)).is_some();
                     if is_back || round == ROUNDS || !self.part(i, j, most) {
-                        self.put_back((i, j), &mut back)?;
+                        self.roll_back((i, j), &mut back)?;
                     }
                     parted += 1;
                 }
@@ -103,7 +71,7 @@ impl World {
                 break;
             }
         }
-        self.continuous.near = near;
+        self.continuous.candidate_pairs = near;
         Ok(())
     }
 
@@ -120,12 +88,12 @@ impl World {
         let offset = before.1 - before.0;
         let mut normals = forms.map_or_else(Vec::new, |(a, b)| parting_normals(a, b, offset));
         normals.push(self.apart_along(i, j));
-        let grain = self.grain(i, j).max(f64::MIN_POSITIVE);
+        let resolution = self.position_resolution(i, j).max(f64::MIN_POSITIVE);
         // Back to where they came from: a sheet has two sides.
         let came = (self.previous.position[j] - self.previous.position[i]) - offset;
-        normals.retain(|normal| normal.dot(came) >= -8.0 * grain);
-        let mut by = 0.5 * grain;
-        while by <= most.max(grain) {
+        normals.retain(|normal| normal.dot(came) >= -8.0 * resolution);
+        let mut by = 0.5 * resolution;
+        while by <= most.max(resolution) {
             for &normal in &normals {
                 self.move_current_apart((i, j), by * normal);
                 if !self.meet_now(i, j) {
@@ -141,7 +109,7 @@ impl World {
     /// What rounding does not explain is answered as in the discrete mode: an impulse is exchanged,
     /// and bodies go back to where the step began, where nothing met; so does all that they meet
     /// there. Immovable ones go on, and take what they meet along.
-    fn put_back(&mut self, pair: (usize, usize), back: &mut Back) -> Result<(), (usize, Cause)> {
+    fn roll_back(&mut self, pair: (usize, usize), back: &mut Back) -> Result<(), (usize, Cause)> {
         back.with.resize(self.len(), None);
         let mut pairs = alloc::vec![pair];
         while let Some((i, j)) = pairs.pop() {
@@ -183,18 +151,18 @@ impl World {
         })
     }
 
+    /// Moves the starts of two trajectories apart.
+    pub(super) fn move_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
+        let (first, second) = shares(self.is_movable(i), self.is_movable(j));
+        let position = &mut self.continuous.start.position;
+        position[i] -= first * by;
+        position[j] += second * by;
+    }
+
     fn move_current_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
         let (first, second) = shares(self.mass[i].is_finite(), self.mass[j].is_finite());
         self.current.position[i] -= first * by;
         self.current.position[j] += second * by;
-    }
-
-    /// Moves the starts of two ways apart.
-    pub(super) fn move_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
-        let (first, second) = shares(self.is_moved(i), self.is_moved(j));
-        let position = &mut self.continuous.start.position;
-        position[i] -= first * by;
-        position[j] += second * by;
     }
 }
 

@@ -1,29 +1,35 @@
-//! When two bodies on their ways have their next impact.
+//! When two bodies on their trajectories have their next impact.
 //!
-//! Geometry knows straight ways. A way that bends is cut where its chord would depart from it by
-//! more than [`FLATNESS`] of the smaller body; what is shallower may be missed for the rest of the
-//! step, and only that. Where a chord has an impact, the way is cut closely before and after it and
-//! searched again: the departure falls with the square of the length, so that after a few rounds it
-//! is lost in the rounding, and the impact is one of the way itself.
+//! Geometry knows straight motion. A trajectory that bends is cut where its chord would depart from it
+//! by more than [`FLATNESS`] of the smaller body; what is shallower may be missed for the rest of
+//! the step, and only that. Where a chord has an impact, the trajectory is cut closely before and
+//! after it and searched again: the departure falls with the square of the length, so that after a
+//! few rounds it is lost in the rounding, and the impact is one of the trajectory itself.
 
 use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
-use super::{Event, Probe, respond::Answer};
-use crate::collide::{Contact, Form, Parabola, first_contact, first_on_parabola, has_roots, snap};
+use super::{Event, EventKind, Outcome, Probe};
+use crate::{
+    Shape,
+    collide::{Contact, Form, Parabola, first_contact, first_on_parabola, has_roots, snap},
+};
 
-/// Departure of a chord from its way that is looked past, in largest half extents of the smaller
-/// body.
+/// Departure of a chord from its trajectory that is looked past, in largest half extents of the
+/// smaller body.
 const FLATNESS: f64 = 1e-3;
-/// Chords in a way at most.
-const MOST_CHORDS: f64 = 4096.0;
+/// Chords in a trajectory at most.
+const MAX_CHORDS: f64 = 4096.0;
 /// Halvings after which a time is as good as it gets.
-const DEEPEST: u32 = 64;
+const MAX_DEPTH: u32 = 64;
 /// Rounding of placed vertices, in units in the last place of the largest coordinate about, that
 /// two bodies are kept apart by at an impact.
-const ULPS: f64 = 4.0;
+const RESOLUTION_ULPS: f64 = 4.0;
+/// The same where a sphere meets triangles, whose distance is computed (`collide/ball.rs`): more than
+/// its error, so that a point stays on its side of a surface.
+const SPHERE_MESH_ULPS: f64 = 64.0;
 
-/// How far apart bodies may be that touch but for rounding, in grains.
+/// How far apart bodies may be that touch but for rounding, in resolutions of their positions.
 pub(super) const TOUCHING: f64 = 4.0;
 
 /// A pair of bodies in search of its next impact.
@@ -31,16 +37,18 @@ pub(super) const TOUCHING: f64 = 4.0;
 struct Pair {
     i: usize,
     j: usize,
-    /// Departure of a chord from the way, m, per square of its length, s².
-    bend: f64,
+    /// Departure of a chord from the trajectory, m, per square of its length, s².
+    deviation: f64,
     /// What rounding may be, m.
-    grain: f64,
+    resolution: f64,
+    /// Whether a contact constraint keeps them apart already.
+    is_in_contact: bool,
 }
 
 impl World {
     /// The next impact of two bodies within the step, and where they are just before they touch.
     /// The trees over their meshes must be there.
-    pub(super) fn seek(
+    pub(super) fn find_impact(
         &self,
         i: usize,
         j: usize,
@@ -52,18 +60,22 @@ impl World {
         let pair = Pair {
             i,
             j,
-            bend: self.bend(i, j),
-            grain: self.grain(i, j),
+            deviation: self.deviation_per_time2(i, j),
+            resolution: self.position_resolution(i, j),
+            is_in_contact: !self.contacts.is_empty()
+                && self.contacts.of_pair(i, j).next().is_some(),
         };
-        let is_parabola = pair.bend > 0.0 && self.unit(i).is_none() && self.unit(j).is_none();
+        let is_parabola = pair.deviation > 0.0
+            && self.coupled_group(i).is_none()
+            && self.coupled_group(j).is_none();
         match is_parabola && has_roots(forms.0, forms.1) {
-            true => self.seek_on_parabola(pair, forms, probe),
-            false => self.seek_on_chords(pair, forms, probe),
+            true => self.find_on_parabola(pair, forms, probe),
+            false => self.find_on_chords(pair, forms, probe),
         }
     }
 
-    /// The first impact on ways of any kind.
-    fn seek_on_chords(
+    /// The first impact on trajectories of any kind.
+    fn find_on_chords(
         &self,
         pair: Pair,
         forms: (Form<'_>, Form<'_>),
@@ -73,15 +85,15 @@ impl World {
         let size = self.extent(pair.i).half.min(self.extent(pair.j).half);
         let length = end - start;
         let mut from = (start, self.offset_at(pair, start, probe)?);
-        // A point has no extent: its way must do.
+        // A point has no extent: its trajectory must do.
         let size = match size > 0.0 {
             true => size,
             false => (self.offset_at(pair, end, probe)? - from.1).length(),
         };
-        let ratio = libm::sqrt(pair.bend / (FLATNESS * size)) * length;
+        let ratio = libm::sqrt(pair.deviation / (FLATNESS * size)) * length;
         // 0/0 where nothing moves.
         let chords = if ratio > 1.0 {
-            libm::ceil(ratio).min(MOST_CHORDS)
+            libm::ceil(ratio).min(MAX_CHORDS)
         } else {
             1.0
         };
@@ -93,7 +105,7 @@ impl World {
                 start + length * (chord / chords)
             };
             let to = (time, self.offset_at(pair, time, probe)?);
-            if let Some(event) = self.seek_on_chord(pair, forms, (from, to), 0, probe)? {
+            if let Some(event) = self.find_on_chord(pair, forms, (from, to), 0, probe)? {
                 return Ok(Some(event));
             }
             (from, chord) = (to, chord + 1.0);
@@ -101,34 +113,41 @@ impl World {
         Ok(None)
     }
 
-    /// The first impact on ways that are parabolas, of shapes with closed forms.
-    fn seek_on_parabola(
+    /// The first impact on trajectories that are parabolas, of shapes with closed forms.
+    fn find_on_parabola(
         &self,
         pair: Pair,
         (first, second): (Form<'_>, Form<'_>),
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         let start = self.start_of(pair);
-        let (x1, v1) = self.seen_at(pair.i, start, probe)?;
-        let (x2, v2) = self.seen_at(pair.j, start, probe)?;
+        let (x1, v1) = self.motion_at(pair.i, start, probe)?;
+        let (x2, v2) = self.motion_at(pair.j, start, probe)?;
         let still = 8.0 * f64::EPSILON * (v1.length() + v2.length());
-        let way = Parabola {
+        // What is in contact has its gap, and need not be brought to touch.
+        let touching = if pair.is_in_contact {
+            0.0
+        } else {
+            pair.resolution
+        };
+        let parabola = Parabola {
             offset: x2 - x1,
             velocity: v2 - v1,
             acceleration: self.acceleration_there(pair.j) - self.acceleration_there(pair.i),
-            grain: (pair.grain, still),
+            grain: (touching, still),
         };
         let length = self.settings.dt - start;
-        let Some(contact) = first_on_parabola(first, second, &way, length) else {
+        let Some(contact) = first_on_parabola(first, second, &parabola, length) else {
             return Ok(None);
         };
-        let closing = way.closing(contact.time, contact.normal);
+        let closing = parabola.closing(contact.time, contact.normal);
         let times = (start, start + contact.time);
-        self.settle(pair, times, closing, contact, probe).map(Some)
+        self.back_off(pair, times, closing, contact, probe)
+            .map(Some)
     }
 
-    /// The first impact on a part of the way, given as times and offsets of its ends.
-    fn seek_on_chord(
+    /// The first impact on a part of the trajectory, given as times and offsets of its ends.
+    fn find_on_chord(
         &self,
         pair: Pair,
         forms: (Form<'_>, Form<'_>),
@@ -142,19 +161,19 @@ impl World {
         };
         let length = to.0 - from.0;
         let fall = -contact.normal.dot(motion);
-        let departure = pair.bend * length * length;
-        let is_straight = departure <= pair.grain || depth == DEEPEST;
-        let is_there = contact.time * fall <= TOUCHING * pair.grain
+        let departure = pair.deviation * length * length;
+        let is_straight = departure <= pair.resolution || depth == MAX_DEPTH;
+        let is_there = contact.time * fall <= TOUCHING * pair.resolution
             && from.0 == self.start_of(pair)
             && self.is_closing(pair, contact.normal, probe);
         if is_straight || is_there {
             let part = if is_there { 0.0 } else { contact.time };
             let times = (from.0, from.0 + part * length);
             return self
-                .settle(pair, times, fall / length, contact, probe)
+                .back_off(pair, times, fall / length, contact, probe)
                 .map(Some);
         }
-        // Within this of the chord's impact lies the way's, unless it slips past.
+        // Within this of the chord's impact lies the trajectory's, unless it slips past.
         let time = from.0 + contact.time * length;
         let about = 2.0 * departure * length / fall;
         let (mut before, mut after) = (time - about, time + about);
@@ -170,7 +189,7 @@ impl World {
                 true => to,
                 false => (end, self.offset_at(pair, end, probe)?),
             };
-            if let Some(event) = self.seek_on_chord(pair, forms, (from, part), depth + 1, probe)? {
+            if let Some(event) = self.find_on_chord(pair, forms, (from, part), depth + 1, probe)? {
                 return Ok(Some(event));
             }
             from = part;
@@ -180,7 +199,7 @@ impl World {
 
     /// The last time before a contact, but for rounding, at which two bodies are apart: not before a
     /// start, and from a time on at which they touch and close at a speed.
-    fn settle(
+    fn back_off(
         &self,
         pair: Pair,
         (start, touching): (f64, f64),
@@ -188,19 +207,19 @@ impl World {
         contact: Contact,
         probe: &mut Probe,
     ) -> Result<Event, (usize, Cause)> {
-        let Pair { i, j, bend, grain } = pair;
+        let Pair { i, j, .. } = pair;
         // Bodies that nothing presses together part at once, and need no room to stay in.
         let room = if self.are_pressed(i, j) {
-            grain
+            pair.resolution
         } else {
-            0.0625 * grain
+            0.0625 * pair.resolution
         };
-        // By their speed, or where there is hardly any by the way's bend.
-        let back = (room / closing).min(libm::sqrt(room / (4.0 * bend)));
+        // By their speed, or where there is hardly any by the trajectory's bend.
+        let back = (room / closing).min(libm::sqrt(room / (4.0 * pair.deviation)));
         let mut back = back.max(f64::MIN_POSITIVE);
         if self.extent(i).half.max(self.extent(j).half) == 0.0 {
             // Points that have passed each other by a rounding of the time do not meet.
-            back = back.max(ULPS * f64::EPSILON * touching);
+            back = back.max(RESOLUTION_ULPS * f64::EPSILON * touching);
         }
         let mut time = touching;
         while time > start {
@@ -212,13 +231,15 @@ impl World {
             }
         }
         let (place, _) = self.motion_at(i, time, probe)?;
-        let ways = &self.continuous;
+        let version = &self.continuous.version;
         Ok(Event {
             time,
             bodies: (i, j),
-            versions: (ways.version[i], ways.version[j]),
-            answer: Answer::Bounce,
-            pressure: 0.0,
+            versions: (version[i], version[j]),
+            kind: EventKind::Impact,
+            outcome: Outcome::Bounce,
+            load_speed: 0.0,
+            gap: room,
             contact: Contact {
                 point: place + contact.point,
                 ..contact
@@ -234,27 +255,32 @@ impl World {
     /// Whether forces may change the speed at which two bodies come together.
     fn are_pressed(&self, i: usize, j: usize) -> bool {
         let push = &self.continuous.acceleration;
-        self.unit(i).is_some() || self.unit(j).is_some() || push[i] != push[j]
+        self.coupled_group(i).is_some() || self.coupled_group(j).is_some() || push[i] != push[j]
     }
 
     fn start_of(&self, pair: Pair) -> f64 {
         self.continuous.since[pair.i].max(self.continuous.since[pair.j])
     }
 
-    /// Whether two bodies at the start of their common way do not part along a normal.
+    /// Whether two bodies at the start of their common trajectory do not part along a normal.
     fn is_closing(&self, pair: Pair, normal: DVec3, probe: &mut Probe) -> bool {
         let start = self.start_of(pair);
-        let mut velocity = |body| self.seen_at(body, start, probe).map(|(_, v)| v);
+        let mut velocity = |body| self.motion_at(body, start, probe).map(|(_, v)| v);
         let velocities = velocity(pair.i).ok().zip(velocity(pair.j).ok());
         velocities.is_some_and(|(v1, v2)| {
             (v2 - v1).dot(normal) <= 8.0 * f64::EPSILON * (v1.length() + v2.length())
         })
     }
 
-    /// What the rounding of positions and placed vertices may be, m.
-    pub(super) fn grain(&self, i: usize, j: usize) -> f64 {
+    /// What the rounding of positions and placed vertices, and of distances from triangles, may be, m.
+    pub(super) fn position_resolution(&self, i: usize, j: usize) -> f64 {
         let at = &self.current.position;
         let far = |body: usize| at[body].abs().max_element() + self.extent(body).farthest;
-        ULPS * f64::EPSILON * (far(i) + far(j))
+        let ulps = match (self.shape(i), self.shape(j)) {
+            (Some(Shape::Mesh(_)), Some(Shape::Sphere { .. }))
+            | (Some(Shape::Sphere { .. }), Some(Shape::Mesh(_))) => SPHERE_MESH_ULPS,
+            _ => RESOLUTION_ULPS,
+        };
+        ulps * f64::EPSILON * (far(i) + far(j))
     }
 }

@@ -12,15 +12,15 @@ use super::Event;
 
 /// Impacts in a step of one body with immovable ones, after which it has no room if those move
 /// against each other: to a ball they leave some 1e-5 of what it had.
-const MOST_BLOWS: u32 = 1 << 16;
+const MAX_KINEMATIC_IMPACTS: u32 = 1 << 16;
 
 /// What immovable bodies have done in a step.
-#[derive(Default)]
-pub(super) struct Squeeze {
+#[derive(Clone, Debug, Default)]
+pub(super) struct CrushDetector {
     /// The last one in an impact, and the last before it of another velocity.
     walls: [Option<usize>; 2],
     /// Impacts of each body with one since there were both; empty until then.
-    blows: Vec<u32>,
+    impacts: Vec<u32>,
 }
 
 impl World {
@@ -28,7 +28,7 @@ impl World {
     pub(super) fn watch(
         &self,
         group: &[Event],
-        squeeze: &mut Squeeze,
+        crush: &mut CrushDetector,
     ) -> Result<(), (usize, Cause)> {
         for &Event { bodies: (i, j), .. } in group {
             let (wall, body) = match (self.mass[i].is_finite(), self.mass[j].is_finite()) {
@@ -37,16 +37,16 @@ impl World {
                 (false, _) => (i, j),
             };
             let velocity = |wall: usize| self.previous.velocity[wall];
-            match squeeze.walls {
+            match crush.walls {
                 [Some(last), _] if velocity(last) != velocity(wall) => {
-                    squeeze.walls = [Some(wall), Some(last)];
+                    crush.walls = [Some(wall), Some(last)];
                 }
-                [_, other] => squeeze.walls = [Some(wall), other],
+                [_, other] => crush.walls = [Some(wall), other],
             }
-            if let Some(other) = squeeze.walls[1] {
-                squeeze.blows.resize(self.len(), 0);
-                squeeze.blows[body] += 1;
-                if squeeze.blows[body] > MOST_BLOWS {
+            if let Some(other) = crush.walls[1] {
+                crush.impacts.resize(self.len(), 0);
+                crush.impacts[body] += 1;
+                if crush.impacts[body] > MAX_KINEMATIC_IMPACTS {
                     let between = (wall.min(other), wall.max(other));
                     return Err((body, Cause::Squeezed(between)));
                 }

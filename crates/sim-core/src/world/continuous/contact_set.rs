@@ -1,0 +1,143 @@
+//! Which bodies are in touch, and along which normals: the state of contacts, kept from step to step.
+
+use alloc::vec::Vec;
+use glam::DVec3;
+
+/// A plane that keeps two bodies apart: the second one may not move against the normal faster than
+/// the target, nor be accelerated against it by more than the recession.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::world) struct ContactConstraint {
+    /// The lower body first.
+    pub(in crate::world) bodies: (usize, usize),
+    /// Unit normal, from the first body to the second.
+    pub(in crate::world) normal: DVec3,
+    /// How far apart the bodies are, where it was last looked at, m.
+    pub(super) gap: f64,
+    /// Least speed along the normal for the rest of the step, m/s; negative where a gap may close.
+    pub(super) target: f64,
+    /// Acceleration by which the surface falls away below what slides over it, m/s².
+    pub(super) recession: f64,
+    /// Whether its normal turns below what slides over it.
+    pub(super) is_turning: bool,
+    /// Speed at which forces would close it in a step, m/s.
+    pub(super) load_speed: f64,
+    /// When in the step its surface ends or begins to turn, s from the step's start; infinite where
+    /// it does not.
+    pub(super) ends_at: f64,
+    /// Where it was touched, from the first body, m.
+    pub(super) point: DVec3,
+    /// Impulse on the second body along the normal in its last solution, N s.
+    pub(super) impulse: f64,
+    /// Whether the bodies overlap: they are kept from moving farther into each other, and nothing
+    /// else is known of their surfaces.
+    pub(in crate::world) is_overlap: bool,
+}
+
+/// Cosine of the angle to which the normals of two contacts of the same bodies are one: 0.8 degrees.
+const SAME_NORMAL: f64 = 0.9999;
+
+/// The constraints, and which of them each movable body has.
+#[derive(Clone, Debug, Default)]
+pub(in crate::world) struct ContactSet {
+    all: Vec<ContactConstraint>,
+    /// By body, indices of `all`; empty for bodies that nothing moves.
+    of_body: Vec<Vec<u32>>,
+}
+
+impl ContactSet {
+    pub(in crate::world) fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    pub(in crate::world) fn all(&self) -> &[ContactConstraint] {
+        &self.all
+    }
+
+    pub(super) fn get_mut(&mut self, index: usize) -> &mut ContactConstraint {
+        &mut self.all[index]
+    }
+
+    /// The indices of the constraints of a movable body.
+    pub(super) fn of_body(&self, body: usize) -> &[u32] {
+        self.of_body.get(body).map_or(&[], Vec::as_slice)
+    }
+
+    /// The constraints between two bodies, of which one is movable.
+    pub(super) fn of_pair(&self, i: usize, j: usize) -> impl Iterator<Item = &ContactConstraint> {
+        let few = if self.of_body(i).is_empty() { j } else { i };
+        let pair = (i.min(j), i.max(j));
+        let of_one = self.of_body(few).iter();
+        let constraints = of_one.map(|&index| &self.all[index as usize]);
+        constraints.filter(move |known| known.bodies == pair)
+    }
+
+    /// Adds a constraint, in the place of one of the same bodies along the same normal. Says which of its
+    /// bodies may move.
+    pub(super) fn insert(&mut self, new: ContactConstraint, is_movable: impl Fn(usize) -> bool) {
+        let (i, j) = new.bodies;
+        let few = if is_movable(i) { i } else { j };
+        let is_same = |&&index: &&u32| {
+            let known = &self.all[index as usize];
+            known.bodies == new.bodies && known.normal.dot(new.normal) >= SAME_NORMAL
+        };
+        if let Some(&known) = self.of_body(few).iter().find(is_same) {
+            self.all[known as usize] = new;
+            return;
+        }
+        let index = self.all.len() as u32;
+        self.all.push(new);
+        for body in [i, j] {
+            if is_movable(body) {
+                if self.of_body.len() <= body {
+                    self.of_body.resize(body + 1, Vec::new());
+                }
+                self.of_body[body].push(index);
+            }
+        }
+    }
+
+    /// Keeps the constraints for which a condition holds.
+    pub(in crate::world) fn retain(
+        &mut self,
+        mut holds: impl FnMut(&mut ContactConstraint) -> bool,
+    ) {
+        let mut index = 0;
+        while index < self.all.len() {
+            if holds(&mut self.all[index]) {
+                index += 1;
+            } else {
+                self.remove(index);
+            }
+        }
+    }
+
+    /// Removes a constraint; the last one takes its index.
+    pub(super) fn remove(&mut self, index: usize) {
+        let (gone, last) = (self.all.swap_remove(index), self.all.len());
+        for body in [gone.bodies.0, gone.bodies.1] {
+            if let Some(list) = self.of_body.get_mut(body) {
+                list.retain(|&other| other as usize != index);
+            }
+        }
+        if let Some(moved) = self.all.get(index) {
+            for body in [moved.bodies.0, moved.bodies.1] {
+                if let Some(list) = self.of_body.get_mut(body) {
+                    for other in list.iter_mut().filter(|other| **other as usize == last) {
+                        *other = index as u32;
+                    }
+                }
+            }
+        }
+    }
+
+    pub(in crate::world) fn clear(&mut self) {
+        self.all.clear();
+        self.of_body.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Takes the constraints of another set, keeping its own memory.
+    pub(super) fn copy_from(&mut self, other: &ContactSet) {
+        self.all.clone_from(&other.all);
+        self.of_body.clone_from(&other.of_body);
+    }
+}

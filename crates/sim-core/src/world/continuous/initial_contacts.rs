@@ -1,0 +1,340 @@
+//! Who touches whom where bodies have been placed.
+//!
+//! Bodies that are placed face to face meet as far as exact arithmetic is concerned, or miss each other
+//! by a rounding. Both are contacts. Those that meet are moved apart by the least that does it, in
+//! the norm of their masses, all at once: each pair has a place apart from each other nearby, the
+//! exact search from there to where the pair would be gives a plane, and displacements are solved
+//! for with all planes that have been found, until nobody meets. What cannot be parted by as much
+//! as the f32 of vertices is rounded is an overlap, and is held as it is.
+
+use alloc::vec::Vec;
+use core::mem;
+use glam::DVec3;
+
+use super::super::World;
+use super::constraint_solve::Places;
+use super::contact_set::ContactConstraint;
+use crate::{
+    collide::{Broad, Form, Swept, first_contact, parting_normals, snap},
+    impulse::project,
+};
+
+/// Rounds in which planes are added; each round adds one for each pair that still meets.
+const MAX_ROUNDS: usize = 64;
+
+/// Directions that are tried at most to part a pair.
+const MAX_DIRECTIONS: usize = 12;
+
+/// Two bodies that meet where they have been placed.
+struct Meeting {
+    bodies: (usize, usize),
+    /// An offset of the second from the first at which they are apart.
+    apart: DVec3,
+    /// How far they may be moved against each other, m.
+    reach: f64,
+}
+
+/// A plane that keeps two bodies apart: the least offset along its normal.
+struct Plane {
+    bodies: (usize, usize),
+    normal: DVec3,
+    level: f64,
+    point: DVec3,
+}
+
+impl World {
+    /// Moves those apart that meet by no more than a rounding since they were placed.
+    pub(super) fn separate_placed(&mut self) {
+        if !self.continuous.placed || self.overlapping.is_empty() {
+            return;
+        }
+        let mut pairs = mem::take(&mut self.overlapping);
+        let at = self.previous.position.clone();
+        let mut meeting = Vec::new();
+        for &(i, j) in &pairs {
+            meeting.extend(self.place_apart((i, j), at[j] - at[i]));
+        }
+        if !meeting.is_empty()
+            && let Some((moved, planes)) = self.parted(&mut meeting, &at)
+        {
+            for (current, (moved, at)) in
+                self.current.position.iter_mut().zip(moved.iter().zip(&at))
+            {
+                *current += *moved - *at;
+            }
+            self.previous.position = moved;
+            for plane in planes {
+                self.insert_contact(plane.bodies, plane.normal, plane.point);
+            }
+        }
+        let at = self.previous.position.clone();
+        pairs.retain(|&(i, j)| self.meet_at(i, j, at[j] - at[i]));
+        for &(i, j) in &pairs {
+            let (normal, _) = self.penetration(i, j, at[j] - at[i]);
+            self.insert_contact((i, j), normal, DVec3::ZERO);
+            let last = self.contacts.all().len() - 1;
+            self.contacts.get_mut(last).is_overlap = true;
+        }
+        self.overlapping = pairs;
+    }
+
+    /// The direction in which the second of two bodies in overlap is out of the first with the least motion,
+    /// of those that the surfaces that meet give and of the line of their centres; and how far that
+    /// is, m.
+    pub(in crate::world) fn penetration(&self, i: usize, j: usize, offset: DVec3) -> (DVec3, f64) {
+        let centres = self.apart_along(i, j);
+        let forms = self.form(i).zip(self.form(j));
+        let surfaces = forms.map_or_else(Vec::new, |(a, b)| parting_normals(a, b, offset));
+        let both = surfaces.iter().flat_map(|&normal| [normal, -normal]);
+        let is_apart = |by: DVec3| !self.meet_built(i, j, offset + by);
+        let size = |body: usize| self.extent(body).farthest;
+        let (least, most) = (self.hover_gap(i, j), 4.0 * (size(i) + size(j)));
+        let mut best = (centres, f64::INFINITY);
+        for normal in both.chain([centres]) {
+            let mut far = least;
+            while far <= most.min(best.1) && !is_apart(far * normal) {
+                far *= 2.0;
+            }
+            if far > most.min(best.1) {
+                continue;
+            }
+            let (mut low, mut high) = (0.5 * far, far);
+            for _ in 0..40 {
+                let middle = 0.5 * (low + high);
+                match is_apart(middle * normal) {
+                    true => high = middle,
+                    false => low = middle,
+                }
+            }
+            if high < best.1 {
+                best = (normal, high);
+            }
+        }
+        best
+    }
+
+    /// Where a pair is apart that meets at an offset, if there is such a place within a rounding.
+    fn place_apart(&self, bodies: (usize, usize), offset: DVec3) -> Option<Meeting> {
+        let (i, j) = bodies;
+        let forms = self.form(i).zip(self.form(j))?;
+        // Vertices are f32: what looks flush is so to their rounding.
+        let rounding =
+            f64::from(f32::EPSILON) * (self.extent(i).farthest + self.extent(j).farthest);
+        let reach = 4.0 * rounding + 16.0 * self.hover_gap(i, j);
+        let is_apart = |to: DVec3| !self.meet_built(i, j, offset + to);
+        let mut directions = parting_normals(forms.0, forms.1, offset);
+        directions.truncate(MAX_DIRECTIONS);
+        directions.push(self.apart_along(i, j));
+        let found = |by: DVec3| {
+            is_apart(by).then_some(Meeting {
+                bodies,
+                apart: offset + by,
+                reach: 2.0 * by.length(),
+            })
+        };
+        let singles = || directions.iter().copied();
+        let pairs = || {
+            singles()
+                .enumerate()
+                .flat_map(|(k, a)| singles().skip(k + 1).map(move |b| a + b))
+        };
+        let triples = || {
+            let pairs = singles().enumerate().flat_map(|(k, a)| {
+                singles()
+                    .enumerate()
+                    .skip(k + 1)
+                    .map(move |(l, b)| (l, a + b))
+            });
+            pairs.flat_map(|(l, ab)| singles().skip(l + 1).map(move |c| ab + c))
+        };
+        let all = singles().chain(pairs()).chain(triples());
+        all.map(|direction| reach * direction).find_map(found)
+    }
+
+    /// Places at which pairs that meet do not, nor any that they come to meet, and the planes that keep
+    /// them apart; `None` where there are none nearby.
+    fn parted(&self, meeting: &mut Vec<Meeting>, at: &[DVec3]) -> Option<(Vec<DVec3>, Vec<Plane>)> {
+        let near = self.near_pairs(at, |i, j| {
+            16.0 * self.hover_gap(i, j)
+                + 1e-6 * (self.extent(i).farthest.min(self.extent(j).farthest))
+        });
+        let mut place = at.to_vec();
+        let mut planes: Vec<Plane> = Vec::new();
+        for round in 0..MAX_ROUNDS {
+            for &(i, j) in &near {
+                let is_known = meeting.iter().any(|known| known.bodies == (i, j));
+                let (before, now) = (at[j] - at[i], place[j] - place[i]);
+                if round > 0
+                    && !is_known
+                    && before != now
+                    && self.meet_built(i, j, now)
+                    && !self.meet_built(i, j, before)
+                {
+                    let reach = f64::from(f32::EPSILON)
+                        * 64.0
+                        * (self.extent(i).farthest + self.extent(j).farthest)
+                        * near.len() as f64;
+                    meeting.push(Meeting {
+                        bodies: (i, j),
+                        apart: before,
+                        reach,
+                    });
+                }
+            }
+            let mut is_new = false;
+            for pair in meeting.iter() {
+                let (i, j) = pair.bodies;
+                let offset = place[j] - place[i];
+                if round > 0 && !self.meet_built(i, j, offset) {
+                    continue;
+                }
+                is_new = true;
+                let forms = self.form(i).zip(self.form(j))?;
+                let motion = offset - pair.apart;
+                let contact = first_contact(forms.0, forms.1, snap(pair.apart), snap(motion))?;
+                let touching = pair.apart + contact.time * motion;
+                let level = contact.normal.dot(touching) + self.hover_gap(i, j);
+                planes.push(Plane {
+                    bodies: pair.bodies,
+                    normal: contact.normal,
+                    level,
+                    point: contact.point,
+                });
+            }
+            if !is_new {
+                return Some((place, planes));
+            }
+            let contacts = planes.iter().map(|plane| (plane.bodies, plane.normal));
+            let places = Places::between(self, contacts);
+            let mut displaced = alloc::vec![DVec3::ZERO; places.bodies.len()];
+            let missing: Vec<f64> = planes
+                .iter()
+                .map(|plane| {
+                    let (i, j) = plane.bodies;
+                    plane.level - plane.normal.dot(at[j] - at[i])
+                })
+                .collect();
+            project(
+                &places.joined,
+                &places.inverse_mass,
+                &mut displaced,
+                &missing,
+            );
+            for (&body, &by) in places.bodies.iter().zip(&displaced) {
+                place[body] = at[body] + by;
+            }
+            for pair in meeting.iter() {
+                let (i, j) = pair.bodies;
+                let by = (place[j] - place[i]) - (at[j] - at[i]);
+                if by.length() > pair.reach || by.is_nan() {
+                    return None;
+                }
+            }
+        }
+        None
+    }
+
+    /// Finds the contacts of bodies that touch without meeting since they were placed.
+    pub(super) fn find_initial_contacts(&mut self) {
+        if !mem::take(&mut self.continuous.placed) {
+            return;
+        }
+        let at = self.continuous.start.position.clone();
+        let pairs = self.near_pairs(&at, |i, j| 8.0 * self.hover_gap(i, j));
+        for (i, j) in pairs {
+            if !self.may_collide(i, j) {
+                continue;
+            }
+            self.need_bvh(i);
+            self.need_bvh(j);
+            let hover = self.hover_gap(i, j);
+            let Some((first, second)) = self.form(i).zip(self.form(j)) else {
+                continue;
+            };
+            // Where rounding is larger than a body, nothing is known of what it touches.
+            let size = self.extent(i).half.min(self.extent(j).half);
+            if size > 0.0 && hover > size {
+                continue;
+            }
+            let offset = at[j] - at[i];
+            let mut found = Vec::new();
+            for direction in directions_between(first, second, offset) {
+                let motion = -8.0 * hover * direction;
+                let Some(contact) = first_contact(first, second, snap(offset), snap(motion)) else {
+                    continue;
+                };
+                let gap = -contact.time * contact.normal.dot(motion);
+                if gap <= 4.0 * hover {
+                    found.push(contact);
+                }
+            }
+            for contact in found {
+                self.insert_contact((i, j), contact.normal, contact.point);
+            }
+        }
+    }
+
+    /// Pairs of which one may move whose boxes, widened by a length, meet.
+    fn near_pairs(
+        &self,
+        at: &[DVec3],
+        margin: impl Fn(usize, usize) -> f64,
+    ) -> Vec<(usize, usize)> {
+        let mut broad = Broad::default();
+        let swept = |body: usize| {
+            let extent = self.extent(body);
+            let wide = DVec3::splat(margin(body, body));
+            Swept {
+                min: at[body] + extent.low - wide,
+                max: at[body] + extent.high + wide,
+                body,
+            }
+        };
+        let front = |body: usize| {
+            let mut front = self.front_at(body, at[body])?;
+            front.slack += margin(body, body);
+            Some(front)
+        };
+        broad.fill(&self.solid, swept, front);
+        let mut pairs = Vec::new();
+        broad.each_pair(|i, j| {
+            if self.is_movable(i) || self.is_movable(j) {
+                pairs.push((i, j));
+            }
+        });
+        pairs.sort_unstable();
+        pairs
+    }
+
+    fn insert_contact(&mut self, (i, j): (usize, usize), normal: DVec3, point: DVec3) {
+        let movable = (self.is_movable(i), self.is_movable(j));
+        let constraint = ContactConstraint {
+            bodies: (i, j),
+            normal,
+            gap: self.hover_gap(i, j),
+            target: 0.0,
+            recession: 0.0,
+            is_turning: false,
+            load_speed: 0.0,
+            ends_at: f64::INFINITY,
+            point,
+            impulse: 0.0,
+            is_overlap: false,
+        };
+        self.contacts.insert(
+            constraint,
+            |body| if body == i { movable.0 } else { movable.1 },
+        );
+    }
+}
+
+/// Directions from the first of two shapes along which contacts are looked for: with less than 55 degrees
+/// to any normal.
+fn directions_between(first: Form<'_>, second: Form<'_>, offset: DVec3) -> Vec<DVec3> {
+    match (first, second) {
+        (Form::HalfSpace(normal), _) => alloc::vec![normal],
+        (_, Form::HalfSpace(normal)) => alloc::vec![-normal],
+        (Form::Sphere(_), Form::Sphere(_)) => offset.try_normalize().into_iter().collect(),
+        _ => DVec3::AXES.iter().flat_map(|&axis| [axis, -axis]).collect(),
+    }
+}

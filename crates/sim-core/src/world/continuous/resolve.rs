@@ -1,0 +1,540 @@
+//! What becomes of bodies at an impact.
+//!
+//! They part with their restitution. Where forces press them together and they would be back
+//! within a small part of a step, they stay in contact instead: from then on a constraint keeps
+//! them apart ([`super::contact_set`]), for the rest of the step and in the next ones, until they
+//! move apart. So a ball comes to rest after finitely many bounces.
+//!
+//! Bodies that keep a part of their speed only come to rest as well where what is left moves them by
+//! no more than a rounding in a step; and where they are caught among others, so that impacts follow
+//! each other faster and faster though nothing presses these two together (inelastic collapse;
+//! McNamara, Young 1994, "Inelastic collapse in two dimensions"): by a small part of the speed
+//! at which it began, or of what forces give to each of them if they lie on something.
+
+use alloc::{vec, vec::Vec};
+use core::mem;
+
+use super::super::{World, stepping::Cause};
+use super::constraint_solve::{Places, SLIGHTEST};
+use super::contact_motion::LEAST_GAP;
+use super::contact_set::ContactConstraint;
+use super::{Bounces, Event, EventKind, Outcome};
+use crate::{
+    collide::Contact,
+    impulse::{Joined, reflect},
+    pieces::Pieces,
+};
+
+/// A flight of less than this part of a step is none.
+pub(super) const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
+
+/// Impacts of a body in a step after which it may be caught among others.
+const MANY_BOUNCES: u32 = 8;
+
+/// Part of the greatest speed at which a body has had an impact in a step that is nothing beside it.
+const SPENT: f64 = 1e-6;
+
+/// How often a body may come to rest in a step, at the time of each, before all that it and what lies
+/// with it would come to rest on in the step is bundled: taken for in contact at once, with its gap.
+const MANY_RESTS: u32 = 4;
+
+impl World {
+    /// Resolves events that happen at the same time.
+    pub(super) fn resolve(
+        &mut self,
+        group: &mut Vec<Event>,
+        time: f64,
+    ) -> Result<(), (usize, Cause)> {
+        let mut restarted = mem::take(&mut self.continuous.restarted);
+        restarted.clear();
+        for event in group.iter() {
+            self.restart(event.bodies.0, time, &mut restarted)?;
+            self.restart(event.bodies.1, time, &mut restarted)?;
+        }
+        for event in group.iter_mut() {
+            if event.kind == EventKind::Impact {
+                self.classify(event);
+            }
+        }
+        if group.iter().any(Event::is_rest) {
+            self.join_resting(group, time, &mut restarted)?;
+        }
+        self.count(group);
+        // Whose constraints have to be solved.
+        let mut seeds: Vec<usize> = Vec::new();
+        let bouncing = group
+            .iter()
+            .filter(|event| event.outcome == Outcome::Bounce);
+        self.bounce_all_of(bouncing.clone(), time);
+        seeds.extend(bouncing.flat_map(|event| [event.bodies.0, event.bodies.1]));
+        self.bounce_contacts(&mut seeds, time, &mut restarted)?;
+        for event in group.iter().filter(|event| event.is_rest()) {
+            self.begin_contact(event, time);
+        }
+        let others = group
+            .iter()
+            .filter(|event| event.outcome != Outcome::Bounce);
+        seeds.extend(others.flat_map(|event| [event.bodies.0, event.bodies.1]));
+        let before: Vec<f64> = group.iter().map(|event| self.closing(event)).collect();
+        if !self.contacts.is_empty() {
+            self.solve_islands_of(&seeds, time, &mut restarted)?;
+        }
+        for (event, closing) in group.iter().zip(before) {
+            self.report_rest(event, closing, time);
+        }
+        restarted.sort_unstable();
+        restarted.dedup();
+        for &body in &restarted {
+            if let Some((bodies, _)) = self.coupled_group(body)
+                && bodies.start != body
+            {
+                continue;
+            }
+            let group = self.coupled_group(body);
+            let bodies = group.map_or(body..body + 1, |(bodies, _)| bodies);
+            self.finish_trajectories(bodies)?;
+        }
+        for &body in &restarted {
+            self.update_swept(body);
+        }
+        for &body in &restarted {
+            self.find_impacts_of(body, &restarted)?;
+        }
+        let mut events = mem::take(&mut self.continuous.found);
+        self.contact_ends(&restarted, &mut events);
+        self.continuous.events.extend(events.drain(..));
+        self.continuous.found = events;
+        self.continuous.restarted = restarted;
+        Ok(())
+    }
+
+    /// Lets the trajectory of a body, and of those coupled to it, start again. What nothing moves stays
+    /// on its own.
+    pub(super) fn restart(
+        &mut self,
+        body: usize,
+        time: f64,
+        restarted: &mut Vec<usize>,
+    ) -> Result<(), (usize, Cause)> {
+        if self.is_movable(body) {
+            restarted.extend(self.restart_at(body, time)?);
+        }
+        Ok(())
+    }
+
+    /// Whether impacts change the trajectory of a body.
+    pub(super) fn is_movable(&self, body: usize) -> bool {
+        self.mass[body].is_finite()
+    }
+
+    /// Adds to impacts that come to rest those that their bodies and what lies with these come to soon:
+    /// no farther away than the shortest flight is high, and where a body comes to rest again and
+    /// again in a step all of them. In a heap nearly all are so, and one by one each would move all
+    /// others.
+    fn join_resting(
+        &mut self,
+        group: &mut Vec<Event>,
+        time: f64,
+        restarted: &mut Vec<usize>,
+    ) -> Result<(), (usize, Cause)> {
+        loop {
+            let mut visited = mem::take(&mut self.continuous.visited);
+            visited.begin(self.len());
+            let mut tied = vec![false; self.len()];
+            let mut is_bundled = false;
+            for body in group
+                .iter()
+                .flat_map(|event| [event.bodies.0, event.bodies.1])
+            {
+                if let Some(island) = self.island_of(body, &mut visited) {
+                    for body in island.bodies {
+                        tied[body] = true;
+                        is_bundled |= self.is_bundled(body);
+                    }
+                }
+            }
+            self.continuous.visited = visited;
+            let is_tied = |event: &&Event| {
+                let (i, j) = event.bodies;
+                event.kind == EventKind::Impact
+                    && self.is_current(event)
+                    && (tied[i] || tied[j])
+                    && group.iter().all(|known| known.bodies != event.bodies)
+            };
+            let soon = self.continuous.events.iter().filter(is_tied);
+            let mut soon: Vec<Event> = soon.cloned().collect();
+            soon.sort_unstable_by(|a, b| b.cmp(a));
+            let before = group.len();
+            for mut event in soon {
+                let (gap, opening) = self.gap_before(&event, time)?;
+                let push = self.greatest_push(event.bodies.0, event.bodies.1);
+                let (height, speed) = self.shortest_hop(push);
+                let is_hop = gap <= height && opening <= speed;
+                if is_hop || is_bundled {
+                    self.classify_at_its_time(&mut event)?;
+                    if event.is_rest() {
+                        self.restart(event.bodies.0, time, restarted)?;
+                        self.restart(event.bodies.1, time, restarted)?;
+                        event.gap = gap.max(0.0);
+                        group.push(event);
+                    }
+                }
+            }
+            if group.len() == before {
+                return Ok(());
+            }
+        }
+    }
+
+    /// How far two bodies are apart at a time before their impact, m, and the speed at which they part,
+    /// m/s, both along its normal.
+    fn gap_before(&mut self, event: &Event, from: f64) -> Result<(f64, f64), (usize, Cause)> {
+        let ((i, j), normal) = (event.bodies, event.contact.normal);
+        let mut probe = mem::take(&mut self.continuous.probe);
+        let start = from
+            .max(self.continuous.since[i])
+            .max(self.continuous.since[j]);
+        let mut apart = |time: f64| {
+            let (x1, v1) = self.motion_at(i, time, &mut probe)?;
+            let (x2, v2) = self.motion_at(j, time, &mut probe)?;
+            Ok(((x2 - x1).dot(normal), (v2 - v1).dot(normal)))
+        };
+        let motion = apart(start).and_then(|start| Ok((start, apart(event.time)?)));
+        self.continuous.probe = probe;
+        let ((gap, opening), (end, _)) = motion?;
+        Ok((gap - end, opening))
+    }
+
+    /// Counts how often bodies have come to rest, and where some do not keep their speed what impacts
+    /// they have had.
+    fn count(&mut self, group: &[Event]) {
+        for event in group {
+            let is_counted = event.outcome != Outcome::Bounce || !self.restitution.is_empty();
+            let closing = self.closing(event);
+            for body in [event.bodies.0, event.bodies.1] {
+                if !is_counted || !self.is_movable(body) || event.kind != EventKind::Impact {
+                    continue;
+                }
+                let (bodies, continuous) = (self.mass.len(), &mut self.continuous);
+                if event.outcome == Outcome::Bounce {
+                    continuous.bounces.resize(bodies, Bounces::default());
+                    let bounces = &mut continuous.bounces[body];
+                    bounces.count += 1;
+                    bounces.fastest = bounces.fastest.max(closing);
+                } else {
+                    continuous.rests.resize(bodies, 0);
+                    continuous.rests[body] += 1;
+                }
+            }
+        }
+    }
+
+    /// The speed at which two bodies close at their impact, m/s.
+    fn closing(&self, event: &Event) -> f64 {
+        let (i, j) = event.bodies;
+        let velocity = &self.continuous.start.velocity;
+        (velocity[i] - velocity[j]).dot(event.contact.normal)
+    }
+
+    /// Whether two bodies bounce or come to rest, from their motion where their trajectories start.
+    fn classify(&self, event: &mut Event) {
+        self.classify_by(event, self.closing(event), self.pressed(event));
+    }
+
+    /// The acceleration with which forces press two bodies together at their impact, m/s²: as their
+    /// contacts with others let them, or as if there were none, since one of those may end here.
+    fn pressed(&self, event: &Event) -> f64 {
+        let ((i, j), normal) = (event.bodies, event.contact.normal);
+        let there = self.acceleration_there(i) - self.acceleration_there(j);
+        let applied = &self.continuous.applied_acceleration;
+        let alone = applied[i] - applied[j];
+        there.dot(normal).max(alone.dot(normal))
+    }
+
+    /// The same from their motion at the time of their impact.
+    fn classify_at_its_time(&mut self, event: &mut Event) -> Result<(), (usize, Cause)> {
+        let ((i, j), normal) = (event.bodies, event.contact.normal);
+        let mut probe = mem::take(&mut self.continuous.probe);
+        let first = self.motion_at(i, event.time, &mut probe);
+        let second = self.motion_at(j, event.time, &mut probe);
+        self.continuous.probe = probe;
+        let closing = (first?.1 - second?.1).dot(normal);
+        self.classify_by(event, closing, self.pressed(event));
+        Ok(())
+    }
+
+    fn classify_by(&self, event: &mut Event, closing: f64, pressed: f64) {
+        let (i, j) = event.bodies;
+        event.load_speed = self.settings.dt * pressed;
+        event.outcome = match self.bounces((i, j), closing, event.load_speed) {
+            true => Outcome::Bounce,
+            false => Outcome::Rest,
+        };
+    }
+
+    /// Whether two bodies that close at a speed, while forces close them by another one in a step, part
+    /// again.
+    pub(super) fn bounces(&self, (i, j): (usize, usize), closing: f64, load_speed: f64) -> bool {
+        if closing <= 0.0 {
+            return false;
+        }
+        let restitution = self.pair_restitution(i, j);
+        let lasting = restitution * (closing - self.unfelt(load_speed)).max(0.0);
+        // Back after the time 2 v / a.
+        let is_short = |speed: f64, push: f64| 2.0 * speed <= SHORTEST_FLIGHT * push;
+        if load_speed > 0.0 && is_short(lasting, load_speed) {
+            return false;
+        }
+        let leaving = restitution * closing;
+        let is_spent = || leaving * self.settings.dt <= self.position_resolution(i, j);
+        let is_caught = || {
+            let felt = self.settings.dt * self.greatest_push(i, j);
+            let bounces = self.bounces_of(i, j);
+            let rests = self.rests_of(i) > 0 || self.rests_of(j) > 0;
+            bounces.count >= MANY_BOUNCES
+                && (leaving <= SPENT * bounces.fastest || rests && is_short(leaving, felt))
+        };
+        !(restitution < 1.0 && (is_spent() || is_caught()))
+    }
+
+    /// The impacts of that one of two bodies that has had more.
+    fn bounces_of(&self, i: usize, j: usize) -> Bounces {
+        let of = |body: usize| self.continuous.bounces.get(body).copied();
+        let (first, second) = (of(i).unwrap_or_default(), of(j).unwrap_or_default());
+        match first.count >= second.count {
+            true => first,
+            false => second,
+        }
+    }
+
+    /// Whether a body has come to rest so often in this step that what follows is bundled.
+    pub(super) fn is_bundled(&self, body: usize) -> bool {
+        self.rests_of(body) > MANY_RESTS
+    }
+
+    fn rests_of(&self, body: usize) -> u32 {
+        self.continuous.rests.get(body).copied().unwrap_or(0)
+    }
+
+    /// The speed at which bodies close that lie on each other, as forces that close them by a speed in
+    /// a step make it: none, but for the velocity stagger of a method.
+    fn unfelt(&self, load_speed: f64) -> f64 {
+        load_speed * (self.continuous.velocity_stagger / self.settings.dt).abs()
+    }
+
+    /// Adds the constraint of an impact that comes to rest.
+    fn begin_contact(&mut self, event: &Event, time: f64) {
+        let (i, j) = event.bodies;
+        let hover = self.hover_gap(i, j);
+        // Where bodies touch they are moved apart by a rounding, for what rounds and solves after that.
+        let least = LEAST_GAP * hover;
+        let gap = event.gap.max(least);
+        if event.gap < least {
+            self.move_apart(event.bodies, (least - event.gap) * event.contact.normal);
+        }
+        let target = self.speed_to_hover(gap, hover, self.settings.dt - time);
+        let position = &self.continuous.start.position;
+        let constraint = ContactConstraint {
+            bodies: event.bodies,
+            normal: event.contact.normal,
+            gap,
+            target,
+            recession: 0.0,
+            is_turning: false,
+            load_speed: event.load_speed,
+            ends_at: f64::INFINITY,
+            point: event.contact.point - position[i],
+            impulse: 0.0,
+            is_overlap: false,
+        };
+        let movable = (self.is_movable(i), self.is_movable(j));
+        self.contacts.insert(
+            constraint,
+            |body| if body == i { movable.0 } else { movable.1 },
+        );
+    }
+
+    /// Notes an impact that has come to rest, if it was one.
+    fn report_rest(&mut self, event: &Event, closing: f64, time: f64) {
+        let load = event.load_speed;
+        if !event.is_rest() || closing - self.unfelt(load) <= SLIGHTEST * load {
+            return;
+        }
+        let (i, j) = event.bodies;
+        let normal = event.contact.normal;
+        let same = |known: &&ContactConstraint| known.normal.dot(normal) > 0.999;
+        let impulse = self.contacts.of_pair(i, j).find(same).map(|c| c.impulse);
+        let speeds = (closing, -self.closing(event));
+        let at = self.time() + time;
+        self.note_impact(
+            event.bodies,
+            &event.contact,
+            impulse.unwrap_or(0.0),
+            speeds,
+            at,
+        );
+    }
+
+    /// Lets those contacts of some bodies bounce that an impulse has closed, and then those of whom they
+    /// have met.
+    fn bounce_contacts(
+        &mut self,
+        seeds: &mut Vec<usize>,
+        time: f64,
+        restarted: &mut Vec<usize>,
+    ) -> Result<(), (usize, Cause)> {
+        if self.contacts.is_empty() {
+            return Ok(());
+        }
+        let mut changed = seeds.clone();
+        let mut round = 0;
+        while !changed.is_empty() {
+            round += 1;
+            let mut group: Vec<Event> = Vec::new();
+            for &body in &changed {
+                for &index in self.contacts.of_body(body) {
+                    let constraint = self.contacts.all()[index as usize];
+                    let is_known = |event: &Event| {
+                        event.bodies == constraint.bodies
+                            && event.contact.normal == constraint.normal
+                    };
+                    if !group.iter().any(is_known) {
+                        group.push(self.event_of(&constraint, time));
+                    }
+                }
+            }
+            for event in &group {
+                self.restart(event.bodies.0, time, restarted)?;
+                self.restart(event.bodies.1, time, restarted)?;
+            }
+            group.retain_mut(|event| {
+                self.classify(event);
+                let is_lossy = self.pair_restitution(event.bodies.0, event.bodies.1) < 1.0;
+                // What gives back a part goes to and fro in a row without end, and comes to rest.
+                event.outcome == Outcome::Bounce && !(is_lossy && round > MANY_BOUNCES)
+            });
+            self.count(&group);
+            self.watch_crush(&group)?;
+            if group.len() as u64 + self.continuous.resolved > World::MOST_IMPACTS {
+                return Err((group[0].bodies.1, Cause::Impacts));
+            }
+            self.continuous.resolved += group.len() as u64;
+            self.bounce_all_of(group.iter(), time);
+            changed.clear();
+            changed.extend(
+                group
+                    .iter()
+                    .flat_map(|event| [event.bodies.0, event.bodies.1]),
+            );
+            changed.retain(|&body| self.is_movable(body));
+            seeds.extend(&changed);
+        }
+        Ok(())
+    }
+
+    /// A contact as an impact now.
+    pub(super) fn event_of(&self, constraint: &ContactConstraint, time: f64) -> Event {
+        let (i, j) = constraint.bodies;
+        let version = &self.continuous.version;
+        Event {
+            time,
+            bodies: (i, j),
+            versions: (version[i], version[j]),
+            kind: EventKind::Impact,
+            outcome: Outcome::Bounce,
+            load_speed: 0.0,
+            gap: 0.0,
+            contact: Contact {
+                time: 0.0,
+                point: self.continuous.start.position[i] + constraint.point,
+                normal: constraint.normal,
+                feature: None,
+                face: None,
+            },
+        }
+    }
+
+    /// Lets bodies bounce: those of one impact, or all that impacts of one instant tie together.
+    fn bounce_all_of<'a>(&mut self, events: impl Iterator<Item = &'a Event> + Clone, time: f64) {
+        if events.clone().nth(1).is_none() {
+            if let Some(event) = events.clone().next() {
+                self.exchange_there(event, time);
+            }
+            return;
+        }
+        let places = Places::between(self, events.clone().map(Event::plane));
+        let is_movable: Vec<bool> = places.inverse_mass.iter().map(|&w| w > 0.0).collect();
+        let mut of_events: Vec<(usize, &Event)> = ties(&places.joined, &is_movable)
+            .into_iter()
+            .zip(events)
+            .collect();
+        of_events.sort_by_key(|&(tie, _)| tie);
+        for tied in of_events.chunk_by(|a, b| a.0 == b.0) {
+            match tied {
+                [(_, event)] => self.bounce_all_of(core::iter::once(*event), time),
+                _ => self.bounce_together(tied.iter().map(|&(_, event)| event), time),
+            }
+        }
+    }
+
+    /// Lets bodies bounce off each other all at once, with the least restitution of all.
+    fn bounce_together<'a>(&mut self, events: impl Iterator<Item = &'a Event> + Clone, time: f64) {
+        let restitution = events
+            .clone()
+            .map(|event| self.pair_restitution(event.bodies.0, event.bodies.1))
+            .fold(1.0, f64::min);
+        let places = Places::between(self, events.clone().map(Event::plane));
+        let mut velocity = places.each(|body| self.continuous.start.velocity[body]);
+        let before = velocity.clone();
+        let given = reflect(
+            &places.joined,
+            &places.inverse_mass,
+            &mut velocity,
+            restitution,
+        );
+        places.put(
+            &velocity,
+            &mut self.continuous.start.velocity,
+            &places.inverse_mass,
+        );
+        for ((event, joined), given) in events.zip(&places.joined).zip(given) {
+            let speeds = (-joined.opening(&before), joined.opening(&velocity));
+            let time = self.time() + time;
+            self.note_impact(event.bodies, &event.contact, given, speeds, time);
+        }
+    }
+
+    /// Exchanges the impulse of one impact.
+    pub(super) fn exchange_there(&mut self, event: &Event, time: f64) {
+        let (i, j) = event.bodies;
+        let restitution = self.pair_restitution(i, j);
+        let velocity = &self.continuous.start.velocity;
+        let moving = ((self.mass[i], self.mass[j]), (velocity[i], velocity[j]));
+        let time = self.time() + time;
+        let after = self.exchange((i, j), &event.contact, moving, restitution, time);
+        for (body, velocity) in [(i, after.0), (j, after.1)] {
+            if self.is_movable(body) {
+                self.continuous.start.velocity[body] = velocity;
+            }
+        }
+    }
+}
+
+/// For each contact a number that those have in common which movable bodies tie together.
+fn ties(contacts: &[Joined], is_movable: &[bool]) -> Vec<usize> {
+    let mut pieces = Pieces::new(is_movable.len());
+    for contact in contacts {
+        let (i, j) = contact.bodies;
+        if is_movable[i] && is_movable[j] {
+            pieces.join(i, j);
+        }
+    }
+    let movable = |contact: &Joined| match is_movable[contact.bodies.0] {
+        true => contact.bodies.0,
+        false => contact.bodies.1,
+    };
+    contacts
+        .iter()
+        .map(|contact| pieces.first(movable(contact)))
+        .collect()
+}
