@@ -142,7 +142,8 @@ impl Reference {
         let mut bodies = 0..world.len();
         let inelastic = !same_impacts && bodies.clone().any(|i| world.restitution(i) < 1.0);
         // One rough body among smooth ones slides freely.
-        let rough = bodies.clone().filter(|&i| world.friction(i) > 0.0).count() > 1;
+        let rough =
+            !same_impacts && bodies.clone().filter(|&i| world.friction(i) > 0.0).count() > 1;
         let pushed = !same_impacts && bodies.clone().any(|i| is_driven(world, i));
         let closed = same_impacts || bodies.all(|i| world.mass(i).is_finite());
         let kept = |force| is_weight(force) || is_internal(world, force);
