@@ -188,6 +188,8 @@ impl World {
         if let Err((body, cause)) = done {
             (self.impacts, self.last_impact) = before;
             mem::swap(&mut self.contacts, &mut self.continuous.contacts_before);
+            // Who fell asleep in the step has not.
+            self.continuous.wake_all();
             return Err(self.failed(body, cause));
         }
         self.forget_parted_overlaps();
@@ -214,16 +216,7 @@ impl World {
         restarted.sort_unstable();
         restarted.dedup();
         self.stagger_velocities(&restarted);
-        for &body in &restarted {
-            if let Some((bodies, _)) = self.coupled_group(body)
-                && bodies.start != body
-            {
-                continue;
-            }
-            let group = self.coupled_group(body);
-            let bodies = group.map_or(body..body + 1, |(bodies, _)| bodies);
-            self.finish_trajectories(bodies)?;
-        }
+        self.finish_restarted(&restarted)?;
         let mut events = mem::take(&mut self.continuous.found);
         self.contact_ends(&restarted, &mut events);
         self.continuous.events.extend(events.drain(..));

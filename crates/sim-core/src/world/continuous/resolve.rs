@@ -84,16 +84,7 @@ impl World {
         }
         restarted.sort_unstable();
         restarted.dedup();
-        for &body in &restarted {
-            if let Some((bodies, _)) = self.coupled_group(body)
-                && bodies.start != body
-            {
-                continue;
-            }
-            let group = self.coupled_group(body);
-            let bodies = group.map_or(body..body + 1, |(bodies, _)| bodies);
-            self.finish_trajectories(bodies)?;
-        }
+        self.finish_restarted(&restarted)?;
         for &body in &restarted {
             self.update_swept(body);
         }

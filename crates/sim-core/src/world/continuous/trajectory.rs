@@ -190,6 +190,19 @@ impl World {
         found.map(|()| bodies)
     }
 
+    /// Moves bodies whose trajectories have started again, in order, to the end of the step: of those that
+    /// are stepped together once all.
+    pub(super) fn finish_restarted(&mut self, restarted: &[usize]) -> Result<(), (usize, Cause)> {
+        for &body in restarted {
+            let group = self.coupled_group(body);
+            let bodies = group.map_or(body..body + 1, |(bodies, _)| bodies);
+            if bodies.start == body {
+                self.finish_trajectories(bodies)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Moves bodies that are stepped together from the start of their trajectories to the end of the
     /// step.
     pub(super) fn finish_trajectories(
