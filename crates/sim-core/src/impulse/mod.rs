@@ -16,7 +16,7 @@ mod together;
 use glam::DVec3;
 
 use crate::expansion::two_sum;
-pub use together::{Joined, project, reflect};
+pub use together::{Joined, Known, project, project_with, reflect};
 
 /// What two bodies exchange.
 #[derive(Clone, Copy, Debug, PartialEq)]

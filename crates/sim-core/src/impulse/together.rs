@@ -81,7 +81,7 @@ pub fn reflect(
         }
         let part: Vec<Joined> = closing.iter().map(|&k| contacts[k]).collect();
         let missing = missing_speeds(&part, velocity);
-        let mut given = multipliers(&part, inverse_mass, &missing);
+        let mut given = multipliers(&part, inverse_mass, &missing, Known::default());
         // Of an exact projection the contacts give up all that they give; the ratio makes up for
         // rounding, so that energy is kept where the equations are solved badly.
         let mut change = vec![DVec3::ZERO; velocity.len()];
@@ -112,7 +112,29 @@ pub fn project(
     velocity: &mut [DVec3],
     missing: &[f64],
 ) -> Vec<f64> {
-    let given = multipliers(contacts, inverse_mass, missing);
+    project_with(contacts, inverse_mass, velocity, missing, Known::default())
+}
+
+/// What is known of a projection before it is made.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Known<'a> {
+    /// Contacts that open by just what is missing, by pulling as well; none where empty.
+    pub held: &'a [bool],
+    /// Impulses that may be near, N s; nothing where empty.
+    pub warm: &'a [f64],
+    /// What may stay missing, m/s; little more than rounding where 0.
+    pub enough: f64,
+}
+
+/// The same with what is known beforehand.
+pub fn project_with(
+    contacts: &[Joined],
+    inverse_mass: &[f64],
+    velocity: &mut [DVec3],
+    missing: &[f64],
+    known: Known,
+) -> Vec<f64> {
+    let given = multipliers(contacts, inverse_mass, missing, known);
     push(contacts, inverse_mass, velocity, &given);
     given
 }
@@ -138,16 +160,23 @@ fn push(contacts: &[Joined], inverse_mass: &[f64], velocity: &mut [DVec3], impul
 }
 
 /// The impulses of a projection.
-fn multipliers(contacts: &[Joined], inverse_mass: &[f64], wanted: &[f64]) -> Vec<f64> {
+fn multipliers(
+    contacts: &[Joined],
+    inverse_mass: &[f64],
+    wanted: &[f64],
+    known: Known,
+) -> Vec<f64> {
+    let is_held = known.held.contains(&true);
     let own = |k: usize| contacts[k].shared(&contacts[k], inverse_mass);
     match contacts.len() {
         0 => Vec::new(),
+        1 if is_held => vec![wanted[0] / own(0)],
         1 => vec![wanted[0].max(0.0) / own(0)],
-        2 => {
+        2 if !is_held => {
             let shared = contacts[0].shared(&contacts[1], inverse_mass);
             two(wanted, [own(0), own(1)], shared)
         }
-        _ => Matrix::of(contacts, inverse_mass).multipliers(wanted),
+        _ => Matrix::of(contacts, inverse_mass).multipliers(wanted, known),
     }
 }
 

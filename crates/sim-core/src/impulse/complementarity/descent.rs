@@ -15,48 +15,74 @@ impl Matrix {
     /// The impulses, by descent along free and chopped gradients in turns (Dostál, Schöberl 2005,
     /// "Minimizing quadratic functions subject to bound constraints with the rate of convergence
     /// and finite termination", MPRGP): conjugate gradients among those that push, as long as these
-    /// are most of what is missing. It needs no guess.
-    pub(super) fn descend(&self, wanted: &[f64]) -> Vec<f64> {
+    /// are most of what is missing. It may start from impulses of a problem like this one.
+    pub(super) fn descend(
+        &self,
+        wanted: &[f64],
+        held: &[bool],
+        warm: Vec<f64>,
+        enough: f64,
+    ) -> Vec<f64> {
         // No step of this length along a gradient goes up (Gershgorin).
-        let size = |row: &[(usize, f64)]| row.iter().map(|entry| entry.1.abs()).sum();
+        let size = |row: &[(u32, f64)]| row.iter().map(|entry| entry.1.abs()).sum();
         let length = 1.0 / self.rows().map(size).fold(f64::MIN_POSITIVE, f64::max);
         let most = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
-        let free = |x: f64, g: f64| if x > 0.0 { g } else { 0.0 };
-        let chopped = |x: f64, g: f64| if x > 0.0 { 0.0 } else { g.min(0.0) };
+        let free = |x: f64, least: f64, g: f64| if x > least { g } else { 0.0 };
         let count = wanted.len();
         let zeros = || vec![0.0; count];
-        let (mut given, mut pulled, mut way) = (zeros(), zeros(), zeros());
-        let mut gradient: Vec<f64> = wanted.iter().map(|w| -w).collect();
-        let (mut least, mut idle) = (f64::INFINITY, 0);
+        let least: Vec<f64> = (0..count)
+            .map(|k| {
+                if held.get(k) == Some(&true) {
+                    f64::NEG_INFINITY
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        let (mut pulled, mut way, mut gradient) = (zeros(), zeros(), zeros());
+        let mut given = if warm.len() == count { warm } else { zeros() };
+        self.gradient(&given, wanted, &mut gradient);
+        for k in 0..count {
+            way[k] = free(given[k], least[k], gradient[k]);
+        }
+        let (mut best_worst, mut idle) = (f64::INFINITY, 0);
         for _ in 0..STEPS_A_CONTACT * count {
+            // The gradients of those that may give less, as far as they may, and of those that may not.
             let (mut worst, mut of_chopped, mut of_free) = (0.0_f64, 0.0, 0.0);
-            for (&x, &g) in given.iter().zip(&gradient) {
-                let (f, c) = (free(x, g), chopped(x, g));
-                worst = worst.max(f.abs()).max(c.abs());
-                of_chopped += c * c;
-                of_free += f * f.min(x / length);
+            for ((&x, &least), &g) in given.iter().zip(&least).zip(&gradient) {
+                if x > least {
+                    worst = worst.max(g.abs());
+                    of_free += g * g.min((x - least) / length);
+                } else if g < 0.0 {
+                    worst = worst.max(-g);
+                    of_chopped += g * g;
+                }
             }
-            idle = if worst < least { 0 } else { idle + 1 };
-            least = least.min(worst);
-            let is_idle = least <= NEARLY * most && idle > count;
-            if worst <= ROUNDING * most || is_idle {
+            idle = if worst < best_worst { 0 } else { idle + 1 };
+            best_worst = best_worst.min(worst);
+            let is_idle = best_worst <= NEARLY * most && idle > count;
+            if worst <= enough.max(ROUNDING * most) || is_idle {
                 break;
             }
             let is_balanced = of_chopped <= of_free;
             if !is_balanced {
-                for (way, (&x, &g)) in way.iter_mut().zip(given.iter().zip(&gradient)) {
-                    *way = chopped(x, g);
+                for ((way, (&x, &least)), &g) in
+                    way.iter_mut().zip(given.iter().zip(&least)).zip(&gradient)
+                {
+                    *way = if x > least { 0.0 } else { g.min(0.0) };
                 }
             }
             let (mut curvature, mut slope, mut size) = (0.0, 0.0, 0.0);
             let mut room = f64::INFINITY;
             for (k, row) in self.rows().enumerate() {
-                pulled[k] = row.iter().map(|&(l, x)| x * way[l]).sum();
-                curvature += way[k] * pulled[k];
-                slope += way[k] * gradient[k];
-                size += way[k] * way[k];
-                if way[k] > 0.0 {
-                    room = room.min(given[k] / way[k]);
+                let image: f64 = row.iter().map(|&(l, x)| x * way[l as usize]).sum();
+                let along = way[k];
+                pulled[k] = image;
+                curvature += along * image;
+                slope += along * gradient[k];
+                size += along * along;
+                if along > 0.0 {
+                    room = room.min((given[k] - least[k]) / along);
                 }
             }
             // Contacts that hold each other up against nothing: only rounding leads there.
@@ -67,28 +93,35 @@ impl Matrix {
             let step = best.min(room);
             let mut turn = 0.0;
             for k in 0..count {
-                given[k] = (given[k] - step * way[k]).max(0.0);
+                given[k] = (given[k] - step * way[k]).max(least[k]);
                 gradient[k] -= step * pulled[k];
-                turn += free(given[k], gradient[k]) * pulled[k] / curvature;
+                turn += free(given[k], least[k], gradient[k]) * pulled[k];
             }
-            if is_balanced && best > room {
-                for (x, g) in given.iter_mut().zip(&gradient) {
-                    *x = (*x - length * free(*x, *g)).max(0.0);
+            let is_blocked = best > room;
+            if is_balanced && is_blocked {
+                for k in 0..count {
+                    let down = length * free(given[k], least[k], gradient[k]);
+                    given[k] = (given[k] - down).max(least[k]);
                 }
-                for (k, row) in self.rows().enumerate() {
-                    let image: f64 = row.iter().map(|&(l, x)| x * given[l]).sum();
-                    gradient[k] = image - wanted[k];
-                }
+                self.gradient(&given, wanted, &mut gradient);
             }
-            let turn = if is_balanced && best <= room {
-                turn
+            let turn = if is_balanced && !is_blocked {
+                turn / curvature
             } else {
                 0.0
             };
             for k in 0..count {
-                way[k] = free(given[k], gradient[k]) - turn * way[k];
+                way[k] = free(given[k], least[k], gradient[k]) - turn * way[k];
             }
         }
         given
+    }
+
+    /// What contacts open more than they are wanted to.
+    fn gradient(&self, given: &[f64], wanted: &[f64], gradient: &mut [f64]) {
+        for ((row, wanted), gradient) in self.rows().zip(wanted).zip(gradient) {
+            let image: f64 = row.iter().map(|&(l, x)| x * given[l as usize]).sum();
+            *gradient = image - wanted;
+        }
     }
 }

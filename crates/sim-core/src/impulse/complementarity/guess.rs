@@ -12,19 +12,24 @@ impl Matrix {
     /// and the guess mended where one would pull or one that does not push closes (Júdice, Pires
     /// 1994, "A block principal pivoting algorithm for large-scale strictly monotone linear
     /// complementarity problems").
-    pub(super) fn guess(&self, wanted: &[f64]) -> Option<Vec<f64>> {
+    pub(super) fn guess(&self, wanted: &[f64], held: &[bool]) -> Option<Vec<f64>> {
+        let is_held = |k: usize| held.get(k) == Some(&true);
         let scale = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
-        let mut pushes: Vec<bool> = wanted.iter().map(|&w| w > 0.0).collect();
+        let wants = wanted.iter().enumerate();
+        let mut pushes: Vec<bool> = wants.map(|(k, &w)| w > 0.0 || is_held(k)).collect();
         for guess in 0..GUESSES {
             let given = self.solve(wanted, &pushes);
             let missing = self.missing(wanted, &given);
             let is_wrong = |k: usize| match pushes[k] {
-                true => given[k] < -ROUNDING * scale,
+                true => given[k] < -ROUNDING * scale && !is_held(k),
                 false => missing[k] > ROUNDING * scale,
             };
             let wrong: Vec<usize> = (0..wanted.len()).filter(|&k| is_wrong(k)).collect();
             if wrong.is_empty() {
-                return Some(given.into_iter().map(|given| given.max(0.0)).collect());
+                let given = given.into_iter().enumerate();
+                let pushed =
+                    |(k, given): (usize, f64)| if is_held(k) { given } else { given.max(0.0) };
+                return Some(given.map(pushed).collect());
             }
             // All at once is fast; one at a time does not go in circles.
             let mended = if guess < GUESSES / 2 { wrong.len() } else { 1 };

@@ -5,10 +5,10 @@ mod guess;
 
 use alloc::{vec, vec::Vec};
 
-use super::Joined;
+use super::{Joined, Known};
 
 /// Up to so many contacts are solved in sums that know no order.
-const FEW: usize = 32;
+const FEW: usize = 8;
 
 /// Part of the largest speed that is lost in solving.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 pub(super) struct Matrix {
     /// Where each begins, and where the last one ends.
     begin: Vec<usize>,
-    entries: Vec<(usize, f64)>,
+    entries: Vec<(u32, f64)>,
     /// Of each row and column, powers of two.
     scale: Vec<f64>,
 }
@@ -52,7 +52,7 @@ impl Matrix {
             others.dedup();
             let shared = |&l: &usize| {
                 let shared = contact.shared(&contacts[l], inverse_mass);
-                (l, own * scale[l] * shared)
+                (l as u32, own * scale[l] * shared)
             };
             entries.extend(others.iter().map(shared).filter(|entry| entry.1 != 0.0));
             begin.push(entries.len());
@@ -64,30 +64,35 @@ impl Matrix {
         }
     }
 
-    fn row(&self, k: usize) -> &[(usize, f64)] {
+    fn row(&self, k: usize) -> &[(u32, f64)] {
         &self.entries[self.begin[k]..self.begin[k + 1]]
     }
 
-    fn rows(&self) -> impl Iterator<Item = &[(usize, f64)]> {
+    fn rows(&self) -> impl Iterator<Item = &[(u32, f64)]> {
         (1..self.begin.len()).map(|k| self.row(k - 1))
     }
 
-    /// The least impulses, none negative, after which no contact closes as far as it is wanted to
-    /// open.
-    pub(super) fn multipliers(&self, wanted: &[f64]) -> Vec<f64> {
+    /// The least impulses after which no contact closes as far as it is wanted to open, and those that
+    /// are held open just as far: none negative but of contacts that are held.
+    pub(super) fn multipliers(&self, wanted: &[f64], known: Known) -> Vec<f64> {
         let scaled = |values: &[f64]| -> Vec<f64> {
             let pairs = values.iter().zip(&self.scale);
             pairs.map(|(value, scale)| value * scale).collect()
         };
         let wanted = scaled(wanted);
         let is_few = wanted.len() <= FEW;
-        let guess = is_few.then(|| self.guess(&wanted)).flatten();
-        scaled(&guess.unwrap_or_else(|| self.descend(&wanted)))
+        let guess = is_few.then(|| self.guess(&wanted, known.held)).flatten();
+        scaled(&guess.unwrap_or_else(|| {
+            let pairs = known.warm.iter().zip(&self.scale);
+            let warm = pairs.map(|(value, scale)| value / scale).collect();
+            let least_scale = self.scale.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+            self.descend(&wanted, known.held, warm, known.enough * least_scale)
+        }))
     }
 
     /// What is left of the wanted change after some impulses.
     fn missing(&self, wanted: &[f64], given: &[f64]) -> Vec<f64> {
-        let done = |row: &[(usize, f64)]| sum(row.iter().map(|&(l, x)| x * given[l]));
+        let done = |row: &[(u32, f64)]| sum(row.iter().map(|&(l, x)| x * given[l as usize]));
         let pairs = wanted.iter().zip(self.rows());
         pairs.map(|(w, row)| w - done(row)).collect()
     }

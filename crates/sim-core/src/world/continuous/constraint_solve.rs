@@ -11,10 +11,9 @@ use core::mem;
 use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
-use super::contact_motion::Course;
-use super::resolve::SHORTEST_FLIGHT;
+use super::contact_motion::{Course, LEAST_GAP};
 use super::{Event, EventKind, Outcome};
-use crate::impulse::{Joined, project};
+use crate::impulse::{Joined, Known, project_with};
 
 /// Part of the speed that forces give in a step below which bodies that come to rest on each other
 /// have rested before, and it is no impact.
@@ -30,44 +29,8 @@ const UNBALANCED: f64 = 1e-9;
 /// Part of the greatest speed at which a contact may still close where its island is solved.
 const UNSOLVED: f64 = 1e-6;
 
-/// Turns in which contacts are kept from closing and from parting for no time, and sweeps in each.
-const MAX_TURNS: usize = 4;
-const MAX_SWEEPS: usize = 100;
-
-/// Brings the contacts that are slow to their targets, and keeps the others from closing: by impulses
-/// on one contact after the other, until none is off its target by more than it may be (Gauss and
-/// Seidel). Without targets the energy is at no time above that at the start.
-fn bring_to_targets(
-    places: &Places,
-    slow: &[bool],
-    velocity: &mut [DVec3],
-    aim: impl Fn(usize) -> (f64, f64),
-) {
-    let mut given = alloc::vec![0.0_f64; slow.len()];
-    for _ in 0..MAX_SWEEPS {
-        let mut is_done = true;
-        for (k, joined) in places.joined.iter().enumerate() {
-            let (target, tolerance) = aim(k);
-            let missing = target - joined.opening(velocity);
-            let (i, j) = joined.bodies;
-            let (first, second) = (places.inverse_mass[i], places.inverse_mass[j]);
-            let mut impulse = missing / (first + second);
-            if !slow[k] {
-                impulse = impulse.max(-given[k]);
-            }
-            if impulse.abs() * (first + second) <= tolerance {
-                continue;
-            }
-            is_done = false;
-            given[k] += impulse;
-            velocity[i] -= first * impulse * joined.normal;
-            velocity[j] += second * impulse * joined.normal;
-        }
-        if is_done {
-            return;
-        }
-    }
-}
+/// Turns in which contacts are found that part for less than a flight.
+const MAX_TURNS: usize = 1;
 
 /// Bodies and constraints that contacts tie together.
 #[derive(Clone, Debug, Default)]
@@ -76,6 +39,19 @@ pub(super) struct Island {
     pub(super) bodies: Vec<usize>,
     /// Indices of the constraints.
     pub(super) constraints: Vec<usize>,
+}
+
+/// What an island does, by its constraints and the places of its bodies.
+struct Solution {
+    /// Which contacts part, and keep nothing.
+    open: Vec<bool>,
+    /// Acceleration by which each may close, m/s².
+    recession: Vec<f64>,
+    /// Accelerations by forces alone, and with contacts, m/s².
+    free: Vec<DVec3>,
+    acceleration: Vec<DVec3>,
+    /// Of each contact, N.
+    force: Vec<f64>,
 }
 
 /// Who has been visited in a search for islands.
@@ -208,11 +184,12 @@ impl World {
 
     /// Solves an island whose bodies are at the start of their trajectories.
     fn solve_measured(&mut self, island: &Island, time: f64) -> Result<(), (usize, Cause)> {
+        let is_bundled = self.spread_bundle(island);
         let places = Places::of(self, &island.constraints);
-        let mut open = self.solve_velocities(island, &places, self.settings.dt - time)?;
-        self.solve_accelerations(island, &places, &mut open, time)?;
-        let mut gone: Vec<usize> = (0..open.len())
-            .filter(|&k| open[k])
+        let mut solution = self.solve_velocities(island, &places, is_bundled, time)?;
+        self.solve_accelerations(island, &places, &mut solution, time);
+        let mut gone: Vec<usize> = (0..island.constraints.len())
+            .filter(|&k| solution.open[k] && !is_bundled)
             .map(|k| island.constraints[k])
             .collect();
         gone.sort_unstable_by(|a, b| b.cmp(a));
@@ -222,74 +199,114 @@ impl World {
         Ok(())
     }
 
-    /// Gives the bodies of an island velocities with which no contact closes faster than its target, and
-    /// tells for each contact whether it opens.
+    /// Gives the bodies of an island velocities with which no contact closes faster than its target, nor
+    /// parts for less than the shortest flight.
     fn solve_velocities(
         &mut self,
         island: &Island,
         places: &Places,
-        left: f64,
-    ) -> Result<Vec<bool>, (usize, Cause)> {
+        is_bundled: bool,
+        time: f64,
+    ) -> Result<Solution, (usize, Cause)> {
+        let left = self.settings.dt - time;
+        for &body in &island.bodies {
+            let continuous = &mut self.continuous;
+            continuous.acceleration[body] = continuous.applied_acceleration[body];
+        }
+        let free = places.each(|body| self.acceleration_there(body));
         let mut velocity = places.each(|body| self.continuous.start.velocity[body]);
         let length = |v: &DVec3| v.length();
         let fastest = velocity.iter().map(length).fold(0.0, f64::max);
         let rounding = 4.0 * f64::EPSILON * fastest;
-        let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
-        let opening = |k: usize, velocity: &[DVec3]| {
-            places.joined[k].opening(velocity) - constraint(k).target
-        };
         let count = island.constraints.len();
-        let missing: Vec<f64> = (0..count).map(|k| -opening(k, &velocity)).collect();
-        let mut given = alloc::vec![0.0; count];
-        if missing.iter().any(|&missing| missing > rounding) {
-            given = project(
-                &places.joined,
-                &places.inverse_mass,
-                &mut velocity,
-                &missing,
-            );
-        }
-        // What would be back within the shortest flight does not part: it is brought to its target. Like
-        // what keeps contacts from closing that takes energy and gives none, and the two in turns lead
-        // to where both hold.
-        let hop = |k: usize| 0.5 * SHORTEST_FLIGHT * constraint(k).load_speed;
+        let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
+        let target: Vec<f64> = (0..count).map(|k| constraint(k).target).collect();
+        let missing = |velocity: &[DVec3]| -> Vec<f64> {
+            let joined = places.joined.iter().zip(&target);
+            joined
+                .map(|(joined, target)| target - joined.opening(velocity))
+                .collect()
+        };
+        let before = velocity.clone();
+        let enough = self.unseen_speed(island);
+        let hop: Vec<f64> = (0..count)
+            .map(|k| 0.5 * self.shortest_flight(is_bundled) * constraint(k).load_speed)
+            .collect();
         // Slower than this a gap grows by less than that of contacts in a step, or than a hop counts.
         let still = |k: usize| {
             let (i, j) = constraint(k).bodies;
             let hover = self.hover_gap(i, j) / self.settings.dt;
-            hover.max(4.0 * rounding).max(SLIGHTEST * hop(k))
+            hover.max(4.0 * rounding).max(SLIGHTEST * hop[k])
         };
-        for _ in 0..MAX_TURNS {
-            let is_slow = |k: usize| {
-                let speed = opening(k, &velocity);
-                still(k) < speed && speed <= hop(k)
+        let still: Vec<f64> = (0..count).map(still).collect();
+        // What would be back within the shortest flight does not part: where forces press it, it is held.
+        // That takes energy and gives none, as standing still is among what is allowed.
+        let is_loaded = |k: usize| is_bundled && target[k] >= 0.0 && constraint(k).load_speed > 0.0;
+        let mut held: Vec<bool> = (0..count).map(is_loaded).collect();
+        let mut turn = 0;
+        let (mut given, mut solution);
+        loop {
+            velocity.copy_from_slice(&before);
+            let mut closing = missing(&velocity);
+            for k in (0..count).filter(|&k| held[k]) {
+                closing[k] = target[k].max(0.0) - places.joined[k].opening(&velocity);
+            }
+            let is_due =
+                (0..count).any(|k| closing[k] > rounding || held[k] && closing[k] < -still[k]);
+            given = alloc::vec![0.0; count];
+            if is_due {
+                let known = Known {
+                    held: &held,
+                    warm: &[],
+                    enough,
+                };
+                let (joined, inverse_mass) = (&places.joined, &places.inverse_mass);
+                given = project_with(joined, inverse_mass, &mut velocity, &closing, known);
+            }
+            let parting: Vec<f64> = missing(&velocity).iter().map(|missing| -missing).collect();
+            let open: Vec<bool> = (0..count)
+                .map(|k| !is_bundled && parting[k] > still[k].max(hop[k]))
+                .collect();
+            let recession = |k: usize| {
+                let parting = if parting[k] > 4.0 * rounding {
+                    parting[k]
+                } else {
+                    0.0
+                };
+                2.0 * parting / left
             };
-            let slow: Vec<bool> = (0..count).map(is_slow).collect();
-            if !slow.contains(&true) {
+            let recession: Vec<f64> = (0..count).map(recession).collect();
+            solution = Solution {
+                open,
+                recession,
+                free: free.clone(),
+                acceleration: Vec::new(),
+                force: Vec::new(),
+            };
+            self.constrain(island, places, &mut solution);
+            turn += 1;
+            let parts = |k: usize| places.joined[k].opening(&velocity) > still[k];
+            let is_wrong = |k: usize| match held[k] {
+                true => solution.force[k] <= 0.0 && given[k] < 0.0,
+                false => !solution.open[k] && solution.force[k] > 0.0 && parts(k),
+            };
+            let wrong: Vec<usize> = (0..count).filter(|&k| is_wrong(k)).collect();
+            if wrong.is_empty() || turn == MAX_TURNS {
                 break;
             }
-            bring_to_targets(places, &slow, &mut velocity, |k| {
-                (constraint(k).target, 0.5 * still(k))
-            });
-            let missing: Vec<f64> = (0..count).map(|k| -opening(k, &velocity)).collect();
-            if missing.iter().any(|&missing| missing > rounding) {
-                project(
-                    &places.joined,
-                    &places.inverse_mass,
-                    &mut velocity,
-                    &missing,
-                );
+            for k in wrong {
+                held[k] = !held[k];
             }
         }
-        let parting: Vec<f64> = (0..count).map(|k| opening(k, &velocity)).collect();
-        if let Some(k) = (0..count).find(|&k| parting[k] < -(still(k) + UNSOLVED * fastest))
+        let closing = missing(&velocity);
+        if let Some(k) = (0..count).find(|&k| closing[k] > still[k] + UNSOLVED * fastest)
             && let Some(crushed) = self.crushed(island, constraint(k).bodies)
         {
             return Err(crushed);
         }
-        let open = (0..count)
-            .map(|k| parting[k] > still(k).max(hop(k)))
-            .collect();
+        let is_busy = is_bundled
+            && (0..count)
+                .any(|k| held[k] || target[k] < 0.0 && (given[k] > 0.0 || solution.force[k] > 0.0));
         places.put(
             &velocity,
             &mut self.continuous.start.velocity,
@@ -298,17 +315,14 @@ impl World {
         for (k, &index) in island.constraints.iter().enumerate() {
             let constraint = self.contacts.get_mut(index);
             constraint.impulse = given[k];
-            // What is left of a speed at which it parts turns back by the end of the step.
-            let parting = if parting[k] > 4.0 * rounding {
-                parting[k]
-            } else {
-                0.0
-            };
-            constraint.recession = 2.0 * parting / left;
-            constraint.is_turning = parting > 0.0;
+            constraint.recession = solution.recession[k];
+            constraint.is_turning = solution.recession[k] > 0.0;
             constraint.ends_at = f64::INFINITY;
         }
-        Ok(open)
+        if is_busy {
+            self.contacts.keep_bundled(&island.bodies);
+        }
+        Ok(solution)
     }
 
     /// That the bodies of a contact are crushed, if immovable bodies of the island move against each other.
@@ -331,26 +345,53 @@ impl World {
         &mut self,
         island: &Island,
         places: &Places,
-        open: &mut [bool],
+        solution: &mut Solution,
         time: f64,
-    ) -> Result<(), (usize, Cause)> {
-        for &body in &island.bodies {
-            let continuous = &mut self.continuous;
-            continuous.acceleration[body] = continuous.applied_acceleration[body];
+    ) {
+        let Solution {
+            free,
+            acceleration,
+            force,
+            ..
+        } = &*solution;
+        if self.balance(island, places, free, acceleration, force, time) {
+            self.note_loads(island, places, &solution.force);
+            return;
         }
-        let free = places.each(|body| self.acceleration_there(body));
-        let (mut acceleration, mut force) = self.constrained(island, places, open, &free);
-        if self.balance(island, places, &free, &acceleration, time) {
-            self.note_loads(island, places, &force);
-            return Ok(());
+        // Where events come thick, surfaces count as flat for the rest of the step: nothing meets, and what
+        // opens closes in the next one.
+        let is_bundled = island
+            .bodies
+            .first()
+            .is_some_and(|&body| self.is_bundled(body));
+        if !is_bundled && self.follow_surfaces(island, places, solution, time) {
+            self.constrain(island, places, solution);
         }
-        // Where the surface of a contact turns or ends, seen along the motion that it allows.
+        self.note_loads(island, places, &solution.force);
+        for (place, &body) in places.bodies.iter().enumerate() {
+            if self.is_movable(body) {
+                let by = solution.acceleration[place] - solution.free[place];
+                self.continuous.acceleration[body] =
+                    self.continuous.applied_acceleration[body] + by;
+            }
+        }
+    }
+
+    /// Looks where the surfaces of contacts turn or end, along the motion that they allow, and tells
+    /// whether that changes what they allow.
+    fn follow_surfaces(
+        &mut self,
+        island: &Island,
+        places: &Places,
+        solution: &mut Solution,
+        time: f64,
+    ) -> bool {
         let mut turns = false;
         let length = self.settings.dt - time;
-        for k in 0..open.len() {
+        for k in 0..island.constraints.len() {
             let index = island.constraints[k];
             let constraint = self.contacts.all()[index];
-            if open[k] || constraint.is_overlap || length <= 0.0 {
+            if solution.open[k] || constraint.is_overlap || length <= 0.0 {
                 continue;
             }
             let (i, j) = constraint.bodies;
@@ -360,25 +401,21 @@ impl World {
                 true => self.continuous.velocity_stagger,
                 false => 0.0,
             };
-            let pushed = acceleration[b] - acceleration[a];
+            let pushed = solution.acceleration[b] - solution.acceleration[a];
             let motion = (
                 start.position[j] - start.position[i],
                 start.velocity[j] - start.velocity[i] + stagger * pushed,
                 pushed,
             );
-            // Where events come thick, surfaces count as flat for the rest of the step: nothing meets, and
-            // what opens closes in the next one.
-            if self.is_bundled(i) || self.is_bundled(j) {
-                continue;
-            }
             // What would press them together without this contact.
-            let load = force[k] * (places.inverse_mass[a] + places.inverse_mass[b]);
+            let load = solution.force[k] * (places.inverse_mass[a] + places.inverse_mass[b]);
             if load <= 0.0 {
                 continue;
             }
             match self.course_below(&constraint, motion, length, load) {
                 Course::Flat => {}
                 Course::Receding(recession) => {
+                    solution.recession[k] += recession;
                     let constraint = self.contacts.get_mut(index);
                     constraint.recession += recession;
                     constraint.is_turning = true;
@@ -388,48 +425,59 @@ impl World {
                     self.contacts.get_mut(index).ends_at = time + after;
                 }
                 Course::Ended => {
-                    open[k] = true;
+                    solution.open[k] = true;
                     turns = true;
                 }
             }
         }
-        if turns {
-            (acceleration, force) = self.constrained(island, places, open, &free);
-        }
-        self.note_loads(island, places, &force);
-        for (place, &body) in places.bodies.iter().enumerate() {
-            if self.is_movable(body) {
-                self.continuous.acceleration[body] += acceleration[place] - free[place];
-            }
-        }
-        Ok(())
+        turns
+    }
+
+    /// A speed that changes no gap of an island in a step by more than a small part of the least one, m/s.
+    fn unseen_speed(&self, island: &Island) -> f64 {
+        let all = self.contacts.all();
+        let hover = |&index: &usize| self.hover_gap(all[index].bodies.0, all[index].bodies.1);
+        let least = island
+            .constraints
+            .iter()
+            .map(hover)
+            .fold(f64::INFINITY, f64::min);
+        0.0625 * LEAST_GAP * least / self.settings.dt
     }
 
     /// The accelerations nearest to free ones with which no contact that is not open closes more than
     /// its surface recedes, and the force of each contact.
-    fn constrained(
-        &self,
-        island: &Island,
-        places: &Places,
-        open: &[bool],
-        free: &[DVec3],
-    ) -> (Vec<DVec3>, Vec<f64>) {
-        let mut acceleration = free.to_vec();
+    fn constrain(&self, island: &Island, places: &Places, solution: &mut Solution) {
+        let Solution {
+            open,
+            recession,
+            free,
+            ..
+        } = solution;
+        let mut acceleration = free.clone();
         let kept: Vec<usize> = (0..open.len()).filter(|&k| !open[k]).collect();
         let joined: Vec<Joined> = kept.iter().map(|&k| places.joined[k]).collect();
-        let missing: Vec<f64> = kept
-            .iter()
-            .map(|&k| {
-                let recession = self.contacts.all()[island.constraints[k]].recession;
-                -recession - places.joined[k].opening(free)
-            })
-            .collect();
-        let given = project(&joined, &places.inverse_mass, &mut acceleration, &missing);
+        let missing = |&k: &usize| -recession[k] - places.joined[k].opening(free);
+        let missing: Vec<f64> = kept.iter().map(missing).collect();
+        // What they did before is near.
+        let before = |(&k, joined): (&usize, &Joined)| {
+            let (i, j) = joined.bodies;
+            let load = self.contacts.all()[island.constraints[k]].load_speed / self.settings.dt;
+            load.max(0.0) / (places.inverse_mass[i] + places.inverse_mass[j])
+        };
+        let warm: Vec<f64> = kept.iter().zip(&joined).map(before).collect();
+        let inverse_mass = &places.inverse_mass;
+        let known = Known {
+            held: &[],
+            warm: &warm,
+            enough: self.unseen_speed(island) / self.settings.dt,
+        };
+        let given = project_with(&joined, inverse_mass, &mut acceleration, &missing, known);
         let mut force = alloc::vec![0.0; open.len()];
         for (k, given) in kept.into_iter().zip(given) {
             force[k] = given;
         }
-        (acceleration, force)
+        (solution.acceleration, solution.force) = (acceleration, force);
     }
 
     /// Notes by what speed each contact would close in a step if it were not there.
@@ -449,6 +497,7 @@ impl World {
         places: &Places,
         free: &[DVec3],
         acceleration: &[DVec3],
+        force: &[f64],
         time: f64,
     ) -> bool {
         let push = free.iter().fold(0.0_f64, |most, a| most.max(a.length()));
@@ -465,10 +514,14 @@ impl World {
                         }
                     }
                 })
-                && island.constraints.iter().all(|&index| {
-                    let constraint = &self.contacts.all()[index];
-                    constraint.target == 0.0
-                });
+                && island
+                    .constraints
+                    .iter()
+                    .zip(force)
+                    .all(|(&index, &force)| {
+                        let constraint = &self.contacts.all()[index];
+                        constraint.target == 0.0 || force <= 0.0
+                    });
         if at_rest {
             for &body in &island.bodies {
                 self.continuous.start.velocity[body] = DVec3::ZERO;

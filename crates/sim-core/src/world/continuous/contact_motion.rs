@@ -9,7 +9,6 @@ use glam::DVec3;
 
 use super::super::World;
 use super::contact_set::ContactConstraint;
-use super::resolve::SHORTEST_FLIGHT;
 use crate::{
     Feature, Shape,
     collide::{first_contact, snap},
@@ -90,8 +89,8 @@ impl World {
 
     /// The height of a flight that is too short to be one, m, and its speed, m/s, under an
     /// acceleration, m/s²: up for half of the time, and down for the other.
-    pub(super) fn shortest_hop(&self, acceleration: f64) -> (f64, f64) {
-        let rise = 0.5 * SHORTEST_FLIGHT * self.settings.dt;
+    pub(super) fn shortest_hop(&self, acceleration: f64, is_bundled: bool) -> (f64, f64) {
+        let rise = 0.5 * self.shortest_flight(is_bundled) * self.settings.dt;
         (0.5 * rise * rise * acceleration, rise * acceleration)
     }
 
@@ -165,30 +164,43 @@ impl World {
     ) -> Option<ContactConstraint> {
         let (i, j) = constraint.bodies;
         let hover = self.hover_gap(i, j);
-        let (height, _) = self.shortest_hop(self.greatest_push(i, j));
-        let start = &self.continuous.start.position;
-        let surface =
-            self.surface_below(&constraint, start[j] - start[i], height.max(8.0 * hover))?;
+        let is_bundled = self.contacts.is_bundled(i) || self.contacts.is_bundled(j);
+        let (height, _) = self.shortest_hop(self.greatest_push(i, j), is_bundled);
+        let start = &self.continuous.start;
+        let closing = (start.velocity[i] - start.velocity[j]).dot(constraint.normal);
+        let reach = match is_bundled {
+            // As far as it may come in this step.
+            true => 4.0 * height + left * closing.max(0.0),
+            false => height,
+        };
+        let offset = start.position[j] - start.position[i];
+        let surface = self.surface_below(&constraint, offset, reach.max(8.0 * hover))?;
+        // Along the plane that it meets.
+        let gap = surface.distance * surface.normal.dot(constraint.normal);
         let push = &self.continuous.applied_acceleration;
         let pressed = (push[i] - push[j]).dot(surface.normal);
+        let load_speed = constraint.load_speed.max(self.settings.dt * pressed);
         Some(ContactConstraint {
             normal: surface.normal,
             point: surface.point,
-            gap: surface.distance,
+            gap,
             recession: 0.0,
             ends_at: f64::INFINITY,
-            target: self.speed_to_hover(surface.distance, hover, left),
-            load_speed: constraint.load_speed.max(self.settings.dt * pressed),
+            target: self.speed_to_hover(gap, hover, left, load_speed),
+            load_speed,
             ..constraint
         })
     }
 
-    /// Speed along its normal with which a gap becomes the one of contacts within a time, m/s: none
-    /// where it is about that.
-    pub(super) fn speed_to_hover(&self, gap: f64, hover: f64, time: f64) -> f64 {
-        match gap {
-            gap if gap > 4.0 * hover => -(gap - hover) / time,
-            _ => 0.0,
+    /// Speed along its normal with which a gap becomes the one of contacts, m/s: a wider one within a
+    /// time, a narrower one within a step if forces close it, none where it is about that.
+    pub(super) fn speed_to_hover(&self, gap: f64, hover: f64, time: f64, load_speed: f64) -> f64 {
+        if gap > 4.0 * hover {
+            -(gap - hover) / time
+        } else if gap < 0.5 * hover && load_speed > 0.0 {
+            (hover - gap) / self.settings.dt
+        } else {
+            0.0
         }
     }
 

@@ -1,6 +1,7 @@
 //! Which bodies are in touch, and along which normals: the state of contacts, kept from step to step.
 
 use alloc::vec::Vec;
+use core::mem;
 use glam::DVec3;
 
 /// A plane that keeps two bodies apart: the second one may not move against the normal faster than
@@ -42,6 +43,10 @@ pub(in crate::world) struct ContactSet {
     all: Vec<ContactConstraint>,
     /// By body, indices of `all`; empty for bodies that nothing moves.
     of_body: Vec<Vec<u32>>,
+    /// By body, whether its contacts are solved once a step, with their gaps; and whether they are to be
+    /// in the next one. Empty where none are.
+    bundled: Vec<bool>,
+    bundled_next: Vec<bool>,
 }
 
 impl ContactSet {
@@ -130,8 +135,32 @@ impl ContactSet {
         }
     }
 
+    pub(super) fn is_bundled(&self, body: usize) -> bool {
+        self.bundled.get(body).is_some_and(|&bundled| bundled)
+    }
+
+    /// Bundles the contacts of some bodies for the rest of the step.
+    pub(super) fn bundle(&mut self, bodies: &[usize]) {
+        set(&mut self.bundled, bodies);
+    }
+
+    /// Lets bodies that are bundled be so in the next step.
+    pub(super) fn keep_bundled(&mut self, bodies: &[usize]) {
+        set(&mut self.bundled_next, bodies);
+    }
+
+    /// Goes on to the next step.
+    pub(super) fn end_step(&mut self) {
+        for (next, now) in self.bundled_next.iter_mut().zip(&self.bundled) {
+            *next &= now;
+        }
+        mem::swap(&mut self.bundled, &mut self.bundled_next);
+        self.bundled_next.clear();
+    }
+
     pub(in crate::world) fn clear(&mut self) {
         self.all.clear();
+        self.bundled.clear();
         self.of_body.iter_mut().for_each(Vec::clear);
     }
 
@@ -139,5 +168,15 @@ impl ContactSet {
     pub(super) fn copy_from(&mut self, other: &ContactSet) {
         self.all.clone_from(&other.all);
         self.of_body.clone_from(&other.of_body);
+        self.bundled.clone_from(&other.bundled);
+    }
+}
+
+fn set(flags: &mut Vec<bool>, bodies: &[usize]) {
+    for &body in bodies {
+        if flags.len() <= body {
+            flags.resize(body + 1, false);
+        }
+        flags[body] = true;
     }
 }

@@ -42,6 +42,7 @@ use crate::{
 use constraint_solve::Visited;
 pub(super) use contact_set::ContactSet;
 use crush::CrushDetector;
+use position_correction::MAX_CORRECTION;
 use trajectory::Probe;
 
 /// What a step with continuous collision needs beside the state; empty while there is none.
@@ -193,6 +194,7 @@ impl World {
             return Err(self.failed(body, cause));
         }
         self.forget_parted_overlaps();
+        self.contacts.end_step();
         Ok(())
     }
 
@@ -396,9 +398,10 @@ impl World {
             farthest,
             ..
         } = self.extent(body);
-        // More than is lost in rounding, here and where vertices are placed.
+        // More than is lost in rounding, here and where vertices are placed; and as far as bodies may be
+        // moved where others that meet are parted.
         let size = from.abs() + to.abs() + 2.0 * farthest;
-        let reach = self.chord_deviation(body) + 8.0 * f64::EPSILON * size;
+        let reach = self.chord_deviation(body) + 2.0 * MAX_CORRECTION * f64::EPSILON * size;
         Swept {
             min: from.min(to) + low - reach,
             max: from.max(to) + high + reach,

@@ -15,7 +15,7 @@ use alloc::{vec, vec::Vec};
 use core::mem;
 
 use super::super::{World, stepping::Cause};
-use super::constraint_solve::{Places, SLIGHTEST};
+use super::constraint_solve::{Island, Places, SLIGHTEST};
 use super::contact_motion::LEAST_GAP;
 use super::contact_set::ContactConstraint;
 use super::{Bounces, Event, EventKind, Outcome};
@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// A flight of less than this part of a step is none.
-pub(super) const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
+const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
 
 /// Impacts of a body in a step after which it may be caught among others.
 const MANY_BOUNCES: u32 = 8;
@@ -159,7 +159,7 @@ impl World {
             for mut event in soon {
                 let (gap, opening) = self.gap_before(&event, time)?;
                 let push = self.greatest_push(event.bodies.0, event.bodies.1);
-                let (height, speed) = self.shortest_hop(push);
+                let (height, speed) = self.shortest_hop(push, is_bundled);
                 let is_hop = gap <= height && opening <= speed;
                 if is_hop || is_bundled {
                     self.classify_at_its_time(&mut event)?;
@@ -215,6 +215,7 @@ impl World {
                 } else {
                     continuous.rests.resize(bodies, 0);
                     continuous.rests[body] += 1;
+                    self.contacts.keep_bundled(&[body]);
                 }
             }
         }
@@ -272,7 +273,9 @@ impl World {
         let restitution = self.pair_restitution(i, j);
         let lasting = restitution * (closing - self.unfelt(load_speed)).max(0.0);
         // Back after the time 2 v / a.
-        let is_short = |speed: f64, push: f64| 2.0 * speed <= SHORTEST_FLIGHT * push;
+        let is_bundled = self.is_bundled(i) || self.is_bundled(j);
+        let flight = self.shortest_flight(is_bundled);
+        let is_short = |speed: f64, push: f64| 2.0 * speed <= flight * push;
         if load_speed > 0.0 && is_short(lasting, load_speed) {
             return false;
         }
@@ -282,8 +285,9 @@ impl World {
             let felt = self.settings.dt * self.greatest_push(i, j);
             let bounces = self.bounces_of(i, j);
             let rests = self.rests_of(i) > 0 || self.rests_of(j) > 0;
-            bounces.count >= MANY_BOUNCES
-                && (leaving <= SPENT * bounces.fastest || rests && is_short(leaving, felt))
+            let is_many = bounces.count >= MANY_BOUNCES;
+            is_many && leaving <= SPENT * bounces.fastest
+                || (is_bundled || is_many && rests) && is_short(leaving, felt)
         };
         !(restitution < 1.0 && (is_spent() || is_caught()))
     }
@@ -298,9 +302,28 @@ impl World {
         }
     }
 
-    /// Whether a body has come to rest so often in this step that what follows is bundled.
+    /// Whether a body has come to rest so often in this step, or is in contact with one that has, that
+    /// what follows is bundled; or has been in the last step.
     pub(super) fn is_bundled(&self, body: usize) -> bool {
-        self.rests_of(body) > MANY_RESTS
+        self.rests_of(body) > MANY_RESTS || self.contacts.is_bundled(body)
+    }
+
+    /// Bundles an island of which one body is.
+    pub(super) fn spread_bundle(&mut self, island: &Island) -> bool {
+        let is_bundled = island.bodies.iter().any(|&body| self.is_bundled(body));
+        if is_bundled {
+            self.contacts.bundle(&island.bodies);
+        }
+        is_bundled
+    }
+
+    /// A flight of less than this part of a step is none; where the step is bundled, one of less than the
+    /// step.
+    pub(super) fn shortest_flight(&self, is_bundled: bool) -> f64 {
+        match is_bundled {
+            true => 1.0,
+            false => SHORTEST_FLIGHT,
+        }
     }
 
     fn rests_of(&self, body: usize) -> u32 {
@@ -323,7 +346,7 @@ impl World {
         if event.gap < least {
             self.move_apart(event.bodies, (least - event.gap) * event.contact.normal);
         }
-        let target = self.speed_to_hover(gap, hover, self.settings.dt - time);
+        let target = self.speed_to_hover(gap, hover, self.settings.dt - time, event.load_speed);
         let position = &self.continuous.start.position;
         let constraint = ContactConstraint {
             bodies: event.bodies,
@@ -400,9 +423,13 @@ impl World {
             }
             group.retain_mut(|event| {
                 self.classify(event);
-                let is_lossy = self.pair_restitution(event.bodies.0, event.bodies.1) < 1.0;
-                // What gives back a part goes to and fro in a row without end, and comes to rest.
-                event.outcome == Outcome::Bounce && !(is_lossy && round > MANY_BOUNCES)
+                let (i, j) = event.bodies;
+                // What gives back a part goes to and fro in a row without end, and comes to rest; so does, at
+                // once, what lies in a heap.
+                let is_lossy = self.pair_restitution(i, j) < 1.0;
+                let is_bundled = self.is_bundled(i) || self.is_bundled(j);
+                let ends = is_lossy && (is_bundled || round > MANY_BOUNCES);
+                event.outcome == Outcome::Bounce && !ends
             });
             self.count(&group);
             self.watch_crush(&group)?;
