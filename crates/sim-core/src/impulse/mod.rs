@@ -11,11 +11,13 @@
 //! physically based modeling: rigid body simulation II", eq. 8-18, without rotation).
 
 mod complementarity;
+mod friction;
 mod together;
 
 use glam::DVec3;
 
 use crate::expansion::two_sum;
+pub use friction::{apply, drag, rub};
 pub use together::{Joined, Known, project, project_with, reflect};
 
 /// What two bodies exchange.

@@ -32,6 +32,12 @@ impl Joined {
         (velocity[self.bodies.1] - velocity[self.bodies.0]).dot(self.normal)
     }
 
+    /// Velocity of the second body against the first across the normal, m/s.
+    pub(crate) fn sliding(&self, velocity: &[DVec3]) -> DVec3 {
+        let relative = velocity[self.bodies.1] - velocity[self.bodies.0];
+        relative - relative.dot(self.normal) * self.normal
+    }
+
     /// Part of an impulse of another contact that arrives here, by inverse mass.
     pub(super) fn shared(&self, other: &Joined, inverse_mass: &[f64]) -> f64 {
         let signs = |contact: &Joined| [(contact.bodies.0, -1.0), (contact.bodies.1, 1.0)];

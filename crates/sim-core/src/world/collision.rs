@@ -183,8 +183,12 @@ impl World {
         let Some(given) = impulse::between((m1, v1), (m2, v2), normal, restitution) else {
             return (v1, v2);
         };
-        let after = given.after;
+        let mut after = given.after;
         let speeds = ((v1 - v2).dot(normal), (after.1 - after.0).dot(normal));
+        if !self.friction.is_empty() {
+            let friction = self.pair_friction(bodies.0, bodies.1);
+            after = impulse::rub((m1, m2), after, normal, friction, given.impulse);
+        }
         self.note_impact(bodies, contact, given.impulse, speeds, time);
         after
     }
@@ -220,7 +224,6 @@ impl World {
 
     /// The coefficient of friction between two bodies: the geometric mean of theirs, and 0 where one
     /// is smooth, whatever the other is.
-    #[allow(dead_code)] // until contacts rub
     pub(super) fn pair_friction(&self, i: usize, j: usize) -> f64 {
         let (first, second) = (self.friction(i), self.friction(j));
         if first == 0.0 || second == 0.0 {

@@ -12,8 +12,9 @@ use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
 use super::contact_motion::{Course, LEAST_GAP};
+use super::friction::Friction;
 use super::{Event, EventKind, Outcome};
-use crate::impulse::{Joined, Known, project_with};
+use crate::impulse::{Joined, Known, apply, project_with};
 
 /// Part of the speed that forces give in a step below which bodies that come to rest on each other
 /// have rested before, and it is no impact.
@@ -29,9 +30,6 @@ const UNBALANCED: f64 = 1e-9;
 /// Part of the greatest speed at which a contact may still close where its island is solved.
 const UNSOLVED: f64 = 1e-6;
 
-/// Turns in which contacts are found that part for less than a flight.
-const MAX_TURNS: usize = 1;
-
 /// Bodies and constraints that contacts tie together.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Island {
@@ -42,16 +40,17 @@ pub(super) struct Island {
 }
 
 /// What an island does, by its constraints and the places of its bodies.
-struct Solution {
+pub(super) struct Solution {
     /// Which contacts part, and keep nothing.
-    open: Vec<bool>,
+    pub(super) open: Vec<bool>,
     /// Acceleration by which each may close, m/s².
-    recession: Vec<f64>,
+    pub(super) recession: Vec<f64>,
     /// Accelerations by forces alone, and with contacts, m/s².
-    free: Vec<DVec3>,
-    acceleration: Vec<DVec3>,
+    pub(super) free: Vec<DVec3>,
+    pub(super) acceleration: Vec<DVec3>,
     /// Of each contact, N.
-    force: Vec<f64>,
+    pub(super) force: Vec<f64>,
+    pub(super) friction: Friction,
 }
 
 /// Who has been visited in a search for islands.
@@ -227,7 +226,6 @@ impl World {
                 .map(|(joined, target)| target - joined.opening(velocity))
                 .collect()
         };
-        let before = velocity.clone();
         let enough = self.unseen_speed(island);
         let hop: Vec<f64> = (0..count)
             .map(|k| 0.5 * self.shortest_flight(is_bundled) * constraint(k).load_speed)
@@ -239,65 +237,50 @@ impl World {
             hover.max(4.0 * rounding).max(SLIGHTEST * hop[k])
         };
         let still: Vec<f64> = (0..count).map(still).collect();
-        // What would be back within the shortest flight does not part: where forces press it, it is held.
-        // That takes energy and gives none, as standing still is among what is allowed.
+        // In a heap, what forces press does not part. That takes energy and gives none, as standing still is
+        // among what is allowed.
         let is_loaded = |k: usize| is_bundled && target[k] >= 0.0 && constraint(k).load_speed > 0.0;
-        let mut held: Vec<bool> = (0..count).map(is_loaded).collect();
-        let mut turn = 0;
-        let (mut given, mut solution);
-        loop {
-            velocity.copy_from_slice(&before);
-            let mut closing = missing(&velocity);
-            for k in (0..count).filter(|&k| held[k]) {
-                closing[k] = target[k].max(0.0) - places.joined[k].opening(&velocity);
-            }
-            let is_due =
-                (0..count).any(|k| closing[k] > rounding || held[k] && closing[k] < -still[k]);
-            given = alloc::vec![0.0; count];
-            if is_due {
-                let known = Known {
-                    held: &held,
-                    warm: &[],
-                    enough,
-                };
-                let (joined, inverse_mass) = (&places.joined, &places.inverse_mass);
-                given = project_with(joined, inverse_mass, &mut velocity, &closing, known);
-            }
-            let parting: Vec<f64> = missing(&velocity).iter().map(|missing| -missing).collect();
-            let open: Vec<bool> = (0..count)
-                .map(|k| !is_bundled && parting[k] > still[k].max(hop[k]))
-                .collect();
-            let recession = |k: usize| {
-                let parting = if parting[k] > 4.0 * rounding {
-                    parting[k]
-                } else {
-                    0.0
-                };
-                2.0 * parting / left
-            };
-            let recession: Vec<f64> = (0..count).map(recession).collect();
-            solution = Solution {
-                open,
-                recession,
-                free: free.clone(),
-                acceleration: Vec::new(),
-                force: Vec::new(),
-            };
-            self.constrain(island, places, &mut solution);
-            turn += 1;
-            let parts = |k: usize| places.joined[k].opening(&velocity) > still[k];
-            let is_wrong = |k: usize| match held[k] {
-                true => solution.force[k] <= 0.0 && given[k] < 0.0,
-                false => !solution.open[k] && solution.force[k] > 0.0 && parts(k),
-            };
-            let wrong: Vec<usize> = (0..count).filter(|&k| is_wrong(k)).collect();
-            if wrong.is_empty() || turn == MAX_TURNS {
-                break;
-            }
-            for k in wrong {
-                held[k] = !held[k];
-            }
+        let held: Vec<bool> = (0..count).map(is_loaded).collect();
+        let mut closing = missing(&velocity);
+        for k in (0..count).filter(|&k| held[k]) {
+            closing[k] = target[k].max(0.0) - places.joined[k].opening(&velocity);
         }
+        let is_due = (0..count).any(|k| closing[k] > rounding || held[k] && closing[k] < -still[k]);
+        let mut given = alloc::vec![0.0; count];
+        if is_due {
+            let known = Known {
+                held: &held,
+                warm: &[],
+                enough,
+            };
+            let (joined, inverse_mass) = (&places.joined, &places.inverse_mass);
+            given = project_with(joined, inverse_mass, &mut velocity, &closing, known);
+        }
+        if self.is_rough() {
+            self.rub(island, places, &mut velocity, &mut given, rounding);
+        }
+        let parting: Vec<f64> = missing(&velocity).iter().map(|missing| -missing).collect();
+        let open: Vec<bool> = (0..count)
+            .map(|k| !is_bundled && parting[k] > still[k].max(hop[k]))
+            .collect();
+        // What is left of a speed at which it parts turns back by the end of the step.
+        let recession = |k: usize| match parting[k] > 4.0 * rounding {
+            true => 2.0 * parting[k] / left,
+            false => 0.0,
+        };
+        let recession: Vec<f64> = (0..count).map(recession).collect();
+        let mut solution = Solution {
+            open,
+            recession,
+            free,
+            acceleration: Vec::new(),
+            force: Vec::new(),
+            friction: Friction::default(),
+        };
+        if self.is_rough() {
+            solution.friction = self.friction_of(island, places, &velocity, is_bundled, time);
+        }
+        self.constrain(island, places, &mut solution);
         let closing = missing(&velocity);
         if let Some(k) = (0..count).find(|&k| closing[k] > still[k] + UNSOLVED * fastest)
             && let Some(crushed) = self.crushed(island, constraint(k).bodies)
@@ -352,9 +335,10 @@ impl World {
             free,
             acceleration,
             force,
+            friction,
             ..
         } = &*solution;
-        if self.balance(island, places, free, acceleration, force, time) {
+        if self.balance(island, places, free, acceleration, (force, friction), time) {
             self.note_loads(island, places, &solution.force);
             return;
         }
@@ -368,6 +352,7 @@ impl World {
             self.constrain(island, places, solution);
         }
         self.note_loads(island, places, &solution.force);
+        self.note_friction(island, &solution.friction, time);
         for (place, &body) in places.bodies.iter().enumerate() {
             if self.is_movable(body) {
                 let by = solution.acceleration[place] - solution.free[place];
@@ -448,6 +433,14 @@ impl World {
     /// The accelerations nearest to free ones with which no contact that is not open closes more than
     /// its surface recedes, and the force of each contact.
     fn constrain(&self, island: &Island, places: &Places, solution: &mut Solution) {
+        match solution.friction.is_empty() {
+            true => self.press(island, places, solution),
+            false => self.press_and_drag(island, places, solution),
+        }
+    }
+
+    /// The same where friction does what it does.
+    pub(super) fn press(&self, island: &Island, places: &Places, solution: &mut Solution) {
         let Solution {
             open,
             recession,
@@ -455,15 +448,21 @@ impl World {
             ..
         } = solution;
         let mut acceleration = free.clone();
+        let friction = &solution.friction;
+        for (joined, &dragged) in places.joined.iter().zip(&friction.force) {
+            apply(joined, &places.inverse_mass, &mut acceleration, dragged);
+        }
+        let free = acceleration.clone();
         let kept: Vec<usize> = (0..open.len()).filter(|&k| !open[k]).collect();
         let joined: Vec<Joined> = kept.iter().map(|&k| places.joined[k]).collect();
-        let missing = |&k: &usize| -recession[k] - places.joined[k].opening(free);
+        let missing = |&k: &usize| -recession[k] - places.joined[k].opening(&free);
         let missing: Vec<f64> = kept.iter().map(missing).collect();
         // What they did before is near.
         let before = |(&k, joined): (&usize, &Joined)| {
             let (i, j) = joined.bodies;
             let load = self.contacts.all()[island.constraints[k]].load_speed / self.settings.dt;
-            load.max(0.0) / (places.inverse_mass[i] + places.inverse_mass[j])
+            let known = solution.force.get(k).copied();
+            known.unwrap_or(load.max(0.0) / (places.inverse_mass[i] + places.inverse_mass[j]))
         };
         let warm: Vec<f64> = kept.iter().zip(&joined).map(before).collect();
         let inverse_mass = &places.inverse_mass;
@@ -478,6 +477,15 @@ impl World {
             force[k] = given;
         }
         (solution.acceleration, solution.force) = (acceleration, force);
+    }
+
+    /// Notes the friction of each contact, and when it stops sliding.
+    fn note_friction(&mut self, island: &Island, friction: &Friction, time: f64) {
+        for (k, (&force, &after)) in friction.force.iter().zip(&friction.ends_after).enumerate() {
+            let constraint = self.contacts.get_mut(island.constraints[k]);
+            constraint.friction = force;
+            constraint.ends_at = constraint.ends_at.min(time + after);
+        }
     }
 
     /// Notes by what speed each contact would close in a step if it were not there.
@@ -497,7 +505,7 @@ impl World {
         places: &Places,
         free: &[DVec3],
         acceleration: &[DVec3],
-        force: &[f64],
+        (force, friction): (&[f64], &Friction),
         time: f64,
     ) -> bool {
         let push = free.iter().fold(0.0_f64, |most, a| most.max(a.length()));
@@ -521,7 +529,8 @@ impl World {
                     .all(|(&index, &force)| {
                         let constraint = &self.contacts.all()[index];
                         constraint.target == 0.0 || force <= 0.0
-                    });
+                    })
+                && (0..force.len()).all(|k| !friction.slides(k, force[k]));
         if at_rest {
             for &body in &island.bodies {
                 self.continuous.start.velocity[body] = DVec3::ZERO;

@@ -29,6 +29,8 @@ pub(in crate::world) struct ContactConstraint {
     pub(super) point: DVec3,
     /// Impulse on the second body along the normal in its last solution, N s.
     pub(super) impulse: f64,
+    /// Friction on the second body in its last solution, N.
+    pub(super) friction: DVec3,
     /// Whether the bodies overlap: they are kept from moving farther into each other, and nothing
     /// else is known of their surfaces.
     pub(in crate::world) is_overlap: bool,

@@ -319,6 +319,7 @@ impl World {
             ends_at: f64::INFINITY,
             point,
             impulse: 0.0,
+            friction: DVec3::ZERO,
             is_overlap: false,
         };
         self.contacts.insert(

@@ -21,6 +21,7 @@ mod constraint_solve;
 mod contact_motion;
 mod contact_set;
 mod crush;
+mod friction;
 mod impact_search;
 mod initial_contacts;
 mod position_correction;

@@ -13,6 +13,7 @@
 
 use alloc::{vec, vec::Vec};
 use core::mem;
+use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
 use super::constraint_solve::{Island, Places, SLIGHTEST};
@@ -21,7 +22,7 @@ use super::contact_set::ContactConstraint;
 use super::{Bounces, Event, EventKind, Outcome};
 use crate::{
     collide::Contact,
-    impulse::{Joined, reflect},
+    impulse::{Joined, drag, reflect},
     pieces::Pieces,
 };
 
@@ -359,6 +360,7 @@ impl World {
             ends_at: f64::INFINITY,
             point: event.contact.point - position[i],
             impulse: 0.0,
+            friction: DVec3::ZERO,
             is_overlap: false,
         };
         let movable = (self.is_movable(i), self.is_movable(j));
@@ -510,6 +512,34 @@ impl World {
             &mut velocity,
             restitution,
         );
+        if self.is_rough() {
+            let bodies = events.clone().map(|event| event.bodies);
+            let limit = bodies
+                .zip(&given)
+                .map(|((i, j), given)| match self.pair_friction(i, j) {
+                    0.0 => 0.0,
+                    friction => friction * given.max(f64::MIN_POSITIVE),
+                });
+            let limit: Vec<f64> = limit.collect();
+            let fastest = before.iter().fold(0.0_f64, |most, v| most.max(v.length()));
+            let none = vec![DVec3::ZERO; given.len()];
+            let mut dragged = none.clone();
+            let enough = f64::EPSILON * fastest;
+            let Places {
+                joined,
+                inverse_mass,
+                ..
+            } = &places;
+            drag(
+                joined,
+                inverse_mass,
+                &mut velocity,
+                &limit,
+                &none,
+                &mut dragged,
+                enough,
+            );
+        }
         places.put(
             &velocity,
             &mut self.continuous.start.velocity,

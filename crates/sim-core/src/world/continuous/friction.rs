@@ -1,0 +1,298 @@
+//! Coulomb friction at the contacts of an island.
+//!
+//! The force across a contact's normal is at most its coefficient times the force along it; where bodies
+//! slide it is just that, against their sliding, and where they do not it is what keeps them from it, if
+//! that is not more. Normal forces and friction are found in turns, each for the other's last answer
+//! (Kaufman, Sueda, James, Pai 2008, "Staggered projections for frictional contact in multibody systems",
+//! sec. 4), until neither changes: at once where all normals of a body are parallel.
+//!
+//! The direction of sliding is taken in the middle of the motion, which makes it right to second order.
+//! Sliding that ends within the step ends the contact's force there (an event), and what has come to rest
+//! is held. In a heap, whose contacts are solved once a step, sliding is stopped by the step's end instead.
+
+use alloc::{vec, vec::Vec};
+use glam::DVec3;
+
+use super::super::World;
+use super::constraint_solve::{Island, Places, Solution};
+use crate::impulse::{Joined, Known, apply, drag, project_with};
+
+/// Turns of normal forces and friction at most.
+const MAX_TURNS: usize = 64;
+
+/// Part of the greatest friction from which on a contact does not hold.
+const NEARLY_ALL: f64 = 1.0 - 1e-12;
+
+/// What friction does to an island, by its contacts; empty where all are smooth.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Friction {
+    coefficient: Vec<f64>,
+    /// Velocity of the second body against the first across the normal, m/s; zero where they stick.
+    sliding: Vec<DVec3>,
+    /// On the second body, N.
+    pub(super) force: Vec<DVec3>,
+    /// When sliding ends, s from the start of the trajectories; infinite where it does not.
+    pub(super) ends_after: Vec<f64>,
+    /// How much of the step is left, s.
+    left: f64,
+    /// How long before the trajectory's velocity the one is that the method keeps, s.
+    stagger: f64,
+    /// Whether sliding is stopped by the end of the step.
+    is_bundled: bool,
+}
+
+impl Friction {
+    pub(super) fn is_empty(&self) -> bool {
+        self.coefficient.is_empty()
+    }
+
+    /// Whether a contact that is pressed with a force slides, or is about to.
+    pub(super) fn slides(&self, k: usize, force: f64) -> bool {
+        let Some(&coefficient) = self.coefficient.get(k) else {
+            return false;
+        };
+        coefficient > 0.0
+            && force > 0.0
+            && self.force[k].length() >= NEARLY_ALL * coefficient * force
+    }
+
+    /// The force on a contact that slides, pressed with a force, while its bodies are accelerated against
+    /// each other (m/s²); `None` where it sticks.
+    fn against_sliding(&self, k: usize, pressed: f64, acceleration: DVec3) -> Option<DVec3> {
+        let direction = self.sliding[k].try_normalize()?;
+        let sliding = self.sliding[k] + self.stagger * acceleration;
+        let speed = direction.dot(sliding);
+        if self.is_bundled || speed <= 0.0 {
+            return None;
+        }
+        let slowing = -direction.dot(acceleration);
+        let time = match slowing * self.left > speed {
+            true => speed / slowing,
+            false => self.left,
+        };
+        let middle = (sliding + 0.5 * time * acceleration).normalize_or(direction);
+        Some(-self.coefficient[k] * pressed * middle)
+    }
+
+    /// When a contact stops sliding, s.
+    fn stops_after(&self, k: usize, acceleration: DVec3) -> f64 {
+        let against = -self.force[k].normalize_or_zero();
+        let sliding = self.sliding[k] + self.stagger * acceleration;
+        let (speed, slowing) = (against.dot(sliding), -against.dot(acceleration));
+        match speed > 0.0 && slowing * self.left > speed {
+            true => speed / slowing,
+            false => f64::INFINITY,
+        }
+    }
+}
+
+impl World {
+    /// Whether some body is not smooth.
+    pub(super) fn is_rough(&self) -> bool {
+        !self.friction.is_empty()
+    }
+
+    /// The coefficients of the contacts of an island; none where all are smooth.
+    fn coefficients(&self, island: &Island) -> Option<Vec<f64>> {
+        let all = self.contacts.all();
+        let of = |&index: &usize| {
+            let (i, j) = all[index].bodies;
+            self.pair_friction(i, j)
+        };
+        let coefficients: Vec<f64> = island.constraints.iter().map(of).collect();
+        coefficients
+            .iter()
+            .any(|&c| c > 0.0)
+            .then_some(coefficients)
+    }
+
+    /// Whether a contact hardly slides: by no more in a step than a small part of its gap.
+    fn sticks(&self, (i, j): (usize, usize), sliding: DVec3) -> bool {
+        sliding.length() <= 0.0625 * self.hover_gap(i, j) / self.settings.dt
+    }
+
+    /// Lets the impulses of an island's contacts (`given`, N s) rub, and contacts press that close by it:
+    /// speeds below `rounding` are none. Contacts that hardly slide and that forces press are brought to a
+    /// stand.
+    pub(super) fn rub(
+        &self,
+        island: &Island,
+        places: &Places,
+        velocity: &mut [DVec3],
+        given: &mut [f64],
+        rounding: f64,
+    ) {
+        let Some(coefficient) = self.coefficients(island) else {
+            return;
+        };
+        let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
+        let count = given.len();
+        let Places {
+            joined,
+            inverse_mass,
+            ..
+        } = places;
+        let sticks = |k: usize, velocity: &[DVec3]| {
+            let constraint = constraint(k);
+            constraint.load_speed > 0.0
+                && self.sticks(constraint.bodies, joined[k].sliding(velocity))
+        };
+        let mut dragged = vec![DVec3::ZERO; count];
+        for _ in 0..MAX_TURNS {
+            let limit = |k: usize| match coefficient[k] {
+                0.0 => 0.0,
+                _ if sticks(k, velocity) => f64::INFINITY,
+                c if given[k] > 0.0 => c * given[k],
+                _ => 0.0,
+            };
+            let limit: Vec<f64> = (0..count).map(limit).collect();
+            if limit.iter().all(|&limit| limit == 0.0) {
+                return;
+            }
+            let none = vec![DVec3::ZERO; count];
+            drag(
+                joined,
+                inverse_mass,
+                velocity,
+                &limit,
+                &none,
+                &mut dragged,
+                0.25 * rounding,
+            );
+            let missing = |k: usize| constraint(k).target - joined[k].opening(velocity);
+            let missing: Vec<f64> = (0..count).map(missing).collect();
+            if missing.iter().all(|&missing| missing <= rounding) {
+                return;
+            }
+            let more = project_with(joined, inverse_mass, velocity, &missing, Known::default());
+            for (given, more) in given.iter_mut().zip(more) {
+                *given += more;
+            }
+        }
+    }
+
+    /// What is known of an island's friction before its forces are.
+    pub(super) fn friction_of(
+        &self,
+        island: &Island,
+        places: &Places,
+        velocity: &[DVec3],
+        is_bundled: bool,
+        time: f64,
+    ) -> Friction {
+        let Some(coefficient) = self.coefficients(island) else {
+            return Friction::default();
+        };
+        let all = self.contacts.all();
+        let sliding = |(joined, &index): (&Joined, &usize)| {
+            let sliding = joined.sliding(velocity);
+            match self.sticks(all[index].bodies, sliding) {
+                true => DVec3::ZERO,
+                false => sliding,
+            }
+        };
+        let contacts = places.joined.iter().zip(&island.constraints);
+        Friction {
+            sliding: contacts.map(sliding).collect(),
+            force: island
+                .constraints
+                .iter()
+                .map(|&index| all[index].friction)
+                .collect(),
+            ends_after: vec![f64::INFINITY; coefficient.len()],
+            left: self.settings.dt - time,
+            stagger: if time == 0.0 {
+                self.continuous.velocity_stagger
+            } else {
+                0.0
+            },
+            coefficient,
+            is_bundled,
+        }
+    }
+
+    /// The forces along the normals of an island's contacts and across them, and the accelerations that
+    /// they leave.
+    pub(super) fn press_and_drag(&self, island: &Island, places: &Places, solution: &mut Solution) {
+        let Places {
+            joined,
+            inverse_mass,
+            ..
+        } = places;
+        let most = solution
+            .free
+            .iter()
+            .fold(0.0_f64, |most, a| most.max(a.length()));
+        let enough = 4.0 * f64::EPSILON * most;
+        for turn in 0..=MAX_TURNS {
+            self.press(island, places, solution);
+            let friction = &solution.friction;
+            let mut acceleration = solution.acceleration.clone();
+            let mut force = friction.force.clone();
+            let count = force.len();
+            let (mut limit, mut stopping) = (vec![0.0; count], vec![DVec3::ZERO; count]);
+            let mut holding = vec![DVec3::ZERO; count];
+            for k in 0..count {
+                let pressed = if solution.open[k] {
+                    0.0
+                } else {
+                    solution.force[k].max(0.0)
+                };
+                let pushed = joined[k].sliding(&solution.acceleration);
+                match friction.against_sliding(k, pressed, pushed) {
+                    Some(against) => {
+                        apply(
+                            &joined[k],
+                            inverse_mass,
+                            &mut acceleration,
+                            against - force[k],
+                        );
+                        force[k] = against;
+                    }
+                    None => {
+                        // Infinity times nothing is nothing.
+                        limit[k] = if pressed > 0.0 {
+                            friction.coefficient[k] * pressed
+                        } else {
+                            0.0
+                        };
+                        stopping[k] = friction.sliding[k] / friction.left;
+                        holding[k] = force[k];
+                    }
+                }
+            }
+            drag(
+                joined,
+                inverse_mass,
+                &mut acceleration,
+                &limit,
+                &stopping,
+                &mut holding,
+                enough,
+            );
+            let sticks = |k: usize| limit[k] > 0.0 || holding[k] != DVec3::ZERO;
+            for k in 0..count {
+                if sticks(k) || friction.sliding[k] == DVec3::ZERO {
+                    force[k] = holding[k];
+                }
+            }
+            let change = |k: usize| {
+                let (i, j) = joined[k].bodies;
+                (force[k] - friction.force[k]).length() * (inverse_mass[i] + inverse_mass[j])
+            };
+            let change = (0..count).map(change).fold(0.0, f64::max);
+            if change <= enough || turn == MAX_TURNS {
+                break;
+            }
+            solution.friction.force = force;
+        }
+        let friction = &solution.friction;
+        if !friction.is_bundled {
+            let ends = |k: usize| match friction.sliding[k] == DVec3::ZERO {
+                true => f64::INFINITY,
+                false => friction.stops_after(k, joined[k].sliding(&solution.acceleration)),
+            };
+            solution.friction.ends_after = (0..joined.len()).map(ends).collect();
+        }
+    }
+}
