@@ -86,7 +86,7 @@ impl Matrix {
                 }
             }
             // Contacts that hold each other up against nothing: only rounding leads there.
-            if curvature <= 16.0 * f64::EPSILON * size / length {
+            if curvature <= 256.0 * f64::EPSILON * size / length {
                 break;
             }
             let best = slope / curvature;

@@ -219,13 +219,6 @@ impl World {
         let rounding = 4.0 * f64::EPSILON * fastest;
         let count = island.constraints.len();
         let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
-        let target: Vec<f64> = (0..count).map(|k| constraint(k).target).collect();
-        let missing = |velocity: &[DVec3]| -> Vec<f64> {
-            let joined = places.joined.iter().zip(&target);
-            joined
-                .map(|(joined, target)| target - joined.opening(velocity))
-                .collect()
-        };
         let enough = self.unseen_speed(island);
         let hop: Vec<f64> = (0..count)
             .map(|k| 0.5 * self.shortest_flight(is_bundled) * constraint(k).load_speed)
@@ -239,25 +232,54 @@ impl World {
         let still: Vec<f64> = (0..count).map(still).collect();
         // In a heap, what forces press does not part. That takes energy and gives none, as standing still is
         // among what is allowed.
+        let mut target: Vec<f64> = (0..count).map(|k| constraint(k).target).collect();
         let is_loaded = |k: usize| is_bundled && target[k] >= 0.0 && constraint(k).load_speed > 0.0;
         let held: Vec<bool> = (0..count).map(is_loaded).collect();
-        let mut closing = missing(&velocity);
-        for k in (0..count).filter(|&k| held[k]) {
-            closing[k] = target[k].max(0.0) - places.joined[k].opening(&velocity);
-        }
-        let is_due = (0..count).any(|k| closing[k] > rounding || held[k] && closing[k] < -still[k]);
+        let before = velocity.clone();
+        let (joined, inverse_mass) = (&places.joined, &places.inverse_mass);
+        let short = |velocity: &[DVec3], target: &[f64]| -> Vec<f64> {
+            let contacts = joined.iter().zip(target);
+            contacts
+                .map(|(joined, target)| target - joined.opening(velocity))
+                .collect()
+        };
+        let is_met = |velocity: &[DVec3], target: &[f64]| {
+            let enough = (4.0 * enough).max(4.0 * rounding);
+            short(velocity, target)
+                .iter()
+                .all(|&missing| missing <= enough)
+        };
         let mut given = alloc::vec![0.0; count];
-        if is_due {
-            let known = Known {
-                held: &held,
-                warm: &[],
-                enough,
-            };
-            let (joined, inverse_mass) = (&places.joined, &places.inverse_mass);
-            given = project_with(joined, inverse_mass, &mut velocity, &closing, known);
+        // Gaps are widened where there is room for it.
+        loop {
+            let closing = short(&velocity, &target);
+            let is_due =
+                (0..count).any(|k| closing[k] > rounding || held[k] && closing[k] < -still[k]);
+            if is_due {
+                let known = Known {
+                    held: &held,
+                    warm: &[],
+                    enough,
+                };
+                given = project_with(joined, inverse_mass, &mut velocity, &closing, known);
+            }
+            if is_met(&velocity, &target) || target.iter().all(|&target| target <= 0.0) {
+                break;
+            }
+            velocity.copy_from_slice(&before);
+            for target in &mut target {
+                *target = target.min(0.0);
+            }
         }
+        let missing = |velocity: &[DVec3]| short(velocity, &target);
         if self.is_rough() {
-            self.rub(island, places, &mut velocity, &mut given, rounding);
+            self.rub(
+                island,
+                places,
+                &mut velocity,
+                &mut given,
+                (rounding, &target),
+            );
         }
         let parting: Vec<f64> = missing(&velocity).iter().map(|missing| -missing).collect();
         let open: Vec<bool> = (0..count)
@@ -298,6 +320,7 @@ impl World {
         for (k, &index) in island.constraints.iter().enumerate() {
             let constraint = self.contacts.get_mut(index);
             constraint.impulse = given[k];
+            constraint.target = target[k];
             constraint.recession = solution.recession[k];
             constraint.is_turning = solution.recession[k] > 0.0;
             constraint.ends_at = f64::INFINITY;

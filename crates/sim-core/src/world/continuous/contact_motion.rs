@@ -143,6 +143,10 @@ impl World {
                 continue;
             }
             match self.measured(constraint, self.settings.dt) {
+                // What has turned to the normal of another contact of the pair is that one.
+                Some(measured) if self.contacts.is_known(index, &measured) => {
+                    self.contacts.remove(index);
+                }
                 Some(measured) => {
                     let least = LEAST_GAP * self.hover_gap(i, j);
                     if measured.gap < 0.5 * least {
@@ -198,7 +202,8 @@ impl World {
         if gap > 4.0 * hover {
             -(gap - hover) / time
         } else if gap < 0.5 * hover && load_speed > 0.0 {
-            (hover - gap) / self.settings.dt
+            // What looks deeper is stopped by something else.
+            (hover - gap.max(0.0)) / self.settings.dt
         } else {
             0.0
         }

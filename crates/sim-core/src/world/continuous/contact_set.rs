@@ -78,6 +78,18 @@ impl ContactSet {
         constraints.filter(move |known| known.bodies == pair)
     }
 
+    /// Whether another constraint than that of an index keeps the same bodies apart along the same normal.
+    pub(super) fn is_known(&self, index: usize, new: &ContactConstraint) -> bool {
+        let (i, j) = new.bodies;
+        let few = if self.of_body(i).is_empty() { j } else { i };
+        self.of_body(few).iter().any(|&other| {
+            let known = &self.all[other as usize];
+            other as usize != index
+                && known.bodies == new.bodies
+                && known.normal.dot(new.normal) >= SAME_NORMAL
+        })
+    }
+
     /// Adds a constraint, in the place of one of the same bodies along the same normal. Says which of its
     /// bodies may move.
     pub(super) fn insert(&mut self, new: ContactConstraint, is_movable: impl Fn(usize) -> bool) {

@@ -120,7 +120,7 @@ impl World {
         places: &Places,
         velocity: &mut [DVec3],
         given: &mut [f64],
-        rounding: f64,
+        (rounding, target): (f64, &[f64]),
     ) {
         let Some(coefficient) = self.coefficients(island) else {
             return;
@@ -159,7 +159,7 @@ impl World {
                 &mut dragged,
                 0.25 * rounding,
             );
-            let missing = |k: usize| constraint(k).target - joined[k].opening(velocity);
+            let missing = |k: usize| target[k] - joined[k].opening(velocity);
             let missing: Vec<f64> = (0..count).map(missing).collect();
             if missing.iter().all(|&missing| missing <= rounding) {
                 return;
