@@ -65,19 +65,22 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         true => vector(random, 1.0),
         false => DVec3::ZERO,
     };
-    let least = p
-        .length()
-        .min(q.length())
-        .min((p - q).length())
-        .min((p + q).length());
+    // From the middle to the nearest side.
+    let (sides, area) = ([p - q, p + q], p.as_dvec3().cross(q.as_dvec3()).length());
+    let least = area / f64::from(sides[0].length().max(sides[1].length()));
     // So little aside that they overlap when they meet, and for as long after.
-    let aside = 0.1 * f64::from(least) / (2.0 * hit + 3.0 * dt) * random.vector();
+    let aside = 0.25 * least / (2.0 * hit + 3.0 * dt) * random.vector();
     let aside = aside.reject_from(normal);
     // How far from the origin, m.
     let size = random.pick(&[0.25, 1.0, 10.0, 1000.0]);
     let far = vector(random, size);
     let relative = aside - speed * normal;
-    let place = far - hit * relative;
+    // Upon each other to the corner, or not.
+    let shift = match random.one_in(4) {
+        true => DVec3::ZERO,
+        false => (0.25 * least * random.vector()).reject_from(normal),
+    };
+    let place = far - hit * relative + shift;
     let bodies = [
         Body {
             mass: masses[0],

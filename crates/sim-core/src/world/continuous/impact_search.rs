@@ -5,6 +5,20 @@
 //! the step, and only that. Where a chord has an impact, the trajectory is cut closely before and
 //! after it and searched again: the departure falls with the square of the length, so that after a
 //! few rounds it is lost in the rounding, and the impact is one of the trajectory itself.
+//!
+//! No impact is lost between one search and the next, though a sheet has no inside in which it could
+//! be found later. Let `r` be more than all that rounding moves a placed vertex by along the normal of
+//! a contact, in two places together ([`World::rounding`]):
+//!
+//! - An event is put so early that `r` is left between the bodies. Until then, and where they start
+//!   again, each is before the contact, whatever is rounded. So is a pair of which a third body has
+//!   stopped one before its event.
+//! - A search goes on beyond the end of the step. A contact that it meets there with more than `r`
+//!   to go is before the bodies in the next step, where they start anew and round anew; one with
+//!   less belongs to this step.
+//!
+//! What slides past a surface by less than its rounding is the exception: a search goes so far beyond
+//! the end that it takes an angle of less than 1e-3 to a surface for that not to be seen.
 
 use glam::DVec3;
 
@@ -28,6 +42,9 @@ const RESOLUTION_ULPS: f64 = 4.0;
 /// The same where a sphere meets triangles, whose distance is computed (`collide/ball.rs`): more than
 /// its error, so that a point stays on its side of a surface.
 const SPHERE_MESH_ULPS: f64 = 64.0;
+
+/// How far a search goes beyond the end of a step, in roundings.
+const BEYOND: f64 = 1024.0;
 
 /// How far apart bodies may be that touch but for rounding, in resolutions of their positions.
 pub(super) const TOUCHING: f64 = 4.0;
@@ -105,12 +122,66 @@ impl World {
                 start + length * (chord / chords)
             };
             let to = (time, self.offset_at(pair, time, probe)?);
-            if let Some(event) = self.find_on_chord(pair, forms, (from, to), 0, probe)? {
-                return Ok(Some(event));
+            // What there is on a last chord is seen on the longer one that goes on beyond it.
+            let beyond = match chord == chords {
+                true => self.contact_beyond(pair, forms, (from.1, to.1)),
+                false => None,
+            };
+            if chord < chords || beyond.is_some() {
+                let found = self.find_on_chord(pair, forms, (from, to), 0, probe)?;
+                if found.is_some() {
+                    return Ok(found);
+                }
+            }
+            if let Some(contact) = beyond {
+                return self.find_at_end(pair, (from, to), contact, probe);
             }
             (from, chord) = (to, chord + 1.0);
         }
         Ok(None)
+    }
+
+    /// The first contact on a chord and beyond its end, in parts of the chord.
+    fn contact_beyond(
+        &self,
+        pair: Pair,
+        forms: (Form<'_>, Form<'_>),
+        (from, to): (DVec3, DVec3),
+    ) -> Option<Contact> {
+        let motion = to - from;
+        let way = motion.abs().max_element();
+        let beyond = BEYOND * self.rounding(pair).max_element();
+        // Not farther than in a step.
+        let stretch = if beyond < way {
+            1.0 + beyond / way
+        } else {
+            2.0
+        };
+        let contact = first_contact(forms.0, forms.1, snap(from), snap(stretch * motion))?;
+        Some(Contact {
+            time: stretch * contact.time,
+            ..contact
+        })
+    }
+
+    /// The impact with a contact beyond the end of a chord, if there is only a rounding between.
+    fn find_at_end(
+        &self,
+        pair: Pair,
+        (from, to): ((f64, DVec3), (f64, DVec3)),
+        contact: Contact,
+        probe: &mut Probe,
+    ) -> Result<Option<Event>, (usize, Cause)> {
+        let length = to.0 - from.0;
+        let fall = -contact.normal.dot(to.1 - from.1);
+        let left = (contact.time - 1.0) * fall;
+        let room = self.room(pair, contact.normal);
+        if left > room {
+            return Ok(None);
+        }
+        let times = (from.0, from.0 + contact.time * length);
+        self.back_off(pair, times, (fall / length, room), contact, probe)
+            .map(Some)
     }
 
     /// The first impact on trajectories that are parabolas, of shapes with closed forms.
@@ -142,7 +213,8 @@ impl World {
         };
         let closing = parabola.closing(contact.time, contact.normal);
         let times = (start, start + contact.time);
-        self.back_off(pair, times, closing, contact, probe)
+        let approach = (closing, self.least_room(pair));
+        self.back_off(pair, times, approach, contact, probe)
             .map(Some)
     }
 
@@ -169,8 +241,9 @@ impl World {
         if is_straight || is_there {
             let part = if is_there { 0.0 } else { contact.time };
             let times = (from.0, from.0 + part * length);
+            let approach = (fall / length, self.room(pair, contact.normal));
             return self
-                .back_off(pair, times, fall / length, contact, probe)
+                .back_off(pair, times, approach, contact, probe)
                 .map(Some);
         }
         // Within this of the chord's impact lies the trajectory's, unless it slips past.
@@ -197,23 +270,17 @@ impl World {
         Ok(None)
     }
 
-    /// The last time before a contact, but for rounding, at which two bodies are apart: not before a
-    /// start, and from a time on at which they touch and close at a speed.
+    /// The last time before a contact, but for rounding, at which there is room between two bodies: not
+    /// before a start, and from a time on at which they touch and close at a speed.
     fn back_off(
         &self,
         pair: Pair,
         (start, touching): (f64, f64),
-        closing: f64,
+        (closing, room): (f64, f64),
         contact: Contact,
         probe: &mut Probe,
     ) -> Result<Event, (usize, Cause)> {
         let Pair { i, j, .. } = pair;
-        // Bodies that nothing presses together part at once, and need no room to stay in.
-        let room = if self.are_pressed(i, j) {
-            pair.resolution
-        } else {
-            0.0625 * pair.resolution
-        };
         // By their speed, or where there is hardly any by the trajectory's bend.
         let back = (room / closing).min(libm::sqrt(room / (4.0 * pair.deviation)));
         let mut back = back.max(f64::MIN_POSITIVE);
@@ -221,9 +288,9 @@ impl World {
             // Points that have passed each other by a rounding of the time do not meet.
             back = back.max(RESOLUTION_ULPS * f64::EPSILON * touching);
         }
-        let mut time = touching;
+        let (last, mut time) = (self.settings.dt.next_down(), touching);
         while time > start {
-            time = (touching - back).max(start);
+            time = (touching - back).min(last).max(start);
             back *= 2.0;
             let offset = self.offset_at(pair, time, probe)?;
             if !self.meet_built(i, j, offset) {
@@ -245,6 +312,40 @@ impl World {
                 ..contact
             },
         })
+    }
+
+    /// How far from a contact bodies are kept at their impact, m.
+    fn room(&self, pair: Pair, normal: DVec3) -> f64 {
+        let rounding = normal.abs().dot(self.rounding(pair));
+        self.least_room(pair).max(rounding)
+    }
+
+    /// The same where both have an inside, in which each would be seen.
+    fn least_room(&self, pair: Pair) -> f64 {
+        // Bodies that nothing presses together part at once, and need no more room to stay in.
+        match self.are_pressed(pair.i, pair.j) {
+            true => pair.resolution,
+            false => 0.0625 * pair.resolution,
+        }
+    }
+
+    /// More than rounding moves a placed vertex of a pair against the other body by, in two places
+    /// together, by component, m.
+    ///
+    /// With `u = 2^-53`, positions of up to `x`, motions of up to `d` since the start of a trajectory
+    /// and vertices of up to `s`, each body has errors of `u (x + 4 d)` where its position is summed
+    /// up, the pair of `u (x + x)` in its offset, of `u (x + x + s)` in the vertex, and of
+    /// `u (3 d + 3 d)` in the chord, the time and the part of it. The second place is the one in
+    /// which the search has placed the vertices, without errors of motion.
+    fn rounding(&self, pair: Pair) -> DVec3 {
+        let of = |body: usize| {
+            let continuous = &self.continuous;
+            let (from, to) = (continuous.start.position[body], self.current.position[body]);
+            let bend = 4.0 * self.chord_deviation(body);
+            let (place, motion) = (from.abs().max(to.abs()) + bend, (to - from).abs() + bend);
+            5.0 * place + 7.0 * motion + 2.0 * self.extent(body).farthest
+        };
+        0.5 * f64::EPSILON * (of(pair.i) + of(pair.j))
     }
 
     fn offset_at(&self, pair: Pair, time: f64, probe: &mut Probe) -> Result<DVec3, (usize, Cause)> {

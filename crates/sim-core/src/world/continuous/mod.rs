@@ -396,9 +396,11 @@ impl World {
             farthest,
             ..
         } = self.extent(body);
-        // More than is lost in rounding, here and where vertices are placed.
-        let size = from.abs() + to.abs() + 2.0 * farthest;
-        let reach = self.chord_deviation(body) + 8.0 * f64::EPSILON * size;
+        // More than is lost in rounding, here and where vertices are placed, and than a search goes beyond
+        // the end of the step.
+        let bend = self.chord_deviation(body);
+        let size = (from.abs() + to.abs() + 4.0 * bend + 2.0 * farthest).max_element();
+        let reach = bend + 8192.0 * f64::EPSILON * size;
         Swept {
             min: from.min(to) + low - reach,
             max: from.max(to) + high + reach,
