@@ -31,13 +31,14 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         let normal = random.pick(&[axis, -axis]);
         bodies.push(half_space(normal, -2.0 * normal));
     }
-    for _ in 0..random.whole(2, 4) {
+    let far = random.whole(4, 8);
+    for _ in 0..random.whole(2, 6) {
         let shape = &shapes[random.below(5) as usize];
         let mut short = |most: i64, part: f64| {
             let mut of = || random.whole(-most, most) as f64 / part;
             DVec3::new(of(), of(), of())
         };
-        let (at, velocity) = (short(8, cells), short(6, thirds));
+        let (at, velocity) = (short(far, cells), short(6, thirds));
         let at = at + noise * random.vector();
         bodies.push(body(shape, at, velocity));
     }
