@@ -21,8 +21,9 @@ const MAX_KINEMATIC_IMPACTS: u32 = 1 << 16;
 /// What immovable bodies have done in a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CrushDetector {
-    /// Of each body the last immovable one it has been at; empty until one has.
-    last_wall: Vec<Option<usize>>,
+    /// Of each body the last immovable one it has been at, and the last before it of another velocity;
+    /// empty until one has.
+    walls: Vec<[Option<usize>; 2]>,
     /// Impacts of each body with one after another one of another velocity.
     impacts: Vec<u32>,
 }
@@ -30,8 +31,15 @@ pub(super) struct CrushDetector {
 impl CrushDetector {
     /// Begins a step.
     pub(super) fn begin(&mut self) {
-        self.last_wall.clear();
+        self.walls.clear();
         self.impacts.clear();
+    }
+
+    /// Immovable bodies that move against each other and that a body has been at.
+    pub(super) fn between(&self, body: usize) -> Option<(usize, usize)> {
+        let [last, other] = *self.walls.get(body)?;
+        let (last, other) = last.zip(other)?;
+        Some((last.min(other), last.max(other)))
     }
 }
 
@@ -49,26 +57,28 @@ impl World {
             let (i, j) = event.bodies;
             let (wall, body) = match (self.is_movable(i), self.is_movable(j)) {
                 (true, true) => {
-                    if !crush.last_wall.is_empty() {
-                        crush.last_wall.swap(i, j);
+                    if !crush.walls.is_empty() {
+                        crush.walls.swap(i, j);
                     }
                     continue;
                 }
                 (true, false) => (j, i),
                 (false, _) => (i, j),
             };
-            crush.last_wall.resize(self.len(), None);
+            crush.walls.resize(self.len(), [None; 2]);
             crush.impacts.resize(self.len(), 0);
             let velocity = |wall: usize| self.previous.velocity[wall];
-            let Some(last) = crush.last_wall[body].replace(wall) else {
-                continue;
-            };
-            if velocity(last) == velocity(wall) {
-                continue;
+            let walls = &mut crush.walls[body];
+            match walls[0] {
+                Some(last) if velocity(last) != velocity(wall) => {
+                    *walls = [Some(wall), Some(last)];
+                    crush.impacts[body] += 1;
+                }
+                _ => walls[0] = Some(wall),
             }
-            crush.impacts[body] += 1;
-            if crush.impacts[body] > MAX_KINEMATIC_IMPACTS {
-                let between = (wall.min(last), wall.max(last));
+            if crush.impacts[body] > MAX_KINEMATIC_IMPACTS
+                && let Some(between) = crush.between(body)
+            {
                 return Err((body, Cause::Squeezed(between)));
             }
         }

@@ -9,8 +9,8 @@
 //! Without room nothing bounds it. So many blocks as one likes may count the digits of pi: all that
 //! they exchange is four times the momentum of the largest.
 //!
-//! Impacts are taken for those of one instant while no pair has the time to move by more than the
-//! rounding of its positions.
+//! Impacts are taken for those of one instant while no pair has the time to move by more than the gap
+//! of bodies in contact, below which this mode knows no room.
 
 use alloc::vec::Vec;
 
@@ -22,9 +22,6 @@ const MOST_EXCHANGED: f64 = 1e3;
 
 /// How often a contact of a body may begin or end in no time, without an impulse.
 const MOST_CHANGES: u64 = 1_000;
-
-/// A way that is no more than rounding, in resolutions of positions.
-const NO_WAY: f64 = 16.0;
 
 /// What has happened in no time.
 #[derive(Clone, Debug, Default)]
@@ -81,8 +78,12 @@ impl Progress {
         self.changes += group.iter().filter(is_change).count() as u64;
     }
 
+    fn takes_part(&self, body: usize) -> bool {
+        self.part_of[body] == self.instant
+    }
+
     fn take_part(&mut self, body: usize) {
-        if self.part_of[body] != self.instant {
+        if !self.takes_part(body) {
             self.part_of[body] = self.instant;
             self.bodies += 1;
         }
@@ -97,7 +98,8 @@ impl Progress {
 }
 
 impl World {
-    /// Counts events that are about to be resolved, and stops where those before them have no end.
+    /// Counts events that are about to be resolved, and stops where those before them have no end: where
+    /// a body has been between immovable ones that move against each other, it is squeezed.
     pub(super) fn count_events(&mut self, group: &[Event]) -> Result<(), (usize, Cause)> {
         let Some(first) = group.first() else {
             return Ok(());
@@ -117,13 +119,20 @@ impl World {
             progress.take_part(event.bodies.0);
             progress.take_part(event.bodies.1);
         }
-        match progress.has_end() {
-            true => Ok(()),
-            false => Err((body, Cause::Impacts(resolved))),
+        let progress = &self.continuous.progress;
+        if progress.has_end() {
+            return Ok(());
         }
+        let caught = (0..self.len()).filter(|&body| progress.takes_part(body));
+        let crush = &self.continuous.crush;
+        let mut squeezed = caught.filter_map(|body| Some((body, crush.between(body)?)));
+        Err(match squeezed.next() {
+            Some((body, between)) => (body, Cause::Squeezed(between)),
+            None => (body, Cause::Impacts(resolved)),
+        })
     }
 
-    /// Whether the bodies of an event have moved by more than rounding since the events before: towards
+    /// Whether the bodies of an event have moved by more than a gap since the events before: towards
     /// each other, or along each other where a contact ends.
     fn moves_before(&self, event: &Event) -> bool {
         let (i, j) = event.bodies;
@@ -134,6 +143,6 @@ impl World {
             EventKind::Impact => relative.dot(event.contact.normal).abs(),
             EventKind::ContactEnd => relative.length(),
         };
-        time * speed > NO_WAY * self.position_resolution(i, j)
+        time * speed > self.hover_gap(i, j)
     }
 }
