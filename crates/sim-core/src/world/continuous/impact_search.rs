@@ -60,6 +60,8 @@ struct Pair {
     resolution: f64,
     /// Whether a contact constraint keeps them apart already.
     is_in_contact: bool,
+    /// Whether both have an inside, in which the exact test sees the other one.
+    is_solid: bool,
 }
 
 impl World {
@@ -81,11 +83,12 @@ impl World {
             resolution: self.position_resolution(i, j),
             is_in_contact: !self.contacts.is_empty()
                 && self.contacts.of_pair(i, j).next().is_some(),
+            is_solid: has_roots(forms.0, forms.1),
         };
         let is_parabola = pair.deviation > 0.0
             && self.coupled_group(i).is_none()
             && self.coupled_group(j).is_none();
-        match is_parabola && has_roots(forms.0, forms.1) {
+        match is_parabola && pair.is_solid {
             true => self.find_on_parabola(pair, forms, probe),
             false => self.find_on_chords(pair, forms, probe),
         }
@@ -123,11 +126,12 @@ impl World {
             };
             let to = (time, self.offset_at(pair, time, probe)?);
             // What there is on a last chord is seen on the longer one that goes on beyond it.
-            let beyond = match chord == chords {
+            let goes_on = chord == chords && !pair.is_solid;
+            let beyond = match goes_on {
                 true => self.contact_beyond(pair, forms, (from.1, to.1)),
                 false => None,
             };
-            if chord < chords || beyond.is_some() {
+            if !goes_on || beyond.is_some() {
                 let found = self.find_on_chord(pair, forms, (from, to), 0, probe)?;
                 if found.is_some() {
                     return Ok(found);
@@ -213,7 +217,7 @@ impl World {
         };
         let closing = parabola.closing(contact.time, contact.normal);
         let times = (start, start + contact.time);
-        let approach = (closing, self.least_room(pair));
+        let approach = (closing, self.room(pair, contact.normal));
         self.back_off(pair, times, approach, contact, probe)
             .map(Some)
     }
@@ -316,16 +320,14 @@ impl World {
 
     /// How far from a contact bodies are kept at their impact, m.
     fn room(&self, pair: Pair, normal: DVec3) -> f64 {
-        let rounding = normal.abs().dot(self.rounding(pair));
-        self.least_room(pair).max(rounding)
-    }
-
-    /// The same where both have an inside, in which each would be seen.
-    fn least_room(&self, pair: Pair) -> f64 {
-        // Bodies that nothing presses together part at once, and need no more room to stay in.
-        match self.are_pressed(pair.i, pair.j) {
+        // Bodies that nothing presses together part at once, and need no room to stay in.
+        let least = match self.are_pressed(pair.i, pair.j) {
             true => pair.resolution,
             false => 0.0625 * pair.resolution,
+        };
+        match pair.is_solid {
+            true => least,
+            false => least.max(normal.abs().dot(self.rounding(pair))),
         }
     }
 
