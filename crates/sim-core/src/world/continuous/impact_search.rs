@@ -125,47 +125,24 @@ impl World {
                 start + length * (chord / chords)
             };
             let to = (time, self.offset_at(pair, time, probe)?);
-            // What there is on a last chord is seen on the longer one that goes on beyond it.
-            let goes_on = chord == chords && !pair.is_solid;
-            let beyond = match goes_on {
-                true => self.contact_beyond(pair, forms, (from.1, to.1)),
-                false => None,
-            };
-            if !goes_on || beyond.is_some() {
-                let found = self.find_on_chord(pair, forms, (from, to), 0, probe)?;
-                if found.is_some() {
-                    return Ok(found);
-                }
-            }
-            if let Some(contact) = beyond {
-                return self.find_at_end(pair, (from, to), contact, probe);
+            if let Some(event) = self.find_on_chord(pair, forms, (from, to), 0, probe)? {
+                return Ok(Some(event));
             }
             (from, chord) = (to, chord + 1.0);
         }
         Ok(None)
     }
 
-    /// The first contact on a chord and beyond its end, in parts of the chord.
-    fn contact_beyond(
-        &self,
-        pair: Pair,
-        forms: (Form<'_>, Form<'_>),
-        (from, to): (DVec3, DVec3),
-    ) -> Option<Contact> {
-        let motion = to - from;
+    /// How much longer than a motion to the end of the step is one that goes on beyond it.
+    fn stretch(&self, pair: Pair, motion: DVec3) -> f64 {
         let way = motion.abs().max_element();
         let beyond = BEYOND * self.rounding(pair).max_element();
         // Not farther than in a step.
-        let stretch = if beyond < way {
+        if beyond < way {
             1.0 + beyond / way
         } else {
             2.0
-        };
-        let contact = first_contact(forms.0, forms.1, snap(from), snap(stretch * motion))?;
-        Some(Contact {
-            time: stretch * contact.time,
-            ..contact
-        })
+        }
     }
 
     /// The impact with a contact beyond the end of a chord, if there is only a rounding between.
@@ -232,9 +209,20 @@ impl World {
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         let motion = to.1 - from.1;
-        let Some(contact) = first_contact(forms.0, forms.1, snap(from.1), snap(motion)) else {
+        let goes_on = to.0 == self.settings.dt && !pair.is_solid;
+        let stretch = if goes_on {
+            self.stretch(pair, motion)
+        } else {
+            1.0
+        };
+        let found = first_contact(forms.0, forms.1, snap(from.1), snap(stretch * motion));
+        let Some(mut contact) = found else {
             return Ok(None);
         };
+        contact.time *= stretch;
+        if contact.time > 1.0 {
+            return self.find_at_end(pair, (from, to), contact, probe);
+        }
         let length = to.0 - from.0;
         let fall = -contact.normal.dot(motion);
         let departure = pair.deviation * length * length;
