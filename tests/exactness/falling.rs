@@ -4,7 +4,7 @@ use sim_core::collide::touch::time_of_impact;
 use sim_core::collide::tree;
 use sim_core::{Body, Bvh, DVec3, Force, Shape, Vec3};
 
-use crate::scenes::{Random, body, energy, half_space, immovable, judge, step, world};
+use crate::scenes::{Random, body, energy, half_space, immovable, judge, judge_from, step, world};
 use crate::shapes::{channel, cube, globe, sheet, tetrahedron};
 
 const G: f64 = 9.81;
@@ -89,4 +89,10 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
 #[test]
 fn what_lies_on_what_falls_gains_nothing() {
     judge(150, case);
+}
+
+/// A body at rest on others gives on an impulse larger than those of its own speed: the step has an end.
+#[test]
+fn what_is_handed_on_has_an_end() {
+    judge_from(2585, 1, case);
 }

@@ -62,13 +62,22 @@ struct Tally {
 /// Judges scenes of a kind: as many as are asked for, or the usual number. A case says nothing of a
 /// scene that is none of its kind, as where bodies overlap from the start.
 pub(crate) fn judge(usual: usize, case: impl Fn(&mut Random) -> Option<Result<(), String>>) {
+    judge_from(0, usual, case);
+}
+
+/// The same from another scene on.
+pub(crate) fn judge_from(
+    begin: usize,
+    usual: usize,
+    case: impl Fn(&mut Random) -> Option<Result<(), String>>,
+) {
     let number = |name| {
         env::var(name)
             .ok()
             .map(|text: String| text.parse().expect("a number"))
     };
     let count: usize = number("CASES").unwrap_or(usual);
-    let first = number("FIRST").unwrap_or(0);
+    let first = number("FIRST").unwrap_or(begin);
     let mut tally = Tally::default();
     for index in first.. {
         if tally.judged == count || index == first + 8 * count {

@@ -28,8 +28,9 @@ const MOST_CHANGES: u64 = 1_000;
 pub(in crate::world) struct Progress {
     /// When it last did, s from the start of the step.
     time: f64,
-    /// Impulses exchanged, N s, and events without one.
+    /// Impulses exchanged, N s, in all and the largest, and events without one.
     impulse: f64,
+    largest: f64,
     changes: u64,
     /// The greatest speed at which two bodies have closed, m/s, and the greatest mass that has, kg.
     fastest: f64,
@@ -51,7 +52,7 @@ impl Progress {
 
     fn begin_instant(&mut self, time: f64) {
         self.time = time;
-        (self.impulse, self.changes) = (0.0, 0);
+        (self.impulse, self.largest, self.changes) = (0.0, 0.0, 0);
         (self.fastest, self.heaviest) = (0.0, 0.0);
         (self.instant, self.bodies) = (self.instant + 1, 0);
     }
@@ -64,6 +65,7 @@ impl Progress {
         masses: (f64, f64),
     ) {
         self.impulse += impulse;
+        self.largest = self.largest.max(impulse);
         self.fastest = self.fastest.max(closing);
         for mass in [masses.0, masses.1] {
             if mass.is_finite() {
@@ -91,7 +93,8 @@ impl Progress {
 
     fn has_end(&self) -> bool {
         let bodies = self.bodies as f64;
-        let momentum = self.heaviest * self.fastest;
+        // What lies on others gives on more than it has itself.
+        let momentum = self.largest.max(self.heaviest * self.fastest);
         self.impulse <= MOST_EXCHANGED * bodies * momentum
             && self.changes <= MOST_CHANGES * self.bodies
     }
