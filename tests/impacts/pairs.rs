@@ -241,7 +241,8 @@ fn far_from_the_origin_is_as_at_the_origin() {
                     for i in 0..2 {
                         let what = format!("{} at {far:e}, phase {phase}", pair.name);
                         assert_eq!(found[i].1, near[i].1, "{what}");
-                        let tolerance = 2.0 * ULP * far;
+                        // Rounding, and twice what bodies are kept apart by.
+                        let tolerance = 12.0 * ULP * far;
                         assert_close(found[i].0, near[i].0, tolerance, &what);
                     }
                 }

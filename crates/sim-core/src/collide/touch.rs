@@ -10,6 +10,9 @@
 //!   a face goes before two edges, since a face has a tangent plane of its own where the
 //!   perpendicular of two edges that end there may point anywhere. Of those left the one that
 //!   opposes the motion most goes first, then the one that comes first in the meshes.
+//! - Edges that are parallel but for the rounding of placed vertices cross where that leads them, and
+//!   their perpendicular says nothing: of the faces beside them the normal that opposes the motion
+//!   most stands for it.
 //!
 //! So a cube that meets a cube face-on gets the face's normal and bounces straight back, though
 //! four corners, and edges with edges, touch at once.

@@ -202,6 +202,10 @@ impl World {
         time: f64,
     ) {
         self.impacts += 1;
+        let masses = (self.mass[bodies.0], self.mass[bodies.1]);
+        self.continuous
+            .progress
+            .note_impulse(impulse, speeds.0, masses);
         let impact = Impact {
             step: self.steps + 1,
             time,

@@ -54,6 +54,8 @@ pub struct World {
     settings: Settings,
     current: State,
     previous: State,
+    /// The state before that, in a step, for who fails.
+    earlier: State,
     mass: Vec<f64>,
     force: Vec<DVec3>,
     /// What constant forces and weight do to each body, m/s².
@@ -154,6 +156,7 @@ impl World {
             settings,
             current: State::default(),
             previous: State::default(),
+            earlier: State::default(),
             mass: Vec::new(),
             force: Vec::new(),
             acceleration: Vec::new(),
@@ -208,10 +211,12 @@ impl World {
     /// Steps by `dt`: moves every body, and lets those that meet bounce, as [`Settings::collision`]
     /// has it.
     ///
-    /// On an error every body stays where it was before the step, and the state before that is
-    /// forgotten.
+    /// On an error the world stays as it was before the step, to the bit.
     pub fn step(&mut self) -> Result<(), StepError> {
+        // What was before is kept until nothing can fail any more.
+        core::mem::swap(&mut self.earlier, &mut self.previous);
         core::mem::swap(&mut self.previous, &mut self.current);
+        self.current.match_len(&self.previous);
         self.integrate()?;
         if self.solid.len() > 1 {
             match self.settings.collision {

@@ -17,9 +17,10 @@ impl State {
         self.velocity.push(velocity);
     }
 
-    pub(super) fn copy_from(&mut self, other: &State) {
-        self.position.copy_from_slice(&other.position);
-        self.velocity.copy_from_slice(&other.velocity);
+    /// Has room for as many bodies as another state.
+    pub(super) fn match_len(&mut self, other: &State) {
+        self.position.resize(other.position.len(), DVec3::ZERO);
+        self.velocity.resize(other.velocity.len(), DVec3::ZERO);
     }
 
     /// The first of some bodies with a component of position or velocity beyond ±`largest`, or

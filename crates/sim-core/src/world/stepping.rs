@@ -301,7 +301,13 @@ impl World {
     /// Puts every body back, and says why.
     #[cold]
     pub(super) fn failed(&mut self, body: usize, cause: Cause) -> StepError {
-        self.current.copy_from(&self.previous);
+        let error = self.step_error(body, cause);
+        mem::swap(&mut self.current, &mut self.previous);
+        mem::swap(&mut self.previous, &mut self.earlier);
+        error
+    }
+
+    fn step_error(&self, body: usize, cause: Cause) -> StepError {
         let (step, method) = (self.steps + 1, self.settings.method.title);
         match cause {
             Cause::Range => StepError::OutOfRange {
@@ -318,11 +324,11 @@ impl World {
                 between,
                 step,
             },
-            Cause::Impacts => StepError::TooManyImpacts {
+            Cause::Impacts(impacts) => StepError::TooManyImpacts {
                 body,
                 step,
                 method,
-                impacts: World::MOST_IMPACTS,
+                impacts,
             },
             Cause::Growth { stable_dt } => StepError::Unstable {
                 body,
@@ -401,8 +407,8 @@ pub(super) enum Cause {
     Range,
     /// No room is left between these bodies.
     Squeezed((usize, usize)),
-    /// More impacts than [`World::MOST_IMPACTS`].
-    Impacts,
+    /// Another impact after so many, without an end.
+    Impacts(u64),
     /// Speeds have grown, and the method is unstable above this `dt`, s.
     Growth {
         stable_dt: f64,

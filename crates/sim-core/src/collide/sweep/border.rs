@@ -23,7 +23,7 @@ use glam::{DVec3, Vec3};
 
 use super::{
     Search,
-    candidate::{Candidate, Spot},
+    candidate::{Candidate, Spot, opposing_cmp},
     seen::{At, Cone, meet_after, slips_past},
 };
 use crate::bvh::Bvh;
@@ -36,6 +36,9 @@ use crate::collide::{
     tree,
     triple::{Difference, Time, direction, sign},
 };
+
+/// What a perpendicular may be off by, of its length.
+const DIGITS: f64 = 1e-6;
 
 /// The surfaces at the spots that were looked at last.
 #[derive(Default)]
@@ -141,6 +144,40 @@ impl Search<'_> {
             Feature::VertexFace { .. } => is_on(Side::First, first),
             Feature::EdgeEdge { .. } => is_on(Side::First, first) && is_on(Side::Second, second),
         }
+    }
+
+    /// Of edges whose perpendicular has fewer digits than [`DIGITS`], since they are parallel but for what
+    /// rounding turns them by when vertices are placed: that normal of a face at them which opposes the
+    /// motion most.
+    pub(super) fn normal_beside(&self, contact: &Candidate) -> Option<DVec3> {
+        if !contact.is_edges() {
+            return None;
+        }
+        let (u, v) = (contact.time.u, contact.time.v);
+        let farthest = [u.0, u.1, v.0, v.1].map(|p| p.abs().max_element());
+        let farthest = farthest.into_iter().fold(0.0, f64::max);
+        let (u, v) = (u.rounded(), v.rounded());
+        let rounding = f64::EPSILON * farthest * (u.length() + v.length());
+        if u.cross(v).length() * DIGITS > rounding {
+            return None;
+        }
+        let mut best: Option<DVec3> = None;
+        for side in [Side::First, Side::Second] {
+            let (mesh, offset) = self.placed(side);
+            each_at(mesh, offset, contact.spots[side as usize], |[a, b, c]| {
+                let Some(normal) = (b - a).cross(c - a).try_normalize() else {
+                    return;
+                };
+                let along = normal.dot(self.motion);
+                let normal = if along > 0.0 { -normal } else { normal };
+                let is_first = best
+                    .is_none_or(|best| opposing_cmp(normal, best, self.motion) == Ordering::Less);
+                if along != 0.0 && is_first {
+                    best = Some(normal);
+                }
+            });
+        }
+        best
     }
 
     fn placed(&self, side: Side) -> (&Bvh, DVec3) {

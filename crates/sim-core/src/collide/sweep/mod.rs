@@ -78,13 +78,14 @@ impl<'a> Search<'a> {
     }
 
     /// The first contact, by the order of those at one time.
-    pub(super) fn best(self) -> Option<Touch> {
-        let mut best = self.best?;
+    pub(super) fn best(mut self) -> Option<Touch> {
+        let mut best = self.best.take()?;
         let time = best.rounded();
+        let beside = self.normal_beside(&best);
         Some(Touch {
             time,
             point: best.point + time * best.drift,
-            normal: best.normal(),
+            normal: beside.unwrap_or_else(|| best.normal()),
             feature: best.feature,
         })
     }

@@ -5,6 +5,20 @@
 //! the step, and only that. Where a chord has an impact, the trajectory is cut closely before and
 //! after it and searched again: the departure falls with the square of the length, so that after a
 //! few rounds it is lost in the rounding, and the impact is one of the trajectory itself.
+//!
+//! No impact is lost between one search and the next, though a sheet has no inside in which it could
+//! be found later. Let `r` be more than all that rounding moves a placed vertex by along the normal of
+//! a contact, in two places together ([`World::rounding`]):
+//!
+//! - An event is put so early that `r` is left between the bodies. Until then, and where they start
+//!   again, each is before the contact, whatever is rounded. So is a pair of which a third body has
+//!   stopped one before its event.
+//! - A search goes on beyond the end of the step. A contact that it meets there with more than `r`
+//!   to go is before the bodies in the next step, where they start anew and round anew; one with
+//!   less belongs to this step.
+//!
+//! What slides past a surface by less than its rounding is the exception: a search goes so far beyond
+//! the end that it takes an angle of less than 1e-3 to a surface for that not to be seen.
 
 use glam::DVec3;
 
@@ -29,6 +43,9 @@ const RESOLUTION_ULPS: f64 = 4.0;
 /// its error, so that a point stays on its side of a surface.
 const SPHERE_MESH_ULPS: f64 = 64.0;
 
+/// How far a search goes beyond the end of a step, in roundings.
+const BEYOND: f64 = 1024.0;
+
 /// How far apart bodies may be that touch but for rounding, in resolutions of their positions.
 pub(super) const TOUCHING: f64 = 4.0;
 
@@ -43,6 +60,8 @@ struct Pair {
     resolution: f64,
     /// Whether a contact constraint keeps them apart already.
     is_in_contact: bool,
+    /// Whether both have an inside, in which the exact test sees the other one.
+    is_solid: bool,
 }
 
 impl World {
@@ -64,11 +83,12 @@ impl World {
             resolution: self.position_resolution(i, j),
             is_in_contact: !self.contacts.is_empty()
                 && self.contacts.of_pair(i, j).next().is_some(),
+            is_solid: has_roots(forms.0, forms.1),
         };
         let is_parabola = pair.deviation > 0.0
             && self.coupled_group(i).is_none()
             && self.coupled_group(j).is_none();
-        match is_parabola && has_roots(forms.0, forms.1) {
+        match is_parabola && pair.is_solid {
             true => self.find_on_parabola(pair, forms, probe),
             false => self.find_on_chords(pair, forms, probe),
         }
@@ -113,6 +133,38 @@ impl World {
         Ok(None)
     }
 
+    /// How much longer than a motion to the end of the step is one that goes on beyond it.
+    fn stretch(&self, pair: Pair, motion: DVec3) -> f64 {
+        let way = motion.abs().max_element();
+        let beyond = BEYOND * self.rounding(pair).max_element();
+        // Not farther than in a step.
+        if beyond < way {
+            1.0 + beyond / way
+        } else {
+            2.0
+        }
+    }
+
+    /// The impact with a contact beyond the end of a chord, if there is only a rounding between.
+    fn find_at_end(
+        &self,
+        pair: Pair,
+        (from, to): ((f64, DVec3), (f64, DVec3)),
+        contact: Contact,
+        probe: &mut Probe,
+    ) -> Result<Option<Event>, (usize, Cause)> {
+        let length = to.0 - from.0;
+        let fall = -contact.normal.dot(to.1 - from.1);
+        let left = (contact.time - 1.0) * fall;
+        let room = self.room(pair, contact.normal);
+        if left > room {
+            return Ok(None);
+        }
+        let times = (from.0, from.0 + contact.time * length);
+        self.back_off(pair, times, (fall / length, room), contact, probe)
+            .map(Some)
+    }
+
     /// The first impact on trajectories that are parabolas, of shapes with closed forms.
     fn find_on_parabola(
         &self,
@@ -142,7 +194,8 @@ impl World {
         };
         let closing = parabola.closing(contact.time, contact.normal);
         let times = (start, start + contact.time);
-        self.back_off(pair, times, closing, contact, probe)
+        let approach = (closing, self.room(pair, contact.normal));
+        self.back_off(pair, times, approach, contact, probe)
             .map(Some)
     }
 
@@ -156,9 +209,20 @@ impl World {
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         let motion = to.1 - from.1;
-        let Some(contact) = first_contact(forms.0, forms.1, snap(from.1), snap(motion)) else {
+        let goes_on = to.0 == self.settings.dt && !pair.is_solid;
+        let stretch = if goes_on {
+            self.stretch(pair, motion)
+        } else {
+            1.0
+        };
+        let found = first_contact(forms.0, forms.1, snap(from.1), snap(stretch * motion));
+        let Some(mut contact) = found else {
             return Ok(None);
         };
+        contact.time *= stretch;
+        if contact.time > 1.0 {
+            return self.find_at_end(pair, (from, to), contact, probe);
+        }
         let length = to.0 - from.0;
         let fall = -contact.normal.dot(motion);
         let departure = pair.deviation * length * length;
@@ -169,8 +233,9 @@ impl World {
         if is_straight || is_there {
             let part = if is_there { 0.0 } else { contact.time };
             let times = (from.0, from.0 + part * length);
+            let approach = (fall / length, self.room(pair, contact.normal));
             return self
-                .back_off(pair, times, fall / length, contact, probe)
+                .back_off(pair, times, approach, contact, probe)
                 .map(Some);
         }
         // Within this of the chord's impact lies the trajectory's, unless it slips past.
@@ -197,23 +262,17 @@ impl World {
         Ok(None)
     }
 
-    /// The last time before a contact, but for rounding, at which two bodies are apart: not before a
-    /// start, and from a time on at which they touch and close at a speed.
+    /// The last time before a contact, but for rounding, at which there is room between two bodies: not
+    /// before a start, and from a time on at which they touch and close at a speed.
     fn back_off(
         &self,
         pair: Pair,
         (start, touching): (f64, f64),
-        closing: f64,
+        (closing, room): (f64, f64),
         contact: Contact,
         probe: &mut Probe,
     ) -> Result<Event, (usize, Cause)> {
         let Pair { i, j, .. } = pair;
-        // Bodies that nothing presses together part at once, and need no room to stay in.
-        let room = if self.are_pressed(i, j) {
-            pair.resolution
-        } else {
-            0.0625 * pair.resolution
-        };
         // By their speed, or where there is hardly any by the trajectory's bend.
         let back = (room / closing).min(libm::sqrt(room / (4.0 * pair.deviation)));
         let mut back = back.max(f64::MIN_POSITIVE);
@@ -221,9 +280,9 @@ impl World {
             // Points that have passed each other by a rounding of the time do not meet.
             back = back.max(RESOLUTION_ULPS * f64::EPSILON * touching);
         }
-        let mut time = touching;
+        let (last, mut time) = (self.settings.dt.next_down(), touching);
         while time > start {
-            time = (touching - back).max(start);
+            time = (touching - back).min(last).max(start);
             back *= 2.0;
             let offset = self.offset_at(pair, time, probe)?;
             if !self.meet_built(i, j, offset) {
@@ -245,6 +304,38 @@ impl World {
                 ..contact
             },
         })
+    }
+
+    /// How far from a contact bodies are kept at their impact, m.
+    fn room(&self, pair: Pair, normal: DVec3) -> f64 {
+        // Bodies that nothing presses together part at once, and need no room to stay in.
+        let least = match self.are_pressed(pair.i, pair.j) {
+            true => pair.resolution,
+            false => 0.0625 * pair.resolution,
+        };
+        match pair.is_solid {
+            true => least,
+            false => least.max(normal.abs().dot(self.rounding(pair))),
+        }
+    }
+
+    /// More than rounding moves a placed vertex of a pair against the other body by, in two places
+    /// together, by component, m.
+    ///
+    /// With `u = 2^-53`, positions of up to `x`, motions of up to `d` since the start of a trajectory
+    /// and vertices of up to `s`, each body has errors of `u (x + 4 d)` where its position is summed
+    /// up, the pair of `u (x + x)` in its offset, of `u (x + x + s)` in the vertex, and of
+    /// `u (3 d + 3 d)` in the chord, the time and the part of it. The second place is the one in
+    /// which the search has placed the vertices, without errors of motion.
+    fn rounding(&self, pair: Pair) -> DVec3 {
+        let of = |body: usize| {
+            let continuous = &self.continuous;
+            let (from, to) = (continuous.start.position[body], self.current.position[body]);
+            let bend = 4.0 * self.chord_deviation(body);
+            let (place, motion) = (from.abs().max(to.abs()) + bend, (to - from).abs() + bend);
+            5.0 * place + 7.0 * motion + 2.0 * self.extent(body).farthest
+        };
+        0.5 * f64::EPSILON * (of(pair.i) + of(pair.j))
     }
 
     fn offset_at(&self, pair: Pair, time: f64, probe: &mut Probe) -> Result<DVec3, (usize, Cause)> {

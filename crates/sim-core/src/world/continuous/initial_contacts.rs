@@ -190,7 +190,8 @@ impl World {
                 }
                 is_new = true;
                 let forms = self.form(i).zip(self.form(j))?;
-                let motion = offset - pair.apart;
+                // Beyond where they meet, as times are rounded where shapes have closed forms.
+                let motion = 2.0 * (offset - pair.apart);
                 let contact = first_contact(forms.0, forms.1, snap(pair.apart), snap(motion))?;
                 let touching = pair.apart + contact.time * motion;
                 let level = contact.normal.dot(touching) + self.hover_gap(i, j);

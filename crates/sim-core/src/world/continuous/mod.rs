@@ -11,7 +11,7 @@
 //!    queue, and so does the end of each contact that is left behind.
 //! 5. [`resolve`]: the earliest event is resolved, with all of its instant: impulses are exchanged, or a
 //!    contact begins or ends and its island is solved; new trajectories start, and their events
-//!    are found.
+//!    are found. [`progress`] and [`crush`] stop a step that would have no end.
 //! 6. [`position_correction`]: an exact test makes sure that no two bodies meet.
 //!
 //! A step costs a box test for each pair that comes near, a search for each whose swept boxes meet, and
@@ -25,6 +25,7 @@ mod friction;
 mod impact_search;
 mod initial_contacts;
 mod position_correction;
+mod progress;
 mod resolve;
 mod sleep;
 #[cfg(test)]
@@ -43,7 +44,7 @@ use crate::{
 use constraint_solve::Visited;
 pub(super) use contact_set::ContactSet;
 use crush::CrushDetector;
-use position_correction::MAX_CORRECTION;
+use progress::Progress;
 use trajectory::Probe;
 
 /// What a step with continuous collision needs beside the state; empty while there is none.
@@ -80,6 +81,7 @@ pub(super) struct Continuous {
     restarted: Vec<usize>,
     partners: Vec<usize>,
     crush: CrushDetector,
+    pub(super) progress: Progress,
     /// What happens at one instant, and what is found after it.
     group: Vec<Event>,
     found: Vec<Event>,
@@ -173,13 +175,18 @@ const PAIRS_A_TASK: usize = 32;
 const MAX_LISTED: usize = 1 << 16;
 
 impl World {
-    /// Events in one step after which it is given up, as without end.
+    /// Events in one step after which it is given up. One in which bodies have no room, so that impacts
+    /// follow each other in no time, is given up after some thousands.
     pub const MOST_IMPACTS: u64 = 4_000_000;
 
     /// Lets bodies have their impacts and contacts on the way from the previous state to the current one.
     pub(super) fn collide_continuously(&mut self) -> Result<(), StepError> {
         let before = (self.impacts, self.last_impact.clone());
         self.continuous.contacts_before.copy_from(&self.contacts);
+        let placed = self.continuous.placed.then(|| {
+            let position = self.previous.position.clone();
+            (position, self.overlapping.clone())
+        });
         self.separate_placed();
         self.begin_trajectories();
         let done = self
@@ -190,6 +197,11 @@ impl World {
         if let Err((body, cause)) = done {
             (self.impacts, self.last_impact) = before;
             mem::swap(&mut self.contacts, &mut self.continuous.contacts_before);
+            if let Some((position, overlapping)) = placed {
+                self.continuous.placed = true;
+                self.previous.position = position;
+                self.overlapping = overlapping;
+            }
             // Who fell asleep in the step has not.
             self.continuous.wake_all();
             return Err(self.failed(body, cause));
@@ -294,7 +306,9 @@ impl World {
 
     /// Resolves events in the order of time until none is left.
     fn resolve_all(&mut self) -> Result<(), (usize, Cause)> {
-        self.continuous.crush = CrushDetector::default();
+        let bodies = self.len();
+        self.continuous.crush.begin();
+        self.continuous.progress.begin(bodies);
         let mut group = mem::take(&mut self.continuous.group);
         while let Some(first) = self.next_event(f64::INFINITY) {
             let time = first.time;
@@ -305,12 +319,10 @@ impl World {
             while let Some(event) = self.next_event(until) {
                 group.push(event);
             }
-            self.continuous.resolved += group.len() as u64;
-            if self.continuous.resolved > World::MOST_IMPACTS {
-                return Err((group[0].bodies.1, Cause::Impacts));
-            }
+            self.count_events(&group)?;
             self.watch_crush(&group)?;
             self.resolve(&mut group, time)?;
+            self.continuous.progress.note_changes(&group);
             if self.continuous.candidate_pairs.len() > MAX_LISTED {
                 self.continuous.candidate_pairs.sort_unstable();
                 self.continuous.candidate_pairs.dedup();
@@ -399,10 +411,11 @@ impl World {
             farthest,
             ..
         } = self.extent(body);
-        // More than is lost in rounding, here and where vertices are placed; and as far as bodies may be
-        // moved where others that meet are parted.
-        let size = from.abs() + to.abs() + 2.0 * farthest;
-        let reach = self.chord_deviation(body) + 2.0 * MAX_CORRECTION * f64::EPSILON * size;
+        // More than is lost in rounding, here and where vertices are placed, and than a search goes beyond
+        // the end of the step; and as far as bodies may be moved where others that meet are parted.
+        let bend = self.chord_deviation(body);
+        let size = (from.abs() + to.abs() + 4.0 * bend + 2.0 * farthest).max_element();
+        let reach = bend + 8192.0 * f64::EPSILON * size;
         Swept {
             min: from.min(to) + low - reach,
             max: from.max(to) + high + reach,

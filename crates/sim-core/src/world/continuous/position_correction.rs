@@ -13,7 +13,7 @@ use super::super::{World, stepping::Cause};
 use crate::collide::parting_normals;
 
 /// Units in the last place, a few parts in 10^12, before it is an overlap.
-pub(super) const MAX_CORRECTION: f64 = 1024.0;
+const MAX_CORRECTION: f64 = 1024.0;
 /// Rounds in which a body that is moved out of one may get into another.
 const ROUNDS: usize = 32;
 

@@ -435,10 +435,7 @@ impl World {
             });
             self.count(&group);
             self.watch_crush(&group)?;
-            if group.len() as u64 + self.continuous.resolved > World::MOST_IMPACTS {
-                return Err((group[0].bodies.1, Cause::Impacts));
-            }
-            self.continuous.resolved += group.len() as u64;
+            self.count_events(&group)?;
             self.bounce_all_of(group.iter(), time);
             changed.clear();
             changed.extend(
