@@ -45,6 +45,17 @@ pub(crate) struct Contact {
     pub(crate) face: Option<u32>,
 }
 
+impl Contact {
+    /// The same as the second body has it, with the point where it is.
+    pub(crate) fn turned(self) -> Contact {
+        Contact {
+            normal: -self.normal,
+            feature: self.feature.map(Feature::turned),
+            ..self
+        }
+    }
+}
+
 impl From<Touch> for Contact {
     fn from(touch: Touch) -> Contact {
         Contact {

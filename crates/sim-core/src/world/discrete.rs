@@ -1,0 +1,326 @@
+//! Collisions as in the course: found where a step ends, and nothing in between.
+//!
+//! Bodies that meet exchange an impulse along the contact normal and go back to where the step began.
+//! Putting one back may make it meet a third, so this goes on until none meets. It ends, because each
+//! round puts back at least one body more, and at the beginning of the step nothing met. It leaves
+//! the invariant that the next step relies on: no two bodies meet, but for pairs that were put into
+//! the world in overlap.
+//!
+//! Those that touch first on the way go first, and those that touch at the same time go together. So
+//! the order of bodies has no say in it.
+
+use alloc::{
+    collections::{BTreeMap, BinaryHeap},
+    vec,
+    vec::Vec,
+};
+use core::{cmp::Ordering, mem};
+use glam::DVec3;
+
+use super::{
+    World,
+    order::{self, Key},
+};
+use crate::{
+    collide::{Broad, Contact},
+    impulse::{Joined, reflect},
+    pieces::Pieces,
+};
+
+/// Of so many bodies or fewer, all pairs are looked at: to put them in order takes longer.
+const FEW: usize = 16;
+
+/// What is kept from step to step to find pairs that come near.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Discrete {
+    broad: Broad,
+    /// Pairs whose boxes meet on the way of the step.
+    near: Vec<(usize, usize)>,
+}
+
+/// Two bodies that meet.
+struct Meeting {
+    /// Part of the step at which they touch.
+    time: f64,
+    bodies: (usize, usize),
+    /// Whether each had been put back when this was found.
+    were_back: (bool, bool),
+    /// Its point is in the world; `None` where nothing moves them.
+    contact: Option<Contact>,
+}
+
+impl Ord for Meeting {
+    /// The earliest is the greatest; at the same time the one of the lowest bodies.
+    fn cmp(&self, other: &Meeting) -> Ordering {
+        let time = other.time.total_cmp(&self.time);
+        time.then(other.bodies.cmp(&self.bodies))
+    }
+}
+
+impl PartialOrd for Meeting {
+    fn partial_cmp(&self, other: &Meeting) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Meeting {
+    fn eq(&self, other: &Meeting) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Meeting {}
+
+impl World {
+    /// Lets bodies that meet bounce, and puts them back to where the step began.
+    pub(super) fn collide(&mut self) {
+        // What this mode does to bodies in contact it does where a step ends.
+        self.contacts.clear();
+        self.continuous.placed = true;
+        let meeting = self.meeting_pairs();
+        if !meeting.is_empty() {
+            self.bounce_all(&meeting);
+        }
+        self.part_overlapping();
+    }
+
+    /// Pairs that meet now and were apart.
+    fn meeting_pairs(&mut self) -> Vec<(usize, usize)> {
+        if self.is_few() {
+            let solid = &self.solid;
+            let pairs = (1..solid.len()).flat_map(|j| (0..j).map(move |i| (solid[i], solid[j])));
+            return pairs.filter(|&(i, j)| self.collides(i, j)).collect();
+        }
+        let mut discrete = mem::take(&mut self.discrete);
+        let way = |body: usize| (self.previous.position[body], self.current.position[body]);
+        discrete.broad.fill(
+            &self.solid,
+            |body| self.swept_box(body, way(body).0, way(body).1),
+            |body| self.swept_front(body, way(body).0, way(body).1),
+        );
+        let near = &mut discrete.near;
+        near.clear();
+        discrete.broad.each_pair(|i, j| near.push((i, j)));
+        let pairs = near.iter().copied();
+        let meeting = pairs.filter(|&(i, j)| self.collides(i, j)).collect();
+        self.discrete = discrete;
+        meeting
+    }
+
+    fn is_few(&self) -> bool {
+        self.solid.len() <= FEW
+    }
+
+    /// Bounces and puts back until no pair collides.
+    fn bounce_all(&mut self, meeting: &[(usize, usize)]) {
+        let mut is_back = vec![false; self.len()];
+        let pairs = meeting.iter();
+        let mut meetings: BinaryHeap<Meeting> =
+            pairs.map(|&pair| self.meeting_of(pair, &is_back)).collect();
+        let (mut group, mut put_back) = (Vec::new(), Vec::new());
+        while let Some(first) = next(&mut meetings, f64::INFINITY, &is_back) {
+            // The same time, but for rounding.
+            let until = first.time + 4.0 * f64::EPSILON * first.time;
+            group.clear();
+            group.push(first);
+            while let Some(meeting) = next(&mut meetings, until, &is_back) {
+                group.push(meeting);
+            }
+            self.exchange_at_once(&group);
+            put_back.clear();
+            for body in group
+                .iter()
+                .flat_map(|meeting| [meeting.bodies.0, meeting.bodies.1])
+            {
+                if !mem::replace(&mut is_back[body], true) {
+                    self.current.position[body] = self.previous.position[body];
+                    put_back.push(body);
+                }
+            }
+            for &body in &put_back {
+                self.each_near(body, |other| {
+                    // Where the step began nobody met.
+                    if !is_back[other] && self.collides(body, other) {
+                        let pair = (body.min(other), body.max(other));
+                        meetings.push(self.meeting_of(pair, &is_back));
+                    }
+                });
+            }
+        }
+    }
+
+    /// Every other body whose box meets that of a body on the way of the step.
+    fn each_near(&self, body: usize, mut found: impl FnMut(usize)) {
+        if self.is_few() {
+            let others = self.solid.iter().copied();
+            others.filter(|&other| other != body).for_each(found);
+        } else {
+            self.discrete.broad.each_partner(body, &mut found);
+        }
+    }
+
+    /// Whether two bodies meet that were apart.
+    fn collides(&self, i: usize, j: usize) -> bool {
+        self.may_collide(i, j) && self.meet(i, j)
+    }
+
+    fn meeting_of(&self, (i, j): (usize, usize), is_back: &[bool]) -> Meeting {
+        let contact = self.contact_on_way(i, j);
+        Meeting {
+            time: contact.as_ref().map_or(1.0, |contact| contact.time),
+            bodies: (i, j),
+            were_back: (is_back[i], is_back[j]),
+            contact,
+        }
+    }
+
+    /// Lets bodies that touch at the same time part by their restitution.
+    fn exchange_at_once(&mut self, group: &[Meeting]) {
+        let mut touching: Vec<Touching> = group
+            .iter()
+            .filter_map(|meeting| self.touching(meeting))
+            .collect();
+        if let [only] = &touching[..] {
+            return self.exchange_on_way(only);
+        }
+        touching.sort_by(Touching::in_order);
+        let bodies = sorted(touching.iter().flat_map(|touching| touching.bodies));
+        let place = |body: usize| bodies.partition_point(|&other| other < body);
+        // What an immovable body is given does not reach others.
+        let mut pieces = Pieces::new(bodies.len());
+        for Touching { bodies: [i, j], .. } in &touching {
+            if self.mass[*i].is_finite() && self.mass[*j].is_finite() {
+                pieces.join(place(*i), place(*j));
+            }
+        }
+        let mut piece_of = |touching: &Touching| {
+            let [i, j] = touching.bodies;
+            pieces.first(place(if self.mass[i].is_finite() { i } else { j }))
+        };
+        let mut in_pieces: Vec<(usize, Touching)> = touching
+            .into_iter()
+            .map(|touching| (piece_of(&touching), touching))
+            .collect();
+        in_pieces.sort_by_key(|&(piece, _)| piece);
+        for piece in in_pieces.chunk_by(|a, b| a.0 == b.0) {
+            match piece {
+                [(_, only)] => self.exchange_on_way(only),
+                _ => self.reflect_piece(piece),
+            }
+        }
+    }
+
+    /// What touches in a meeting, from the body that comes first in an order of motion.
+    fn touching(&self, meeting: &Meeting) -> Option<Touching> {
+        let (contact, (i, j)) = (meeting.contact.clone()?, meeting.bodies);
+        let keys = [self.motion_key(i), self.motion_key(j)];
+        let is_turned = keys[1] < keys[0];
+        Some(Touching {
+            is_turned,
+            bodies: if is_turned { [j, i] } else { [i, j] },
+            keys: if is_turned { [keys[1], keys[0]] } else { keys },
+            normal: if is_turned {
+                -contact.normal
+            } else {
+                contact.normal
+            },
+            contact,
+        })
+    }
+
+    fn exchange_on_way(&mut self, touching: &Touching) {
+        let time = self.time() + touching.contact.time * self.settings.dt;
+        self.exchange_now(touching.pair(), &touching.contact, time);
+    }
+
+    /// Lets bodies that hang together part with the least restitution of all.
+    fn reflect_piece(&mut self, piece: &[(usize, Touching)]) {
+        let piece = || piece.iter().map(|(_, touching)| touching);
+        // In the order in which they come up, which is one of motion.
+        let mut bodies: Vec<usize> = Vec::new();
+        let mut places: BTreeMap<usize, usize> = BTreeMap::new();
+        for body in piece().flat_map(|touching| touching.bodies) {
+            places.entry(body).or_insert_with(|| {
+                bodies.push(body);
+                bodies.len() - 1
+            });
+        }
+        let joined = piece().map(|touching| Joined {
+            bodies: (places[&touching.bodies[0]], places[&touching.bodies[1]]),
+            normal: touching.normal,
+        });
+        let joined: Vec<Joined> = joined.collect();
+        let restitution = piece()
+            .map(|touching| self.pair_restitution(touching.bodies[0], touching.bodies[1]))
+            .fold(1.0, f64::min);
+        let inverse_mass: Vec<f64> = bodies.iter().map(|&body| 1.0 / self.mass[body]).collect();
+        let velocity = bodies.iter().map(|&body| self.current.velocity[body]);
+        let before: Vec<DVec3> = velocity.collect();
+        let mut after = before.clone();
+        let impulses = reflect(&joined, &inverse_mass, &mut after, restitution);
+        for (&body, &velocity) in bodies.iter().zip(&after) {
+            self.current.velocity[body] = velocity;
+        }
+        for ((touching, joined), impulse) in piece().zip(&joined).zip(impulses) {
+            if impulse > 0.0 {
+                let speeds = (-joined.opening(&before), joined.opening(&after));
+                let time = self.time() + touching.contact.time * self.settings.dt;
+                self.note_impact(touching.pair(), &touching.contact, impulse, speeds, time);
+            }
+        }
+    }
+
+    /// What tells bodies apart whatever their places are.
+    fn motion_key(&self, body: usize) -> Key {
+        let (x, v) = (self.previous.position[body], self.previous.velocity[body]);
+        Key::of(x, v, self.mass[body])
+    }
+}
+
+/// Two bodies that touch.
+struct Touching {
+    /// The first in an order of motion, and the other.
+    bodies: [usize; 2],
+    keys: [Key; 2],
+    /// From the first to the other.
+    normal: DVec3,
+    /// Of the lower body and the higher.
+    contact: Contact,
+    /// Whether the first is the higher.
+    is_turned: bool,
+}
+
+impl Touching {
+    fn pair(&self) -> (usize, usize) {
+        let [first, second] = self.bodies;
+        match self.is_turned {
+            true => (second, first),
+            false => (first, second),
+        }
+    }
+
+    fn in_order(&self, other: &Touching) -> Ordering {
+        let keys = self.keys.cmp(&other.keys);
+        keys.then_with(|| order::of_vectors(self.normal, other.normal))
+    }
+}
+
+/// Bodies in the order of their places, each once.
+fn sorted(bodies: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut bodies: Vec<usize> = bodies.collect();
+    bodies.sort_unstable();
+    bodies.dedup();
+    bodies
+}
+
+/// The next meeting no later than a time, of bodies that are where they were when it was found.
+fn next(meetings: &mut BinaryHeap<Meeting>, until: f64, is_back: &[bool]) -> Option<Meeting> {
+    while meetings.peek()?.time <= until {
+        let meeting = meetings.pop()?;
+        let (i, j) = meeting.bodies;
+        if meeting.were_back == (is_back[i], is_back[j]) {
+            return Some(meeting);
+        }
+    }
+    None
+}
