@@ -3,7 +3,7 @@
 use scene::{SCENES, Scene};
 use sim_core::{Collision, DVec3, World};
 
-const STEPS: usize = 120;
+const STEPS: usize = 200;
 
 const MODES: [(&str, Collision); 3] = [
     ("continuous", Collision::Continuous),

@@ -62,7 +62,7 @@ pub enum Feature {
 
 impl Feature {
     /// The same with the meshes in the other order.
-    pub(crate) fn turned(self) -> Feature {
+    pub(super) fn turned(self) -> Feature {
         match self {
             Feature::VertexFace { vertex, face } => Feature::FaceVertex { face, vertex },
             Feature::FaceVertex { face, vertex } => Feature::VertexFace { vertex, face },

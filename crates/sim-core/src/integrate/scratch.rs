@@ -6,15 +6,42 @@ use glam::DVec3;
 use super::Jacobians;
 
 /// Columns for the intermediate results of a method, kept so that only the first step allocates.
-/// What is in them at the start of a step has no meaning.
-#[derive(Clone, Debug, Default)]
+/// What is in them at the start of a step has no meaning, so a copy starts without.
+#[derive(Debug, Default)]
 pub struct Scratch {
     stages: Vec<DVec3>,
     pub(super) newton: Newton,
+    pub(crate) gathered: Gathered,
+}
+
+/// Room for bodies that are put side by side to be stepped.
+#[derive(Debug, Default)]
+pub(crate) struct Gathered {
+    columns: Vec<DVec3>,
+    mass: Vec<f64>,
+}
+
+impl Clone for Scratch {
+    fn clone(&self) -> Scratch {
+        Scratch::default()
+    }
+}
+
+impl Gathered {
+    /// `N` columns of `len` vectors, and one of masses.
+    pub(crate) fn columns<const N: usize>(
+        &mut self,
+        len: usize,
+    ) -> ([&mut [DVec3]; N], &mut [f64]) {
+        if self.mass.len() < len {
+            self.mass.resize(len, 0.0);
+        }
+        (columns(&mut self.columns, len), &mut self.mass[..len])
+    }
 }
 
 /// Room for an implicit equation, apart from the stages around it.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Newton {
     columns: Vec<DVec3>,
     pub(super) jacobians: Vec<Jacobians>,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Collision, World, order};
+use super::{Collision, World};
 use crate::{
     Feature,
     collide::{self, Contact, naive, snap},
@@ -42,27 +42,20 @@ impl World {
 
     /// Whether two bodies meet where they are now, as the mode has it.
     pub(super) fn meet(&self, i: usize, j: usize) -> bool {
-        let (i, j) = self.facing(i, j, &self.current.position);
         let offset = self.current.position[j] - self.current.position[i];
         let meshes = match self.settings.collision {
             Collision::Naive => self.mesh(i).zip(self.mesh(j)),
             Collision::Bvh | Collision::Continuous => None,
         };
-        match meshes {
-            Some((first, second)) => {
-                first.bounds().meets(&second.bounds(), snap(offset))
-                    && naive::intersect(first, second, offset)
-            }
-            None => self.meet_at(i, j, offset),
+        let Some((first, second)) = meshes else {
+            return self.meet_at(i, j, offset);
+        };
+        if !first.bounds().meets(&second.bounds(), snap(offset)) {
+            return false;
         }
-    }
-
-    /// Two bodies in an order that comes from where they are: what is rounded depends on which of two
-    /// meshes is the first.
-    pub(super) fn facing(&self, i: usize, j: usize, at: &[DVec3]) -> (usize, usize) {
-        match order::of_vectors(at[i], at[j]).is_gt() {
-            true => (j, i),
-            false => (i, j),
+        match collide::is_turned(offset) {
+            true => naive::intersect(second, first, -offset),
+            false => naive::intersect(first, second, offset),
         }
     }
 
@@ -99,10 +92,9 @@ impl World {
         self.need_bvh(i);
         self.need_bvh(j);
         let (start, end) = (&self.previous.position, &self.current.position);
-        let (first, second) = self.facing(i, j, start);
-        let offset = start[second] - start[first];
-        let motion = (end[second] - end[first]) - offset;
-        let forms = self.form(first).zip(self.form(second));
+        let offset = start[j] - start[i];
+        let motion = (end[j] - end[i]) - offset;
+        let forms = self.form(i).zip(self.form(j));
         let contact = forms.and_then(|(a, b)| collide::first_contact(a, b, offset, motion));
         // Bodies that meet after a motion have touched on the way. Should rounding hide where,
         // the motion itself is turned back.
@@ -116,13 +108,8 @@ impl World {
             })
         };
         let contact = contact.or_else(turned_back)?;
-        let point = start[first].lerp(end[first], contact.time) + contact.point;
-        let contact = Contact { point, ..contact };
-        Some(if first == i {
-            contact
-        } else {
-            contact.turned()
-        })
+        let point = start[i].lerp(end[i], contact.time) + contact.point;
+        Some(Contact { point, ..contact })
     }
 
     /// Lets two bodies that approach part by their restitution, now.

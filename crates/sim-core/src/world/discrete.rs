@@ -30,12 +30,19 @@ use crate::{
 /// Of so many bodies or fewer, all pairs are looked at: to put them in order takes longer.
 const FEW: usize = 16;
 
-/// What is kept from step to step to find pairs that come near.
-#[derive(Clone, Debug, Default)]
+/// What is kept from step to step to find pairs that come near. It saves time, and a copy starts
+/// without.
+#[derive(Debug, Default)]
 pub(super) struct Discrete {
     broad: Broad,
     /// Pairs whose boxes meet on the way of the step.
     near: Vec<(usize, usize)>,
+}
+
+impl Clone for Discrete {
+    fn clone(&self) -> Discrete {
+        Discrete::default()
+    }
 }
 
 /// Two bodies that meet.
@@ -269,12 +276,6 @@ impl World {
             }
         }
     }
-
-    /// What tells bodies apart whatever their places are.
-    fn motion_key(&self, body: usize) -> Key {
-        let (x, v) = (self.previous.position[body], self.previous.velocity[body]);
-        Key::of(x, v, self.mass[body])
-    }
 }
 
 /// Two bodies that touch.
@@ -323,4 +324,141 @@ fn next(meetings: &mut BinaryHeap<Meeting>, until: f64, is_back: &[bool]) -> Opt
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::{sync::Arc, vec::Vec};
+
+    use super::*;
+    use crate::{
+        Body, Collision, Settings, Shape,
+        test_meshes::{cube, sphere},
+        test_random::Random,
+    };
+
+    /// Balls, cubes and bumpy balls in a room of walls, some of them fast, some immovable, some in
+    /// overlap.
+    pub(in crate::world) fn crowd(seed: u64, count: usize, collision: Collision) -> World {
+        let mut random = Random(seed);
+        let (cube, bumpy) = (Arc::new(cube()), Arc::new(sphere(5)));
+        let mut world = World::new(Settings {
+            collision,
+            ..Settings::default()
+        })
+        .unwrap();
+        let half = 3 + count as i64 / 20;
+        for normal in [DVec3::Y, DVec3::NEG_Y, DVec3::new(1.0, 0.25, 0.0)] {
+            let wall = Body {
+                shape: Some(Shape::HalfSpace { normal }),
+                position: -(half as f64 + 0.5) * normal,
+                mass: f64::INFINITY,
+                ..Body::default()
+            };
+            world.add(wall).unwrap();
+        }
+        for i in 0..count {
+            let is_immovable = i % 11 == 10;
+            let speed = match i % 7 {
+                _ if is_immovable => 0.0,
+                0 => 0.4,
+                _ => 0.05,
+            };
+            world
+                .add(Body {
+                    shape: Some(match i % 3 {
+                        0 => Shape::Sphere { radius: 0.25 },
+                        1 => cube.clone().into(),
+                        _ => bumpy.clone().into(),
+                    }),
+                    position: 1e-2 * random.vector(100 * half),
+                    velocity: speed * random.vector(100),
+                    mass: if is_immovable {
+                        f64::INFINITY
+                    } else {
+                        1.0 + (i % 4) as f64
+                    },
+                    restitution: if i % 5 == 0 { 0.5 } else { 1.0 },
+                    ..Body::default()
+                })
+                .unwrap();
+        }
+        world
+    }
+
+    fn pairs(world: &World, is: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
+        let pairs = (0..world.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+        pairs.filter(|&(i, j)| is(i, j)).collect()
+    }
+
+    #[test]
+    fn pairs_that_meet_are_those_of_brute_force() {
+        let (mut met, mut back) = (0, 0);
+        for (seed, count) in (1..).zip([2, 12, 20, 60, 150]) {
+            for collision in [Collision::Bvh, Collision::Naive] {
+                let mut world = crowd(seed, count, collision);
+                for _ in 0..30 {
+                    world.seek_overlaps();
+                    // As far as a step goes before it looks at collisions.
+                    mem::swap(&mut world.previous, &mut world.current);
+                    world.integrate().unwrap();
+                    let mut meeting = world.meeting_pairs();
+                    meeting.sort_unstable_by_key(|&(i, j)| (j, i));
+                    assert_eq!(meeting, pairs(&world, |i, j| world.collides(i, j)));
+                    met += meeting.len();
+                    // Whoever may meet where one or both are put back is near.
+                    let there = [world.previous.clone(), world.current.clone()];
+                    for (one, other) in [(0, 0), (0, 1), (1, 0)] {
+                        let mut moved = world.clone();
+                        let meet = |moved: &mut World, i: usize, j: usize| {
+                            moved.current.position[i] = there[one].position[i];
+                            moved.current.position[j] = there[other].position[j];
+                            moved.meet(i, j)
+                        };
+                        for (i, j) in pairs(&world, |_, _| true) {
+                            if meet(&mut moved, i, j) {
+                                let mut is_near = false;
+                                world.each_near(i, |near| is_near |= near == j);
+                                assert!(is_near, "{i} {j}");
+                                back += 1;
+                            }
+                        }
+                    }
+                    world.collide();
+                    world.steps += 1;
+                }
+            }
+        }
+        assert!(met > 150 && back > 500, "{met} {back}");
+    }
+
+    #[test]
+    fn no_two_meet_after_a_step_and_none_gains_energy() {
+        let mut impacts = 0;
+        for (seed, count) in (1..).zip([12, 20, 60, 150]) {
+            let mut world = crowd(seed, count, Collision::Bvh);
+            for _ in 0..60 {
+                let energy = world.kinetic_energy();
+                world.step().unwrap();
+                assert_eq!(pairs(&world, |i, j| world.collides(i, j)), [], "{seed}");
+                assert!(world.kinetic_energy() <= energy * (1.0 + 1e-12), "{seed}");
+            }
+            impacts += world.impacts();
+        }
+        assert!(impacts > 150, "{impacts}");
+    }
+
+    #[test]
+    fn a_copy_goes_on_to_the_bit_as_the_world_does() {
+        for collision in [Collision::Bvh, Collision::Continuous] {
+            let mut world = crowd(3, 40, collision);
+            for step in 0..40 {
+                let mut copy = world.clone();
+                assert_eq!(copy.state_hash(), world.state_hash());
+                world.step().unwrap();
+                copy.step().unwrap();
+                assert_eq!(copy.state_hash(), world.state_hash(), "{step}");
+            }
+        }
+    }
 }

@@ -3,15 +3,20 @@
 use core::cmp::Ordering;
 use glam::DVec3;
 
-/// What tells one body from another: position, velocity and mass. Bodies of which these are the same
-/// may take each other's place.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Key([f64; 7]);
+use super::World;
 
-impl Key {
-    pub(super) fn of(position: DVec3, velocity: DVec3, mass: f64) -> Key {
-        let ([x, y, z], [u, v, w]) = (position.to_array(), velocity.to_array());
-        Key([x, y, z, u, v, w, mass])
+/// What tells one body from another: position, velocity, mass, and the acceleration by constant
+/// forces. Bodies of which these are the same may take each other's place.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Key([f64; 10]);
+
+impl World {
+    /// The key of a body where the step begins.
+    pub(super) fn motion_key(&self, body: usize) -> Key {
+        let [x, y, z] = self.previous.position[body].to_array();
+        let [u, v, w] = self.previous.velocity[body].to_array();
+        let [a, b, c] = self.acceleration[body].to_array();
+        Key([x, y, z, u, v, w, self.mass[body], a, b, c])
     }
 }
 

@@ -94,9 +94,8 @@ impl World {
         let mut pairs = self.overlapping.clone();
         let mut ask = |i: usize, j: usize| {
             let is_movable = self.mass[i].is_finite() || self.mass[j].is_finite();
-            let (first, second) = self.facing(i, j, &self.current.position);
-            let offset = self.current.position[second] - self.current.position[first];
-            if is_movable && self.meet_at(first, second, offset) {
+            let offset = self.current.position[j] - self.current.position[i];
+            if is_movable && self.meet_at(i, j, offset) {
                 pairs.push((i, j));
             }
         };
@@ -277,5 +276,111 @@ impl World {
             .mesh(body)
             .map_or(DVec3::ZERO, |mesh| Aabb::centre(&mesh.bounds()));
         self.current.position[body] + middle
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::{sync::Arc, vec::Vec};
+
+    use super::*;
+    use crate::{Body, Settings, test_meshes::cube, test_random::Random};
+
+    /// All pairs in overlap, one by one.
+    fn brute_force(world: &World) -> Vec<(usize, usize)> {
+        let pairs = (0..world.len()).flat_map(|i| (i + 1..world.len()).map(move |j| (i, j)));
+        let is_overlap = |&(i, j): &(usize, usize)| {
+            let is_movable = world.mass(i).is_finite() || world.mass(j).is_finite();
+            is_movable && world.meet_at(i, j, world.position(j) - world.position(i))
+        };
+        pairs.filter(is_overlap).collect()
+    }
+
+    #[test]
+    fn overlaps_are_those_of_brute_force_whenever_they_are_asked_for() {
+        let cube = Arc::new(cube());
+        let (mut found, mut asked) = (0, 0);
+        for seed in 1..60 {
+            let mut random = Random(seed);
+            let mut world = World::new(Settings::default()).unwrap();
+            let mut pick = |most: usize| (random.up_to(1 << 30) + (1 << 30)) as usize % most;
+            for _ in 0..120 {
+                let place = 0.25 * DVec3::from([pick(16), pick(16), pick(16)].map(|x| x as f64));
+                let heavy = if pick(4) == 0 { f64::INFINITY } else { 1.0 };
+                match (pick(8), world.len()) {
+                    (0, 1..) => {
+                        let body = pick(world.len());
+                        world.set_position(body, place).unwrap();
+                    }
+                    (1, 1..) => {
+                        let body = pick(world.len());
+                        world.set_mass(body, heavy).unwrap();
+                    }
+                    (2, _) if pick(8) == 0 => {
+                        let expected = brute_force(&world);
+                        world.seek_overlaps();
+                        assert_eq!(world.overlapping, expected);
+                    }
+                    (3, _) if pick(4) == 0 => {
+                        let expected = brute_force(&world);
+                        assert_eq!(world.overlapping(), expected);
+                        assert_eq!(world.clone().overlapping(), expected);
+                        (found, asked) = (found + expected.len(), asked + 1);
+                    }
+                    _ => {
+                        let shape = match pick(5) {
+                            0 => Some(Shape::Sphere { radius: 0.25 }),
+                            1 if pick(4) == 0 => Some(Shape::HalfSpace {
+                                normal: DVec3::new(0.0, 1.0, pick(2) as f64),
+                            }),
+                            2 => None,
+                            _ => Some(cube.clone().into()),
+                        };
+                        world
+                            .add(Body {
+                                shape,
+                                position: place,
+                                mass: heavy,
+                                ..Body::default()
+                            })
+                            .unwrap();
+                    }
+                }
+            }
+            assert_eq!(world.overlapping(), brute_force(&world));
+        }
+        assert!(found > 1000 && asked > 100, "{found} {asked}");
+    }
+
+    #[test]
+    fn many_pairs_in_overlap_gain_no_energy() {
+        let mut random = Random(5);
+        let mut world = World::new(Settings {
+            collision: crate::Collision::Bvh,
+            ..Settings::default()
+        })
+        .unwrap();
+        for _ in 0..30 {
+            world
+                .add(Body {
+                    shape: Some(Shape::Sphere { radius: 1.0 }),
+                    position: 1e-2 * random.vector(100),
+                    velocity: 1e-2 * random.vector(100),
+                    ..Body::default()
+                })
+                .unwrap();
+        }
+        assert!(world.overlapping().len() > 300);
+        for _ in 0..600 {
+            let energy = world.kinetic_energy();
+            world.step().unwrap();
+            assert!(world.kinetic_energy() <= energy * (1.0 + 1e-14));
+        }
+        // Alone, each would have left long ago.
+        assert!(
+            world.overlapping().len() < 100,
+            "{}",
+            world.overlapping().len()
+        );
     }
 }
