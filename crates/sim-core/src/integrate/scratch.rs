@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use glam::DVec3;
 
-use super::Jacobians;
+use super::{Jacobians, implicit::Progress};
 
 /// Columns for the intermediate results of a method, kept so that only the first step allocates.
 /// What is in them at the start of a step has no meaning, so a copy starts without.
@@ -47,6 +47,7 @@ pub(super) struct Newton {
     pub(super) jacobians: Vec<Jacobians>,
     /// Matrices of three stages of each body, inverted.
     pub(super) inverses: Vec<[[f64; 9]; 9]>,
+    pub(super) progress: Vec<Progress>,
 }
 
 impl Scratch {
@@ -65,6 +66,13 @@ impl Scratch {
 }
 
 impl Newton {
+    /// The progress of so many bodies, to be put back.
+    pub(super) fn take_progress(&mut self, len: usize) -> Vec<Progress> {
+        let mut progress = core::mem::take(&mut self.progress);
+        progress.resize(len, Progress::NONE);
+        progress
+    }
+
     /// `N` columns of `len` vectors, and the matrices.
     pub(super) fn columns<const N: usize>(
         &mut self,
