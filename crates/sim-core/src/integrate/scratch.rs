@@ -1,6 +1,6 @@
 //! Room for intermediate results.
 
-use alloc::vec::Vec;
+use alloc::{boxed::Box, vec::Vec};
 use glam::DVec3;
 
 use super::{Jacobians, implicit::Progress};
@@ -11,7 +11,8 @@ use super::{Jacobians, implicit::Progress};
 pub struct Scratch {
     stages: Vec<DVec3>,
     pub(super) newton: Newton,
-    pub(crate) gathered: Gathered,
+    /// Where it is seldom needed, as all of this is moved about in each step.
+    pub(crate) gathered: Option<Box<Gathered>>,
 }
 
 /// Room for bodies that are put side by side to be stepped.

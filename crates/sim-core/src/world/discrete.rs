@@ -11,7 +11,6 @@
 
 use alloc::{
     collections::{BTreeMap, BinaryHeap},
-    vec,
     vec::Vec,
 };
 use core::{cmp::Ordering, mem};
@@ -35,8 +34,15 @@ const FEW: usize = 16;
 #[derive(Debug, Default)]
 pub(super) struct Discrete {
     broad: Broad,
-    /// Pairs whose boxes meet on the way of the step.
+    /// Pairs whose boxes meet on the way of the step, and those that meet where it ends.
     near: Vec<(usize, usize)>,
+    meeting: Vec<(usize, usize)>,
+    /// What is to be answered, and what is answered at once.
+    meetings: BinaryHeap<Meeting>,
+    group: Vec<Meeting>,
+    /// Who has been put back in this step, and who just now; empty between steps.
+    is_back: Vec<bool>,
+    put_back: Vec<usize>,
 }
 
 impl Clone for Discrete {
@@ -46,6 +52,7 @@ impl Clone for Discrete {
 }
 
 /// Two bodies that meet.
+#[derive(Debug)]
 struct Meeting {
     /// Part of the step at which they touch.
     time: f64,
@@ -84,34 +91,46 @@ impl World {
         // What this mode does to bodies in contact it does where a step ends.
         self.contacts.clear();
         self.continuous.placed = true;
-        let meeting = self.meeting_pairs();
-        if !meeting.is_empty() {
-            self.bounce_all(&meeting);
+        self.find_meeting_pairs();
+        if !self.discrete.meeting.is_empty() {
+            self.bounce_all();
         }
         self.part_overlapping();
     }
 
-    /// Pairs that meet now and were apart.
-    fn meeting_pairs(&mut self) -> Vec<(usize, usize)> {
+    /// Finds the pairs that meet now and were apart.
+    fn find_meeting_pairs(&mut self) {
+        let mut meeting = mem::take(&mut self.discrete.meeting);
+        meeting.clear();
         if self.is_few() {
-            let solid = &self.solid;
-            let pairs = (1..solid.len()).flat_map(|j| (0..j).map(move |i| (solid[i], solid[j])));
-            return pairs.filter(|&(i, j)| self.collides(i, j)).collect();
+            for (second, &j) in self.solid.iter().enumerate() {
+                for &i in &self.solid[..second] {
+                    if self.collides(i, j) {
+                        meeting.push((i, j));
+                    }
+                }
+            }
+        } else {
+            self.find_near_pairs();
+            let near = self.discrete.near.iter().copied();
+            meeting.extend(near.filter(|&(i, j)| self.collides(i, j)));
         }
-        let mut discrete = mem::take(&mut self.discrete);
+        self.discrete.meeting = meeting;
+    }
+
+    /// Finds the pairs that may meet on the way of the step.
+    fn find_near_pairs(&mut self) {
+        let mut broad = mem::take(&mut self.discrete.broad);
         let way = |body: usize| (self.previous.position[body], self.current.position[body]);
-        discrete.broad.fill(
+        broad.fill(
             &self.solid,
             |body| self.swept_box(body, way(body).0, way(body).1),
             |body| self.swept_front(body, way(body).0, way(body).1),
         );
-        let near = &mut discrete.near;
+        let near = &mut self.discrete.near;
         near.clear();
-        discrete.broad.each_pair(|i, j| near.push((i, j)));
-        let pairs = near.iter().copied();
-        let meeting = pairs.filter(|&(i, j)| self.collides(i, j)).collect();
-        self.discrete = discrete;
-        meeting
+        broad.each_pair(|i, j| near.push((i, j)));
+        self.discrete.broad = broad;
     }
 
     fn is_few(&self) -> bool {
@@ -119,24 +138,26 @@ impl World {
     }
 
     /// Bounces and puts back until no pair collides.
-    fn bounce_all(&mut self, meeting: &[(usize, usize)]) {
-        let mut is_back = vec![false; self.len()];
-        let pairs = meeting.iter();
-        let mut meetings: BinaryHeap<Meeting> =
-            pairs.map(|&pair| self.meeting_of(pair, &is_back)).collect();
-        let (mut group, mut put_back) = (Vec::new(), Vec::new());
+    fn bounce_all(&mut self) {
+        // Out of the world while it is changed.
+        let mut meetings = mem::take(&mut self.discrete.meetings);
+        let mut group = mem::take(&mut self.discrete.group);
+        let mut is_back = mem::take(&mut self.discrete.is_back);
+        let mut put_back = mem::take(&mut self.discrete.put_back);
+        is_back.clear();
+        is_back.resize(self.len(), false);
+        let pairs = self.discrete.meeting.iter();
+        meetings.extend(pairs.map(|&pair| self.meeting_of(pair, &is_back)));
         while let Some(first) = next(&mut meetings, f64::INFINITY, &is_back) {
             // The same time, but for rounding.
             let until = first.time + 4.0 * f64::EPSILON * first.time;
-            group.clear();
             group.push(first);
             while let Some(meeting) = next(&mut meetings, until, &is_back) {
                 group.push(meeting);
             }
             self.exchange_at_once(&group);
-            put_back.clear();
             for body in group
-                .iter()
+                .drain(..)
                 .flat_map(|meeting| [meeting.bodies.0, meeting.bodies.1])
             {
                 if !mem::replace(&mut is_back[body], true) {
@@ -144,7 +165,7 @@ impl World {
                     put_back.push(body);
                 }
             }
-            for &body in &put_back {
+            for body in put_back.drain(..) {
                 self.each_near(body, |other| {
                     // Where the step began nobody met.
                     if !is_back[other] && self.collides(body, other) {
@@ -154,6 +175,9 @@ impl World {
                 });
             }
         }
+        let discrete = &mut self.discrete;
+        (discrete.meetings, discrete.group) = (meetings, group);
+        (discrete.is_back, discrete.put_back) = (is_back, put_back);
     }
 
     /// Every other body whose box meets that of a body on the way of the step.
@@ -183,13 +207,14 @@ impl World {
 
     /// Lets bodies that touch at the same time part by their restitution.
     fn exchange_at_once(&mut self, group: &[Meeting]) {
-        let mut touching: Vec<Touching> = group
-            .iter()
-            .filter_map(|meeting| self.touching(meeting))
-            .collect();
-        if let [only] = &touching[..] {
-            return self.exchange_on_way(only);
+        if let [only] = group {
+            if let Some(contact) = &only.contact {
+                self.exchange_on_way(only.bodies, contact);
+            }
+            return;
         }
+        let touching = group.iter().filter_map(|meeting| self.touching(meeting));
+        let mut touching: Vec<Touching> = touching.collect();
         touching.sort_by(Touching::in_order);
         let bodies = sorted(touching.iter().flat_map(|touching| touching.bodies));
         let place = |body: usize| bodies.partition_point(|&other| other < body);
@@ -211,7 +236,7 @@ impl World {
         in_pieces.sort_by_key(|&(piece, _)| piece);
         for piece in in_pieces.chunk_by(|a, b| a.0 == b.0) {
             match piece {
-                [(_, only)] => self.exchange_on_way(only),
+                [(_, only)] => self.exchange_on_way(only.pair(), &only.contact),
                 _ => self.reflect_piece(piece),
             }
         }
@@ -235,9 +260,9 @@ impl World {
         })
     }
 
-    fn exchange_on_way(&mut self, touching: &Touching) {
-        let time = self.time() + touching.contact.time * self.settings.dt;
-        self.exchange_now(touching.pair(), &touching.contact, time);
+    fn exchange_on_way(&mut self, bodies: (usize, usize), contact: &Contact) {
+        let time = self.time() + contact.time * self.settings.dt;
+        self.exchange_now(bodies, contact, time);
     }
 
     /// Lets bodies that hang together part with the least restitution of all.
@@ -402,7 +427,8 @@ mod tests {
                     // As far as a step goes before it looks at collisions.
                     mem::swap(&mut world.previous, &mut world.current);
                     world.integrate().unwrap();
-                    let mut meeting = world.meeting_pairs();
+                    world.find_meeting_pairs();
+                    let mut meeting = world.discrete.meeting.clone();
                     meeting.sort_unstable_by_key(|&(i, j)| (j, i));
                     assert_eq!(meeting, pairs(&world, |i, j| world.collides(i, j)));
                     met += meeting.len();

@@ -40,14 +40,16 @@ impl World {
     }
 
     /// Seeks overlaps of the bodies that have been placed.
+    #[inline(always)]
     pub(super) fn seek_overlaps(&mut self) {
         if !self.placed.bodies.is_empty() {
-            self.overlapping = self.overlapping().to_vec();
-            self.forget_placed();
+            self.seek_overlaps_of_placed();
         }
     }
 
-    fn forget_placed(&mut self) {
+    #[cold]
+    fn seek_overlaps_of_placed(&mut self) {
+        self.overlapping = self.overlapping().to_vec();
         for body in self.placed.bodies.drain(..) {
             self.placed.is_listed[body] = false;
         }
@@ -182,6 +184,9 @@ impl World {
     /// Forgets pairs that have parted since they began in overlap, and keeps the others from
     /// moving closer: an elastic impulse along the line of their centres, nothing put back.
     pub(super) fn part_overlapping(&mut self) {
+        if self.overlapping.is_empty() {
+            return;
+        }
         let mut pairs = core::mem::take(&mut self.overlapping);
         pairs.retain(|&(i, j)| self.meet(i, j));
         if !pairs.is_empty() {

@@ -253,7 +253,7 @@ impl World {
     ) -> Result<(), (usize, Cause)> {
         let count = group.bodies.len();
         // Out of the scratch while the method has it.
-        let mut gathered = mem::take(&mut scratch.gathered);
+        let mut gathered = scratch.gathered.take().unwrap_or_default();
         let ([x, v, acceleration, new_x, new_v], mass) = gathered.columns(count);
         for (i, &body) in group.bodies.iter().enumerate() {
             x[i] = block.from.position[body];
@@ -285,7 +285,7 @@ impl World {
             to.position[body] = new_x[i];
             to.velocity[body] = new_v[i];
         }
-        scratch.gathered = gathered;
+        scratch.gathered = Some(gathered);
         stepped.map_err(|failure| (group.bodies[body_of(&failure)], Cause::Failure(failure)))
     }
 
