@@ -49,6 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         file("cubes, a table each", &tables(n), true)?;
         file("the same, turned in two ways", &turned(n), true)?;
         file("ten tables of copies", &copies(n / 10), true)?;
+        file("a chain of springs", &chain(n), true)?;
     }
     let text = (0..800).fold(HEADER.to_owned(), |text, i| {
         text + &format!("[[body]]\nname = \"{i}\"\nmesh = \"cube.obj\"\n")
@@ -125,6 +126,16 @@ fn turned(n: usize) -> String {
         if line.starts_with("position") {
             let _ = writeln!(text, "rotation = [0, {}, 0]", turns.next().unwrap_or(0));
         }
+        text
+    })
+}
+
+fn chain(n: usize) -> String {
+    let text = tables(n).replace("mesh = \"cube.obj\"", "sphere = 0.1");
+    (1..n).fold(text, |mut text, i| {
+        let ends = format!("[\"cube {}\", \"cube {i}\"]", i - 1);
+        let _ = writeln!(text, "[[force]]\nkind = \"spring\"\nbodies = {ends}");
+        let _ = writeln!(text, "rest_length = 3\nstiffness = 10");
         text
     })
 }

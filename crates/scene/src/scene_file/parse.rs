@@ -82,7 +82,8 @@ pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<S
         }
         scene.bodies.extend(bodies);
     }
-    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let names = scene.bodies.iter().map(|body| body.name.as_str());
+    let names: HashMap<&str, usize> = names.zip(0..).collect();
     for (i, table) in forces.into_iter().enumerate() {
         scene
             .forces
