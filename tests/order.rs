@@ -256,7 +256,7 @@ fn crowds_have_no_first_body() {
         "#,
     );
     let world = run(&full, 120).0;
-    assert!(world.impacts() > 150, "{}", world.impacts());
+    assert!(world.impacts() > 100, "{}", world.impacts());
     assert_order_free("full", &full, &orders(full.bodies.len()), 120);
 }
 

@@ -244,7 +244,7 @@ impl World {
 
     /// What touches in a meeting, from the body that comes first in an order of motion.
     fn touching(&self, meeting: &Meeting) -> Option<Touching> {
-        let (contact, (i, j)) = (meeting.contact.clone()?, meeting.bodies);
+        let (contact, (i, j)) = (meeting.contact?, meeting.bodies);
         let keys = [self.motion_key(i), self.motion_key(j)];
         let is_turned = keys[1] < keys[0];
         Some(Touching {
