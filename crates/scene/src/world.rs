@@ -1,5 +1,6 @@
 //! A scene to a running world.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3, EulerRot};
@@ -22,24 +23,20 @@ impl Scene {
         };
         let mut world =
             World::new(settings).map_err(|error| self.world_error(None, None, error))?;
-        let mut baked: Vec<Option<Arc<Mesh>>> = Vec::with_capacity(self.bodies.len());
-        for (i, body) in self.bodies.iter().enumerate() {
-            let mut earlier = self.bodies[..i].iter();
-            let twin = earlier.position(|other| same_mesh(body, other));
-            let mesh = match (body.mesh(), twin) {
-                (Some(_), Some(twin)) => baked[twin].clone(),
-                (Some(mesh), None) => Some(bake(mesh, body).map_err(|error| {
-                    self.world_error(Some(body), Some(baked_field(&error)), error)
-                })?),
-                (None, _) => None,
+        let mut baked = Baked::default();
+        for body in &self.bodies {
+            let shape = match &body.shape {
+                SceneShape::Mesh(mesh) => {
+                    let mesh = baked.mesh(mesh, body);
+                    Shape::Mesh(mesh.map_err(|error| {
+                        self.world_error(Some(body), Some(baked_field(&error)), error)
+                    })?)
+                }
+                &SceneShape::Sphere { radius } => Shape::Sphere { radius },
+                &SceneShape::HalfSpace { normal } => Shape::HalfSpace { normal },
             };
-            baked.push(mesh.clone());
             let added = world.add(Body {
-                shape: match body.shape {
-                    SceneShape::Mesh(_) => mesh.map(Shape::Mesh),
-                    SceneShape::Sphere { radius } => Some(Shape::Sphere { radius }),
-                    SceneShape::HalfSpace { normal } => Some(Shape::HalfSpace { normal }),
-                },
+                shape: Some(shape),
                 position: body.position,
                 velocity: body.velocity,
                 mass: body.mass,
@@ -72,22 +69,40 @@ impl Scene {
     }
 }
 
-fn same_mesh(a: &SceneBody, b: &SceneBody) -> bool {
-    let meshes = a.mesh().zip(b.mesh());
-    meshes.is_some_and(|(first, second)| Arc::ptr_eq(first.mesh(), second.mesh()))
-        && a.rotation == b.rotation
-        && a.scale == b.scale
+/// Meshes that have been turned and scaled, each once.
+#[derive(Default)]
+pub(crate) struct Baked {
+    /// By the mesh, as a place in memory, rotation and scale.
+    known: HashMap<(usize, [u64; 6]), Arc<Mesh>>,
 }
 
-/// The mesh of a body, turned and scaled.
-pub(crate) fn bake(mesh: &MeshRef, body: &SceneBody) -> Result<Arc<Mesh>, MeshError> {
-    if body.rotation == DVec3::ZERO && body.scale == DVec3::ONE {
-        return Ok(mesh.mesh().clone());
+impl Baked {
+    /// The mesh of a body, turned and scaled.
+    pub(crate) fn mesh(
+        &mut self,
+        mesh: &MeshRef,
+        body: &SceneBody,
+    ) -> Result<Arc<Mesh>, MeshError> {
+        if body.rotation == DVec3::ZERO && body.scale == DVec3::ONE {
+            return Ok(mesh.mesh().clone());
+        }
+        // Zero is the same with either sign.
+        let [x, y, z] = (body.rotation + DVec3::ZERO).to_array();
+        let [u, v, w] = body.scale.to_array();
+        let key = (
+            Arc::as_ptr(mesh.mesh()) as usize,
+            [x, y, z, u, v, w].map(f64::to_bits),
+        );
+        if let Some(known) = self.known.get(&key) {
+            return Ok(known.clone());
+        }
+        // Fixed axes in the order x, y, z are moving axes in the order z, y, x.
+        let [x, y, z] = body.rotation.to_array().map(f64::to_radians);
+        let rotation = DQuat::from_euler(EulerRot::ZYX, z, y, x);
+        let baked = Arc::new(mesh.mesh().transformed(rotation, body.scale)?);
+        self.known.insert(key, baked.clone());
+        Ok(baked)
     }
-    // Fixed axes in the order x, y, z are moving axes in the order z, y, x.
-    let [x, y, z] = body.rotation.to_array().map(f64::to_radians);
-    let rotation = DQuat::from_euler(EulerRot::ZYX, z, y, x);
-    mesh.mesh().transformed(rotation, body.scale).map(Arc::new)
 }
 
 /// The field that makes baking fail.

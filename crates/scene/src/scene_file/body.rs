@@ -3,7 +3,7 @@
 use glam::DVec3;
 use toml::Spanned;
 
-use super::copies;
+use super::copies::{self, Obstacles};
 use super::meshes::MeshSource;
 use super::number::{Number, Triple};
 use super::parse::{LARGEST, Place, Source, Subject};
@@ -18,6 +18,7 @@ pub(super) fn parse(
     text: Body,
     meshes: &mut MeshSource,
     before: &[SceneBody],
+    obstacles: &mut Obstacles,
 ) -> Result<Vec<SceneBody>, SceneError> {
     let name = text.name.get_ref().clone();
     let place = Place::new(source, Subject::Body(&name));
@@ -73,7 +74,7 @@ pub(super) fn parse(
         }
     }
     match copies {
-        Some(copies) => copies.place(&place, &body, before),
+        Some(copies) => copies.place(&place, &body, before, obstacles),
         None => Ok(vec![body]),
     }
 }

@@ -8,7 +8,7 @@ use super::parse::{LARGEST, Place};
 use super::text::Body;
 use crate::error::SceneError;
 use crate::scene::{SceneBody, SceneShape};
-use crate::world::{bake, baked_field};
+use crate::world::{Baked, baked_field};
 
 /// The most copies of one body.
 const MOST: usize = 10_000;
@@ -91,14 +91,13 @@ impl Copies {
         place: &Place,
         body: &SceneBody,
         before: &[SceneBody],
+        obstacles: &mut Obstacles,
     ) -> Result<Vec<SceneBody>, SceneError> {
         let wrong = |what: String| place.error(self.count.span(), "copies", what);
-        let obstacle = |body: &SceneBody| {
-            Obstacle::of(body)
-                .map_err(|(field, error)| place.error(self.count.span(), field, error))
-        };
-        let mut taken = before.iter().map(obstacle).collect::<Result<Vec<_>, _>>()?;
-        let Obstacle::Box { min, max } = obstacle(body)? else {
+        let refused = |(field, error)| place.error(self.count.span(), field, error);
+        obstacles.note(before).map_err(refused)?;
+        let obstacle = obstacles.of(body).map_err(refused)?;
+        let Obstacle::Box { min, max } = obstacle else {
             return Err(wrong("half-spaces have no copies".to_owned()));
         };
         let (min, max) = (min - body.position, max - body.position);
@@ -109,14 +108,20 @@ impl Copies {
                 "the box `inside` is smaller than the body, which takes up {size} m"
             )));
         }
+        let count = *self.count.get_ref();
+        let mut taken = Taken::new((least + min, greatest + max), max - min, count);
+        obstacles
+            .all
+            .iter()
+            .for_each(|&obstacle| taken.add(obstacle));
         let mut random = Random(self.seed);
-        let mut copies = Vec::with_capacity(*self.count.get_ref());
-        for number in 1..=*self.count.get_ref() {
+        let mut copies = Vec::with_capacity(count);
+        for number in 1..=count {
             let free = (0..TRIES).find_map(|_| {
                 let parts = DVec3::from([(); 3].map(|()| random.unit()));
                 let position = least + parts * (greatest - least);
                 let (min, max) = (position + min, position + max);
-                let is_free = taken.iter().all(|other| other.is_apart(min, max));
+                let is_free = taken.is_free(min, max);
                 is_free.then_some((position, Obstacle::Box { min, max }))
             });
             let Some((position, here)) = free else {
@@ -125,7 +130,7 @@ impl Copies {
                     number - 1
                 )));
             };
-            taken.push(here);
+            taken.add(here);
             copies.push(SceneBody {
                 name: format!("{} {number}", body.name),
                 position,
@@ -137,7 +142,15 @@ impl Copies {
     }
 }
 
+/// What stands in the way of copies, of all bodies of a file so far.
+#[derive(Default)]
+pub(super) struct Obstacles {
+    all: Vec<Obstacle>,
+    baked: Baked,
+}
+
 /// Where no copy can be.
+#[derive(Clone, Copy)]
 enum Obstacle {
     /// A body in its box.
     Box { min: DVec3, max: DVec3 },
@@ -145,12 +158,21 @@ enum Obstacle {
     HalfSpace { point: DVec3, normal: DVec3 },
 }
 
-impl Obstacle {
+impl Obstacles {
+    /// Notes the bodies after those that are noted.
+    fn note(&mut self, bodies: &[SceneBody]) -> Result<(), (&'static str, String)> {
+        for body in &bodies[self.all.len()..] {
+            let obstacle = self.of(body)?;
+            self.all.push(obstacle);
+        }
+        Ok(())
+    }
+
     /// Of a body, or the field that makes it impossible and why.
-    fn of(body: &SceneBody) -> Result<Obstacle, (&'static str, String)> {
+    fn of(&mut self, body: &SceneBody) -> Result<Obstacle, (&'static str, String)> {
         let (min, max) = match &body.shape {
             SceneShape::Mesh(mesh) => {
-                let mesh = bake(mesh, body);
+                let mesh = self.baked.mesh(mesh, body);
                 let mesh = mesh.map_err(|error| (baked_field(&error), error.to_string()))?;
                 let bounds = mesh.bounds();
                 (bounds.min.as_dvec3(), bounds.max.as_dvec3())
@@ -168,7 +190,91 @@ impl Obstacle {
             max: body.position + max,
         })
     }
+}
 
+/// Cells that an obstacle may be listed in.
+const LISTED: usize = 64;
+
+/// Obstacles by where they are, in cells of the box that copies are in. Cells grow with coordinates,
+/// however these are rounded, so that two boxes that share a point share a cell.
+struct Taken {
+    region: (DVec3, DVec3),
+    /// Cells along each axis, and how many there are in a metre.
+    cells: [usize; 3],
+    density: DVec3,
+    in_cell: Vec<Vec<Obstacle>>,
+    /// What is in too many cells, or behind a plane.
+    everywhere: Vec<Obstacle>,
+}
+
+impl Taken {
+    /// None yet, in a region for so many copies of a size: about as many cells, none smaller than a copy.
+    fn new((min, max): (DVec3, DVec3), size: DVec3, copies: usize) -> Taken {
+        let most = (copies as f64).cbrt().ceil();
+        // More than copies are moved by rounding.
+        let margin = 16.0 * f64::EPSILON * (min.abs() + max.abs());
+        let (min, max) = (min - margin, max + margin);
+        let cells = ((max - min) / size).clamp(DVec3::ONE, DVec3::splat(most));
+        // NaN, of no size in no room, counts as 1.
+        let cells = cells.to_array().map(|cells| cells.max(1.0) as usize);
+        let density = DVec3::from(cells.map(|cells| cells as f64)) / (max - min);
+        Taken {
+            region: (min, max),
+            cells,
+            density: DVec3::select(density.is_finite_mask(), density, DVec3::ZERO),
+            in_cell: vec![Vec::new(); cells.iter().product()],
+            everywhere: Vec::new(),
+        }
+    }
+
+    /// The cells that a box reaches into, from the first to the last of each axis.
+    fn cells(&self, min: DVec3, max: DVec3) -> [(usize, usize); 3] {
+        let place = |at: DVec3, axis: usize| {
+            let place = (at[axis] - self.region.0[axis]) * self.density[axis];
+            // A conversion takes what is out of range to its end.
+            (place as usize).min(self.cells[axis] - 1)
+        };
+        [0, 1, 2].map(|axis| (place(min, axis), place(max, axis)))
+    }
+
+    fn add(&mut self, obstacle: Obstacle) {
+        let Obstacle::Box { min, max } = obstacle else {
+            return self.everywhere.push(obstacle);
+        };
+        if obstacle.is_apart(self.region.0, self.region.1) {
+            return;
+        }
+        let cells = self.cells(min, max);
+        if cells
+            .iter()
+            .map(|(first, last)| last - first + 1)
+            .product::<usize>()
+            > LISTED
+        {
+            return self.everywhere.push(obstacle);
+        }
+        for index in indices(self.cells, cells) {
+            self.in_cell[index].push(obstacle);
+        }
+    }
+
+    /// Whether a box is clear of all.
+    fn is_free(&self, min: DVec3, max: DVec3) -> bool {
+        let is_apart = |other: &Obstacle| other.is_apart(min, max);
+        self.everywhere.iter().all(is_apart)
+            && indices(self.cells, self.cells(min, max))
+                .all(|index| self.in_cell[index].iter().all(is_apart))
+    }
+}
+
+/// The indices of cells in ranges of each axis, of so many along each.
+fn indices([_, ny, nz]: [usize; 3], [x, y, z]: [(usize, usize); 3]) -> impl Iterator<Item = usize> {
+    let range = |(first, last): (usize, usize)| first..=last;
+    range(x)
+        .flat_map(move |i| range(y).flat_map(move |j| range(z).map(move |k| (i * ny + j) * nz + k)))
+}
+
+impl Obstacle {
     /// Whether a box is clear of it.
     fn is_apart(&self, least: DVec3, greatest: DVec3) -> bool {
         match *self {

@@ -1,5 +1,7 @@
 //! The `[[force]]` tables of a scene file.
 
+use std::collections::HashMap;
+
 use serde::{Deserialize, Serialize};
 use sim_core::Force;
 use toml::Spanned;
@@ -99,7 +101,7 @@ pub(super) fn parse(
     source: &Source<'_>,
     number: usize,
     table: Spanned<DeTable<'_>>,
-    names: &[&str],
+    names: &HashMap<&str, usize>,
 ) -> Result<Force, SceneError> {
     let place = Place::new(source, Subject::Force(number));
     let spans = fields(table.get_ref());
@@ -108,8 +110,7 @@ pub(super) fn parse(
         known.map_or(table.span(), |(_, span)| span.clone())
     };
     let body = |field: &str, name: &String| {
-        let index = names.iter().position(|known| known == name);
-        index.ok_or_else(|| {
+        names.get(name.as_str()).copied().ok_or_else(|| {
             let what = format!("there is no body `{name}`");
             place.error(at(field), field, what)
         })

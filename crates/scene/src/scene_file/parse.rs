@@ -11,6 +11,7 @@ use sim_core::{Collision, FixedStep, METHODS, Method, Settings};
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 
+use super::copies::Obstacles;
 use super::meshes::MeshSource;
 use super::number::{Number, Triple};
 use super::text::{Body, Header};
@@ -58,7 +59,8 @@ pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<S
         bodies: Vec::new(),
         forces: Vec::new(),
     };
-    let mut lines = HashMap::new();
+    let mut starts = HashMap::new();
+    let mut obstacles = Obstacles::default();
     for (i, table) in bodies.into_iter().enumerate() {
         let called = match table.get_ref().get("name").map(Spanned::get_ref) {
             Some(DeValue::String(name)) => name.to_string(),
@@ -68,11 +70,11 @@ pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<S
             Spanned::new(table.span(), DeValue::Table(table.into_inner())),
             Subject::Body(&called),
         )?;
-        let line = source.line(body.name.span().start);
         let span = body.name.span();
-        let bodies = body::parse(&source, body, &mut meshes, &scene.bodies)?;
+        let bodies = body::parse(&source, body, &mut meshes, &scene.bodies, &mut obstacles)?;
         for body in &bodies {
-            if let Some(first) = lines.insert(body.name.clone(), line) {
+            if let Some(first) = starts.insert(body.name.clone(), span.start) {
+                let first = source.line(first);
                 let place = Place::new(&source, Subject::Body(&body.name));
                 let what = format!("the body in line {first} has this name too: choose another");
                 return Err(place.error(span, "name", what));
@@ -80,7 +82,8 @@ pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<S
         }
         scene.bodies.extend(bodies);
     }
-    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let names = scene.bodies.iter().map(|body| body.name.as_str());
+    let names: HashMap<&str, usize> = names.zip(0..).collect();
     for (i, table) in forces.into_iter().enumerate() {
         scene
             .forces

@@ -45,6 +45,19 @@ pub(crate) struct Contact {
     pub(crate) face: Option<u32>,
 }
 
+impl Contact {
+    /// The same with the shapes in the other order, the second one displaced by `offset` and then
+    /// moving by `motion`, m.
+    fn turned(self, offset: DVec3, motion: DVec3) -> Contact {
+        Contact {
+            point: self.point + (offset + self.time * motion),
+            normal: -self.normal,
+            feature: self.feature.map(Feature::turned),
+            ..self
+        }
+    }
+}
+
 impl From<Touch> for Contact {
     fn from(touch: Touch) -> Contact {
         Contact {
@@ -69,9 +82,20 @@ impl From<BallTouch> for Contact {
     }
 }
 
+/// Whether two meshes are asked in the other order, by where the second is. Its vertices are placed in
+/// the frame of the first, which rounds; so the same pair gets the same answer, whichever of the two
+/// it is that somebody calls the first.
+pub(crate) fn is_turned(offset: DVec3) -> bool {
+    let [x, y, z] = offset.to_array();
+    (x, y, z) < (0.0, 0.0, 0.0)
+}
+
 /// Whether two shapes share a point, the second one displaced by `offset`, m.
 pub(crate) fn meet(first: Form<'_>, second: Form<'_>, offset: DVec3) -> bool {
     match (first, second) {
+        (Form::Mesh(first), Form::Mesh(second)) if is_turned(offset) => {
+            tree::intersect(second, first, -offset)
+        }
         (Form::Mesh(first), Form::Mesh(second)) => tree::intersect(first, second, offset),
         (Form::Mesh(mesh), Form::Sphere(radius)) => ball_meets(mesh, offset, radius),
         (Form::Sphere(first), Form::Sphere(second)) => {
@@ -92,7 +116,7 @@ pub(crate) fn first_contact(
     motion: DVec3,
 ) -> Option<Contact> {
     match (first, second) {
-        (Form::Mesh(first), Form::Mesh(second)) => {
+        (Form::Mesh(first), Form::Mesh(second)) if !is_turned(offset) => {
             touch::first_touch(first, second, offset, motion).map(Contact::from)
         }
         (Form::Mesh(mesh), Form::Sphere(radius)) => {
@@ -101,13 +125,13 @@ pub(crate) fn first_contact(
         (Form::Sphere(first), Form::Sphere(second)) => spheres(first, second, offset, motion),
         (Form::HalfSpace(_), Form::HalfSpace(_)) => None,
         (Form::HalfSpace(normal), other) => plane(normal, other, offset, motion),
+        (Form::Mesh(first), Form::Mesh(second)) => {
+            let touch = touch::first_touch(second, first, -offset, -motion)?;
+            Some(Contact::from(touch).turned(offset, motion))
+        }
         (first, second) => {
             let contact = first_contact(second, first, -offset, -motion)?;
-            Some(Contact {
-                point: contact.point + (offset + contact.time * motion),
-                normal: -contact.normal,
-                ..contact
-            })
+            Some(contact.turned(offset, motion))
         }
     }
 }
@@ -115,7 +139,7 @@ pub(crate) fn first_contact(
 /// Directions in which the second of two shapes that touch might move out of the first.
 pub(crate) fn parting_normals(first: Form<'_>, second: Form<'_>, offset: DVec3) -> Vec<DVec3> {
     match (first, second) {
-        (Form::Mesh(first), Form::Mesh(second)) => {
+        (Form::Mesh(first), Form::Mesh(second)) if !is_turned(offset) => {
             let mut normals: Vec<DVec3> = Vec::new();
             let _ = tree::each_hit(first, second, offset, |hit| {
                 for normal in [hit.normal, -hit.normal] {

@@ -63,6 +63,20 @@ pub enum Feature {
     },
 }
 
+impl Feature {
+    /// The same with the meshes in the other order.
+    pub(super) fn turned(self) -> Feature {
+        match self {
+            Feature::VertexFace { vertex, face } => Feature::FaceVertex { face, vertex },
+            Feature::FaceVertex { face, vertex } => Feature::VertexFace { vertex, face },
+            Feature::EdgeEdge { first, second } => Feature::EdgeEdge {
+                first: second,
+                second: first,
+            },
+        }
+    }
+}
+
 /// The first contact along a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {

@@ -48,18 +48,41 @@ pub(super) fn trusted(size: f64, solved: bool) -> f64 {
     if solved { size } else { size.max(1.0) }
 }
 
-/// Corrects until a solution is reached. `correct` returns the body with the largest correction and
-/// its relative size.
-pub(super) fn iterate(mut correct: impl FnMut() -> (usize, f64)) -> Result<(), Failure> {
-    let mut last = f64::INFINITY;
-    for iteration in 1.. {
-        let (body, size) = correct();
+/// How far the corrections of one body, or of coupled ones, have come.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Progress {
+    last: f64,
+    pub(super) is_done: bool,
+}
+
+impl Progress {
+    pub(super) const NONE: Progress = Progress {
+        last: f64::INFINITY,
+        is_done: false,
+    };
+
+    /// Takes note of the size of a correction.
+    pub(super) fn note(&mut self, size: f64) {
         // The next correction would be smaller than this one by at least as much again.
-        let next = size * (size / last);
-        let solved = size <= TOLERANCE || last.is_finite() && next <= 0.01 * TOLERANCE;
+        let next = size * (size / self.last);
+        let solved = size <= TOLERANCE || self.last.is_finite() && next <= 0.01 * TOLERANCE;
         // Corrections that no longer shrink are rounding, where large forces cancel.
-        let stalled = size <= LOOSE_TOLERANCE && size > 0.5 * last;
-        if solved || stalled {
+        let stalled = size <= LOOSE_TOLERANCE && size > 0.5 * self.last;
+        self.is_done = solved || stalled;
+        self.last = size;
+    }
+}
+
+/// Corrects until a solution is reached. `correct` returns the body with the largest correction and
+/// its relative size; `progress` is that of each body, or of all together, of which it takes note.
+pub(super) fn iterate(
+    progress: &mut [Progress],
+    mut correct: impl FnMut(&mut [Progress]) -> (usize, f64),
+) -> Result<(), Failure> {
+    progress.fill(Progress::NONE);
+    for iteration in 1.. {
+        let (body, size) = correct(progress);
+        if progress.iter().all(|progress| progress.is_done) {
             break;
         }
         if iteration == ITERATIONS || !size.is_finite() {
@@ -68,7 +91,6 @@ pub(super) fn iterate(mut correct: impl FnMut() -> (usize, f64)) -> Result<(), F
                 iterations: iteration,
             });
         }
-        last = size;
     }
     Ok(())
 }
@@ -82,22 +104,30 @@ impl Equation<'_> {
         room: &mut Newton,
     ) -> Result<(), Failure> {
         let mut last_residual = f64::INFINITY;
-        iterate(|| {
-            if system.is_coupled() {
-                self.correct_together(system, w, room, &mut last_residual)
-            } else {
-                self.correct_each(system, w, room)
-            }
-        })
+        if system.is_coupled() {
+            return iterate(&mut [Progress::NONE], |progress| {
+                let (body, size) = self.correct_together(system, w, room, &mut last_residual);
+                progress[0].note(size);
+                (body, size)
+            });
+        }
+        let mut progress = room.take_progress(w.len());
+        let solved = iterate(&mut progress, |progress| {
+            self.correct_each(system, w, room, progress)
+        });
+        room.progress = progress;
+        solved
     }
 
-    /// One correction of bodies that do not depend on each other. Returns the body with the
-    /// largest, relative to its own speed, and that size.
+    /// One correction of bodies that do not depend on each other, of each until it has its solution,
+    /// whatever the others have. Returns the body with the largest, relative to its own speed, and
+    /// that size.
     fn correct_each(
         &self,
         system: &dyn System,
         w: &mut [DVec3],
         room: &mut Newton,
+        progress: &mut [Progress],
     ) -> (usize, f64) {
         let n = w.len();
         let ([x, residual], jacobians) = room.columns(n);
@@ -105,12 +135,16 @@ impl Equation<'_> {
         self.residual(system, w, x, residual);
         system.jacobians(self.time, x, w, jacobians);
         let mut worst = (0, 0.0);
-        for i in 0..n {
+        for (i, progress) in progress.iter_mut().enumerate() {
+            if progress.is_done {
+                continue;
+            }
             let matrix = self.matrix(&jacobians[i]).transpose();
             let correction = solve(matrix.to_cols_array_2d(), residual[i].to_array());
             let correction = DVec3::from(correction);
             w[i] -= correction;
             let size = largest(correction) / self.scale(i, w[i]);
+            progress.note(size);
             // A NaN is the worst of all.
             if size > worst.1 || size.is_nan() {
                 worst = (i, size);

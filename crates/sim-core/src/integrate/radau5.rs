@@ -18,7 +18,7 @@ use glam::{DMat3, DVec3};
 
 use super::{
     Jacobians, Method, System,
-    implicit::{iterate, largest, scale, solve, trusted},
+    implicit::{Progress, iterate, largest, scale, solve, trusted},
     krylov,
     scratch::Newton,
 };
@@ -43,7 +43,13 @@ pub(super) static METHOD: Method = Method {
             velocity: s.velocity,
         };
         (0..STAGES).for_each(|stage| w[stage * n..][..n].copy_from_slice(s.velocity));
-        iterate(|| stages.correct(system, w, room))?;
+        let bodies = if system.is_coupled() { 1 } else { n };
+        let mut progress = room.take_progress(bodies);
+        let solved = iterate(&mut progress, |progress| {
+            stages.correct(system, w, room, progress)
+        });
+        room.progress = progress;
+        solved?;
         // The last stage is the end of the step.
         for i in 0..n {
             s.new_velocity[i] = w[2 * n + i];
@@ -88,7 +94,13 @@ fn weighted(stage: usize, w: &[DVec3], n: usize, body: usize) -> DVec3 {
 impl Stages<'_> {
     /// One correction of the velocities. Returns the body with the largest, and its size relative
     /// to the body's own speed or, of coupled bodies, to the greatest.
-    fn correct(&self, system: &dyn System, w: &mut [DVec3], room: &mut Newton) -> (usize, f64) {
+    fn correct(
+        &self,
+        system: &dyn System,
+        w: &mut [DVec3],
+        room: &mut Newton,
+        progress: &mut [Progress],
+    ) -> (usize, f64) {
         let n = self.position.len();
         let ([x, slopes, residual, correction, dx, krylov @ ..], jacobians, inverses) =
             room.with_inverses::<{ 5 + krylov::COLUMNS }>(STAGES * n);
@@ -109,7 +121,6 @@ impl Stages<'_> {
                 residual[stage * n + i] = w[stage * n + i] - self.velocity[i] - pull;
             }
         }
-        let mut solved = true;
         if system.is_coupled() {
             inverses.resize(n, [[0.0; 9]; 9]);
             for (i, inverse) in inverses.iter_mut().enumerate() {
@@ -138,21 +149,31 @@ impl Stages<'_> {
                     }
                 }
             };
-            solved = krylov::solve(apply, condition, residual, correction, krylov);
-        } else {
-            for i in 0..n {
-                scatter(
-                    correction,
-                    i,
-                    solve(self.matrix(jacobians, i), gather(residual, i)),
-                );
+            let solved = krylov::solve(apply, condition, residual, correction, krylov);
+            let (worst, size) = self.subtract_together(w, correction);
+            progress[0].note(trusted(size, solved));
+            return (worst, trusted(size, solved));
+        }
+        let mut worst = (0, 0.0);
+        for (i, progress) in progress.iter_mut().enumerate() {
+            if progress.is_done {
+                continue;
+            }
+            let corrections = solve(self.matrix(jacobians, i), gather(residual, i));
+            scatter(correction, i, corrections);
+            let size = self.subtract_of(i, w, correction);
+            progress.note(size);
+            // A NaN is the worst of all.
+            if size > worst.1 || size.is_nan() {
+                worst = (i, size);
             }
         }
-        let (worst, size) = self.subtract(system.is_coupled(), w, correction);
-        (worst, trusted(size, solved))
+        worst
     }
 
-    fn subtract(&self, is_coupled: bool, w: &mut [DVec3], correction: &[DVec3]) -> (usize, f64) {
+    /// Corrects coupled bodies. Returns the one with the largest correction, and its size relative to
+    /// the greatest speed.
+    fn subtract_together(&self, w: &mut [DVec3], correction: &[DVec3]) -> (usize, f64) {
         let n = self.position.len();
         let mut greatest: f64 = f64::MIN_POSITIVE;
         let mut worst = (0, 0.0);
@@ -161,14 +182,29 @@ impl Stages<'_> {
             let i = place % n;
             let scale = scale(self.position[i], self.velocity[i], *w, self.dt);
             greatest = greatest.max(scale);
-            let size = largest(*correction) / if is_coupled { 1.0 } else { scale };
+            let size = largest(*correction);
             // A NaN is the worst of all.
             if size > worst.1 || size.is_nan() {
                 worst = (i, size);
             }
         }
-        let unit = if is_coupled { greatest } else { 1.0 };
-        (worst.0, worst.1 / unit)
+        (worst.0, worst.1 / greatest)
+    }
+
+    /// Corrects the stages of one body, and returns the size of the largest correction relative to its
+    /// speed.
+    fn subtract_of(&self, body: usize, w: &mut [DVec3], correction: &[DVec3]) -> f64 {
+        let n = self.position.len();
+        let mut worst = 0.0;
+        for place in (0..STAGES).map(|stage| stage * n + body) {
+            w[place] -= correction[place];
+            let scale = scale(self.position[body], self.velocity[body], w[place], self.dt);
+            let size = largest(correction[place]) / scale;
+            if size > worst || size.is_nan() {
+                worst = size;
+            }
+        }
+        worst
     }
 
     /// `M` of one body, by rows.

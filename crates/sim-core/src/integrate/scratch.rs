@@ -1,25 +1,54 @@
 //! Room for intermediate results.
 
-use alloc::vec::Vec;
+use alloc::{boxed::Box, vec::Vec};
 use glam::DVec3;
 
-use super::Jacobians;
+use super::{Jacobians, implicit::Progress};
 
 /// Columns for the intermediate results of a method, kept so that only the first step allocates.
-/// What is in them at the start of a step has no meaning.
-#[derive(Clone, Debug, Default)]
+/// What is in them at the start of a step has no meaning, so a copy starts without.
+#[derive(Debug, Default)]
 pub struct Scratch {
     stages: Vec<DVec3>,
     pub(super) newton: Newton,
+    /// Where it is seldom needed, as all of this is moved about in each step.
+    pub(crate) gathered: Option<Box<Gathered>>,
+}
+
+/// Room for bodies that are put side by side to be stepped.
+#[derive(Debug, Default)]
+pub(crate) struct Gathered {
+    columns: Vec<DVec3>,
+    mass: Vec<f64>,
+}
+
+impl Clone for Scratch {
+    fn clone(&self) -> Scratch {
+        Scratch::default()
+    }
+}
+
+impl Gathered {
+    /// `N` columns of `len` vectors, and one of masses.
+    pub(crate) fn columns<const N: usize>(
+        &mut self,
+        len: usize,
+    ) -> ([&mut [DVec3]; N], &mut [f64]) {
+        if self.mass.len() < len {
+            self.mass.resize(len, 0.0);
+        }
+        (columns(&mut self.columns, len), &mut self.mass[..len])
+    }
 }
 
 /// Room for an implicit equation, apart from the stages around it.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Newton {
     columns: Vec<DVec3>,
     pub(super) jacobians: Vec<Jacobians>,
     /// Matrices of three stages of each body, inverted.
     pub(super) inverses: Vec<[[f64; 9]; 9]>,
+    pub(super) progress: Vec<Progress>,
 }
 
 impl Scratch {
@@ -38,6 +67,13 @@ impl Scratch {
 }
 
 impl Newton {
+    /// The progress of so many bodies, to be put back.
+    pub(super) fn take_progress(&mut self, len: usize) -> Vec<Progress> {
+        let mut progress = core::mem::take(&mut self.progress);
+        progress.resize(len, Progress::NONE);
+        progress
+    }
+
     /// `N` columns of `len` vectors, and the matrices.
     pub(super) fn columns<const N: usize>(
         &mut self,

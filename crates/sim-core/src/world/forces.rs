@@ -14,8 +14,9 @@ impl World {
     pub fn add_force(&mut self, force: Force) -> Result<usize, WorldError> {
         let index = self.forces.len();
         self.check_force(index, &force)?;
+        let is_weight = force.reach() == Reach::Weight;
         self.forces.push(force);
-        self.forces_changed();
+        self.forces_changed(is_weight);
         Ok(index)
     }
 
@@ -24,8 +25,10 @@ impl World {
         self.check_force(index, &force)?;
         let forces = self.forces.len();
         let place = self.forces.get_mut(index);
-        *place.ok_or(WorldError::NoForce { index, forces })? = force;
-        self.forces_changed();
+        let place = place.ok_or(WorldError::NoForce { index, forces })?;
+        let is_weight = [&*place, &force].map(Force::reach).contains(&Reach::Weight);
+        *place = force;
+        self.forces_changed(is_weight);
         Ok(())
     }
 
@@ -36,7 +39,7 @@ impl World {
             return Err(WorldError::NoForce { index, forces });
         }
         let force = self.forces.remove(index);
-        self.forces_changed();
+        self.forces_changed(force.reach() == Reach::Weight);
         Ok(force)
     }
 
@@ -90,10 +93,14 @@ impl World {
         self.force[body] / self.mass[body] + self.weight
     }
 
-    fn forces_changed(&mut self) {
+    /// Forces have changed, a weight among them or not: many are added one by one.
+    fn forces_changed(&mut self, is_weight: bool) {
         self.plan = None;
         self.continuous.wake_all();
         self.speed_scale = None;
+        if !is_weight {
+            return;
+        }
         let weights = self.forces.iter().filter_map(|force| match force {
             Force::Gravity { acceleration } => Some(*acceleration),
             _ => None,

@@ -2,10 +2,13 @@
 
 mod collision;
 mod continuous;
+mod discrete;
 mod error;
 mod forces;
 mod hash;
 mod marks;
+mod order;
+mod overlap;
 mod plan;
 mod state;
 mod stepping;
@@ -13,9 +16,10 @@ mod system;
 #[cfg(test)]
 mod tests;
 
-use alloc::{sync::Arc, vec::Vec};
+use alloc::{boxed::Box, collections::BTreeMap, sync::Arc, vec::Vec};
 use core::ops::RangeInclusive;
 use glam::DVec3;
+use once_cell::race::OnceBox;
 
 use crate::{
     Body, Bvh, Extent, Force, Mesh, Shape,
@@ -24,8 +28,10 @@ use crate::{
 };
 pub use collision::Impact;
 use continuous::{ContactSet, Continuous};
+use discrete::Discrete;
 pub use error::{StepError, WorldError};
 use marks::Marks;
+use overlap::Placed;
 use plan::Plan;
 use state::State;
 
@@ -78,10 +84,13 @@ pub struct World {
     /// The shape of each body, as an index of `solids`; `None` is a point.
     shape: Vec<Option<u32>>,
     solids: Vec<Solid>,
+    /// Where a shape is among the solids.
+    known_shapes: BTreeMap<ShapeKey, u32>,
     /// The bodies that have a shape.
     solid: Vec<usize>,
-    /// Pairs that began in overlap, in order.
+    /// Pairs that began in overlap, in order; without those of bodies that have just been placed.
     overlapping: Vec<(usize, usize)>,
+    placed: Placed,
     steps: u64,
     impacts: u64,
     last_impact: Option<Impact>,
@@ -90,6 +99,7 @@ pub struct World {
     /// Who is in touch, and along which normals.
     contacts: ContactSet,
     continuous: Continuous,
+    discrete: Discrete,
     /// Time and step at which `dt` was last set: time since is steps times `dt`, without drift.
     since: (f64, u64),
 }
@@ -99,7 +109,32 @@ pub struct World {
 struct Solid {
     shape: Shape,
     extent: Extent,
-    bvh: Option<Arc<Bvh>>,
+    bvh: OnceBox<Arc<Bvh>>,
+}
+
+impl Solid {
+    fn bvh(&self) -> Option<&Bvh> {
+        self.bvh.get().map(|bvh| &**bvh)
+    }
+}
+
+/// What makes two shapes the same: of meshes their place in memory, as comparing triangles takes too
+/// long; of others the bits of their numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum ShapeKey {
+    Mesh(usize),
+    Sphere(u64),
+    HalfSpace([u64; 3]),
+}
+
+impl ShapeKey {
+    fn of(shape: &Shape) -> ShapeKey {
+        match shape {
+            Shape::Mesh(mesh) => ShapeKey::Mesh(Arc::as_ptr(mesh) as usize),
+            Shape::Sphere { radius } => ShapeKey::Sphere(radius.to_bits()),
+            Shape::HalfSpace { normal } => ShapeKey::HalfSpace(normal.to_array().map(f64::to_bits)),
+        }
+    }
 }
 
 /// How a world steps.
@@ -170,14 +205,17 @@ impl World {
             friction: Vec::new(),
             shape: Vec::new(),
             solids: Vec::new(),
+            known_shapes: BTreeMap::new(),
             solid: Vec::new(),
             overlapping: Vec::new(),
+            placed: Placed::default(),
             steps: 0,
             impacts: 0,
             last_impact: None,
             report: None,
             contacts: ContactSet::default(),
             continuous: Continuous::default(),
+            discrete: Discrete::default(),
             since: (0.0, 0),
         })
     }
@@ -204,7 +242,7 @@ impl World {
         self.set_friction_column(index, body.friction);
         self.solid.extend(shape.map(|_| index));
         self.shape.push(shape);
-        self.note_overlaps_of(index);
+        self.note_placed(index);
         Ok(index)
     }
 
@@ -213,6 +251,7 @@ impl World {
     ///
     /// On an error the world stays as it was before the step, to the bit.
     pub fn step(&mut self) -> Result<(), StepError> {
+        self.seek_overlaps();
         // What was before is kept until nothing can fail any more.
         core::mem::swap(&mut self.earlier, &mut self.previous);
         core::mem::swap(&mut self.previous, &mut self.current);
@@ -271,12 +310,6 @@ impl World {
         self.last_impact.as_ref()
     }
 
-    /// Pairs of bodies that were put into the world in overlap and have not parted since. They
-    /// may move apart, and an elastic impulse along their centres keeps them from moving closer.
-    pub fn overlapping(&self) -> &[(usize, usize)] {
-        &self.overlapping
-    }
-
     /// Position of a body, m.
     pub fn position(&self, body: usize) -> DVec3 {
         self.current.position[body]
@@ -330,7 +363,7 @@ impl World {
 
     /// Tree over a body's mesh, if one has been needed so far.
     pub fn bvh(&self, body: usize) -> Option<&Bvh> {
-        self.solid_of(body).and_then(|solid| solid.bvh.as_deref())
+        self.solid_of(body).and_then(Solid::bvh)
     }
 
     /// Builds the trees that no step has needed yet, to look at them or to aim rays.
@@ -348,7 +381,7 @@ impl World {
         self.previous.position[body] = position;
         self.speed_scale = None;
         self.forget_contacts_of(body);
-        self.note_overlaps_of(body);
+        self.note_placed(body);
         Ok(())
     }
 
@@ -379,7 +412,7 @@ impl World {
         self.forget_contacts_of(body);
         self.mass[body] = mass;
         // Immovable bodies may be in each other.
-        self.note_overlaps_of(body);
+        self.note_placed(body);
         self.acceleration[body] = self.constant_acceleration(body);
         self.speed_scale = None;
         Ok(())
@@ -420,14 +453,6 @@ impl World {
         Ok(())
     }
 
-    /// Forgets whom a body touches or overlaps.
-    fn forget_contacts_of(&mut self, body: usize) {
-        self.overlapping.retain(|&(i, j)| i != body && j != body);
-        self.contacts
-            .retain(|contact| contact.bodies.0 != body && contact.bodies.1 != body);
-        self.continuous.wake_all();
-    }
-
     fn check_body(&self, body: usize) -> Result<(), WorldError> {
         let bodies = self.len();
         (body < bodies)
@@ -455,28 +480,29 @@ impl World {
 
     /// The index of a shape among the solids, which bodies with the same one share.
     fn share(&mut self, shape: Shape) -> u32 {
-        let same = |known: &Shape| match (known, &shape) {
-            // By the place in memory: comparing the triangles of meshes takes too long.
-            (Shape::Mesh(known), Shape::Mesh(mesh)) => Arc::ptr_eq(known, mesh),
-            (known, shape) => known == shape,
-        };
-        let known = self.solids.iter().position(|solid| same(&solid.shape));
-        known.unwrap_or_else(|| {
+        let next = self.solids.len() as u32;
+        let place = *self
+            .known_shapes
+            .entry(ShapeKey::of(&shape))
+            .or_insert(next);
+        if place == next {
             self.solids.push(Solid {
                 extent: shape.extent(),
                 shape,
-                bvh: None,
+                bvh: OnceBox::new(),
             });
-            self.solids.len() - 1
-        }) as u32
+        }
+        place
     }
 
-    fn need_bvh(&mut self, body: usize) {
-        if let Some(shape) = self.shape[body] {
-            let Solid { shape, bvh, .. } = &mut self.solids[shape as usize];
-            if let (Shape::Mesh(mesh), None) = (shape, &bvh) {
-                *bvh = Some(Arc::new(Bvh::build(mesh)));
-            }
+    fn need_bvh(&self, body: usize) {
+        if let Some(Solid {
+            shape: Shape::Mesh(mesh),
+            bvh,
+            ..
+        }) = self.solid_of(body)
+        {
+            bvh.get_or_init(|| Box::new(Arc::new(Bvh::build(mesh))));
         }
     }
 
@@ -490,7 +516,7 @@ impl World {
     fn form(&self, body: usize) -> Option<Form<'_>> {
         let solid = self.solid_of(body)?;
         match solid.shape {
-            Shape::Mesh(_) => solid.bvh.as_deref().map(Form::Mesh),
+            Shape::Mesh(_) => solid.bvh().map(Form::Mesh),
             Shape::Sphere { radius } => Some(Form::Sphere(radius)),
             Shape::HalfSpace { normal } => Some(Form::HalfSpace(normal)),
         }

@@ -2,12 +2,18 @@
 //!
 //! Bodies on which nothing but a constant force acts appear in no section. Forces of single
 //! bodies make sections that can be cut anywhere; forces between bodies make sections that hold
-//! every body they reach, and all between them in the columns.
+//! every body they reach, and all between them in the columns. In these, bodies that forces tie
+//! together are a group, which is stepped by itself and in an order that is its own: sums over
+//! bodies round, and what is rounded must not depend on places in the columns.
 
-use alloc::vec::Vec;
+use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
-use crate::force::{Force, Reach};
+use super::order::Key;
+use crate::{
+    force::{Force, Reach},
+    pieces::Pieces,
+};
 
 /// The forces of a world by whom they act on, and the bodies by who moves whom. Forces are
 /// indices into the world's list.
@@ -33,10 +39,26 @@ pub(super) struct Section {
     pub(super) bodies: Range<usize>,
     /// Whether forces act between them.
     pub(super) is_coupled: bool,
+    /// If they do, all of these bodies by who hangs together.
+    pub(super) groups: Vec<Group>,
+}
+
+/// Bodies that are stepped together, of a coupled section.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    /// In the order in which they are stepped: those that forces between two name first, as these name
+    /// them, and then the others by their motion when forces were last set.
+    pub(super) bodies: Vec<usize>,
+    /// Where they are, if that is the order of the columns, without a gap.
+    pub(super) run: Option<Range<usize>>,
+    /// Forces on one of them, and between two: by places in the group, in the order of forces.
+    pub(super) single: Vec<(usize, usize)>,
+    pub(super) pairs: Vec<([usize; 2], usize)>,
 }
 
 impl Plan {
-    pub(super) fn new(forces: &[Force], bodies: usize) -> Plan {
+    /// `key` tells bodies apart that forces do not.
+    pub(super) fn new(forces: &[Force], bodies: usize, key: impl Fn(usize) -> Key) -> Plan {
         let mut plan = Plan::default();
         for (force, what) in forces.iter().enumerate() {
             plan.depends_on_velocity |= what.depends_on_velocity();
@@ -52,6 +74,7 @@ impl Plan {
         plan.pairs
             .sort_unstable_by_key(|&([i, j], force)| (i.min(j), force));
         plan.sections = plan.coupled_sections(bodies);
+        plan.add_groups(bodies, key);
         plan.add_uncoupled_sections(bodies);
         plan
     }
@@ -70,10 +93,75 @@ impl Plan {
                 _ => sections.push(Section {
                     bodies: run,
                     is_coupled: true,
+                    groups: Vec::new(),
                 }),
             }
         }
         sections
+    }
+
+    /// Cuts coupled sections into groups.
+    fn add_groups(&mut self, bodies: usize, key: impl Fn(usize) -> Key) {
+        if self.sections.is_empty() {
+            return;
+        }
+        let mut pairs = self.pairs.clone();
+        pairs.sort_unstable_by_key(|&(_, force)| force);
+        let mut pieces = Pieces::new(bodies);
+        for &([i, j], _) in &pairs {
+            pieces.join(i, j);
+        }
+        if !self.each_pair.is_empty() {
+            (1..bodies).for_each(|body| {
+                pieces.join(0, body);
+            });
+        }
+        // Who is named first, last of all who is named by none.
+        let mut named = vec![usize::MAX; bodies];
+        for (place, body) in pairs.iter().flat_map(|&(pair, _)| pair).enumerate() {
+            named[body] = named[body].min(place);
+        }
+        let mut in_order: Vec<usize> = self
+            .sections
+            .iter()
+            .flat_map(|s| s.bodies.clone())
+            .collect();
+        in_order.sort_by(|&one, &other| {
+            let by_force = named[one].cmp(&named[other]);
+            by_force.then_with(|| key(one).cmp(&key(other)))
+        });
+        // By the lowest body of each group, which is in the section of all.
+        let mut groups: Vec<Vec<usize>> = vec![Vec::new(); bodies];
+        let mut place = vec![0; bodies];
+        for body in in_order {
+            let group = &mut groups[pieces.first(body)];
+            place[body] = group.len();
+            group.push(body);
+        }
+        let mut own_pairs: Vec<Vec<([usize; 2], usize)>> = vec![Vec::new(); bodies];
+        for &(pair, force) in &pairs {
+            own_pairs[pieces.first(pair[0])].push((pair.map(|body| place[body]), force));
+        }
+        for section in 0..self.sections.len() {
+            for first in self.sections[section].bodies.clone() {
+                let bodies = core::mem::take(&mut groups[first]);
+                if bodies.is_empty() {
+                    continue;
+                }
+                let is_run = (first..).zip(&bodies).all(|(next, &body)| body == next);
+                let single = bodies.iter().flat_map(|&body| {
+                    let forces = self.single_in(&(body..body + 1)).iter();
+                    forces.map(|&(body, force)| (place[body], force))
+                });
+                let group = Group {
+                    single: single.collect(),
+                    pairs: core::mem::take(&mut own_pairs[first]),
+                    run: is_run.then(|| first..first + bodies.len()),
+                    bodies,
+                };
+                self.sections[section].groups.push(group);
+            }
+        }
     }
 
     /// The other bodies that a force acts on: all of them, or those that forces name.
@@ -92,10 +180,12 @@ impl Plan {
         // Cut out what is in a coupled section already.
         let coupled = self.sections.len();
         for mut run in runs {
-            for i in 0..coupled {
+            let before = |section: &Section| section.bodies.end <= run.start;
+            let first = self.sections[..coupled].partition_point(before);
+            for i in first..coupled {
                 let hole = self.sections[i].bodies.clone();
-                if hole.end <= run.start || run.end <= hole.start {
-                    continue;
+                if run.end <= hole.start {
+                    break;
                 }
                 self.add_uncoupled(run.start..hole.start);
                 run.start = hole.end;
@@ -111,8 +201,23 @@ impl Plan {
             self.sections.push(Section {
                 bodies,
                 is_coupled: false,
+                groups: Vec::new(),
             });
         }
+    }
+
+    /// Whether nothing but constant forces acts on a group.
+    pub(super) fn is_free(&self, group: &Group) -> bool {
+        group.bodies.len() == 1 && self.each.is_empty() && group.single.is_empty()
+    }
+
+    /// The section that a body is in.
+    pub(super) fn section_at(&self, body: usize) -> Option<&Section> {
+        let after = self
+            .sections
+            .partition_point(|section| section.bodies.end <= body);
+        let section = self.sections.get(after);
+        section.filter(|section| section.bodies.start <= body)
     }
 
     /// The forces on single bodies of a run.
@@ -155,7 +260,7 @@ mod tests {
     }
 
     fn sections(forces: &[Force], bodies: usize) -> Vec<(Range<usize>, bool)> {
-        let plan = Plan::new(forces, bodies);
+        let plan = Plan::new(forces, bodies, |_| Key::default());
         let sections = plan.sections.into_iter();
         sections.map(|s| (s.bodies, s.is_coupled)).collect()
     }

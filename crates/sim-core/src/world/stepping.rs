@@ -9,7 +9,7 @@ use core::{mem, ops::Range};
 
 use super::{
     Settings, StepError, World, error,
-    plan::{Plan, Section},
+    plan::{Group, Plan, Section},
     state::State,
     system::Part,
 };
@@ -52,7 +52,8 @@ impl World {
 
     #[cold]
     fn make_plan(&mut self) {
-        self.plan = Some(Plan::new(&self.forces, self.len()));
+        let key = |body: usize| self.motion_key(body);
+        self.plan = Some(Plan::new(&self.forces, self.len(), key));
     }
 
     // Apart, so that free bodies do not pay for its frame.
@@ -90,6 +91,7 @@ impl World {
         let section = Section {
             bodies,
             is_coupled: false,
+            groups: Vec::new(),
         };
         self.forced(plan, &section, fastest)
     }
@@ -162,7 +164,7 @@ impl World {
         Ok(())
     }
 
-    /// One call of the method.
+    /// One call of the method, or of coupled bodies one for each group.
     pub(super) fn step_block(
         &self,
         plan: &Plan,
@@ -170,24 +172,59 @@ impl World {
         to: &mut State,
         scratch: &mut Scratch,
     ) -> Result<(), (usize, Cause)> {
-        let Settings {
-            method, tolerance, ..
-        } = self.settings;
-        let Block {
-            bodies,
-            is_coupled,
-            acceleration,
-            from,
-            since,
-            length,
-        } = block;
-        let start = bodies.start;
+        let section = match block.is_coupled {
+            true => plan.section_at(block.bodies.start),
+            false => None,
+        };
+        let Some(section) = section else {
+            return self.step_run(plan, &block, None, to, scratch);
+        };
+        let fall = self.settings.method.fall;
+        section.groups.iter().try_for_each(|group| {
+            if let Some(fall) = fall.filter(|_| plan.is_free(group)) {
+                self.fall_in(&block, group.bodies[0], fall, to);
+                return Ok(());
+            }
+            match group.run {
+                Some(_) => self.step_run(plan, &block, Some(group), to, scratch),
+                None => self.step_gathered(plan, &block, group, to, scratch),
+            }
+        })
+    }
+
+    /// Moves a body of a block on which constant forces alone act; its range is looked at later.
+    fn fall_in(&self, block: &Block<'_>, body: usize, fall: f64, to: &mut State) {
+        let (own, in_block) = (body..body + 1, body - block.bodies.start);
+        ballistic::step(
+            (
+                &block.from.position[own.clone()],
+                &block.from.velocity[own.clone()],
+            ),
+            &block.acceleration[in_block..in_block + 1],
+            (&mut to.position[own.clone()], &mut to.velocity[own]),
+            (block.length, fall),
+            error::LARGEST,
+        );
+    }
+
+    /// One call of the method for bodies that stand side by side: a block, or a group of one.
+    fn step_run(
+        &self,
+        plan: &Plan,
+        block: &Block<'_>,
+        group: Option<&Group>,
+        to: &mut State,
+        scratch: &mut Scratch,
+    ) -> Result<(), (usize, Cause)> {
+        let run = group.and_then(|group| group.run.clone());
+        let bodies = run.unwrap_or_else(|| block.bodies.clone());
+        let (start, first) = (bodies.start, bodies.start - block.bodies.start);
         let step = Step {
-            time: self.time() + since,
-            dt: length,
-            tolerance,
-            position: &from.position[bodies.clone()],
-            velocity: &from.velocity[bodies.clone()],
+            time: self.time() + block.since,
+            dt: block.length,
+            tolerance: self.settings.tolerance,
+            position: &block.from.position[bodies.clone()],
+            velocity: &block.from.velocity[bodies.clone()],
             new_position: &mut to.position[bodies.clone()],
             new_velocity: &mut to.velocity[bodies.clone()],
             scratch,
@@ -195,16 +232,61 @@ impl World {
         let part = Part {
             forces: &self.forces,
             plan,
-            is_coupled,
+            is_coupled: block.is_coupled && bodies.len() > 1,
             mass: &self.mass[bodies.clone()],
-            acceleration,
+            acceleration: &block.acceleration[first..first + bodies.len()],
             bodies,
+            group,
         };
-        (method.step)(&part, step).map_err(|failure| match failure {
-            Failure::NotConverged { body, .. } | Failure::TooManySteps { body, .. } => {
-                (start + body, Cause::Failure(failure))
-            }
-        })
+        let stepped = (self.settings.method.step)(&part, step);
+        stepped.map_err(|failure| (start + body_of(&failure), Cause::Failure(failure)))
+    }
+
+    /// The same for the bodies of a group, which are put side by side for it.
+    fn step_gathered(
+        &self,
+        plan: &Plan,
+        block: &Block<'_>,
+        group: &Group,
+        to: &mut State,
+        scratch: &mut Scratch,
+    ) -> Result<(), (usize, Cause)> {
+        let count = group.bodies.len();
+        // Out of the scratch while the method has it.
+        let mut gathered = scratch.gathered.take().unwrap_or_default();
+        let ([x, v, acceleration, new_x, new_v], mass) = gathered.columns(count);
+        for (i, &body) in group.bodies.iter().enumerate() {
+            x[i] = block.from.position[body];
+            v[i] = block.from.velocity[body];
+            acceleration[i] = block.acceleration[body - block.bodies.start];
+            mass[i] = self.mass[body];
+        }
+        let step = Step {
+            time: self.time() + block.since,
+            dt: block.length,
+            tolerance: self.settings.tolerance,
+            position: x,
+            velocity: v,
+            new_position: new_x,
+            new_velocity: new_v,
+            scratch,
+        };
+        let part = Part {
+            forces: &self.forces,
+            plan,
+            is_coupled: true,
+            mass,
+            acceleration,
+            bodies: 0..count,
+            group: Some(group),
+        };
+        let stepped = (self.settings.method.step)(&part, step);
+        for (i, &body) in group.bodies.iter().enumerate() {
+            to.position[body] = new_x[i];
+            to.velocity[body] = new_v[i];
+        }
+        scratch.gathered = Some(gathered);
+        stepped.map_err(|failure| (group.bodies[body_of(&failure)], Cause::Failure(failure)))
     }
 
     /// The first of some bodies whose motion has left the range.
@@ -268,6 +350,7 @@ impl World {
             mass: &self.mass[bodies.clone()],
             acceleration: &self.acceleration[bodies.clone()],
             bodies: bodies.clone(),
+            group: None,
         };
         // Without a scale, what is kept is from before bodies or forces were last set.
         let marks = self.speed_scale.map(|_| self.marks.of(bodies.clone()));
@@ -386,7 +469,15 @@ fn company(plan: &Plan, body: usize) -> Option<Section> {
     Some(Section {
         bodies,
         is_coupled: section.is_coupled,
+        groups: Vec::new(),
     })
+}
+
+/// The body at which a method failed, by its place among those that it stepped.
+fn body_of(failure: &Failure) -> usize {
+    match *failure {
+        Failure::NotConverged { body, .. } | Failure::TooManySteps { body, .. } => body,
+    }
 }
 
 /// Bodies that are stepped at once, and how.

@@ -3,7 +3,7 @@
 use core::ops::Range;
 use glam::DVec3;
 
-use super::plan::Plan;
+use super::plan::{Group, Plan};
 use crate::{
     Jacobians, System,
     force::{BodyMotion, Force, PairMotion},
@@ -13,8 +13,10 @@ use crate::{
 pub(super) struct Part<'a> {
     pub(super) forces: &'a [Force],
     pub(super) plan: &'a Plan,
-    /// The bodies, as indices of the world.
+    /// The bodies, as indices of the world, unless they are a group.
     pub(super) bodies: Range<usize>,
+    /// The bodies in the order of a group, whose forces are these.
+    pub(super) group: Option<&'a Group>,
     pub(super) is_coupled: bool,
     /// Their masses.
     pub(super) mass: &'a [f64],
@@ -56,8 +58,12 @@ impl Part<'_> {
                 act(&self.forces[force], i);
             }
         }
-        for &(body, force) in self.plan.single_in(&self.bodies) {
-            let i = body - self.bodies.start;
+        let (single, start) = match self.group {
+            Some(group) => (&group.single[..], 0),
+            None => (self.plan.single_in(&self.bodies), self.bodies.start),
+        };
+        for &(body, force) in single {
+            let i = body - start;
             if self.is_movable(i) {
                 act(&self.forces[force], i);
             }
@@ -74,8 +80,11 @@ impl Part<'_> {
         if !self.is_coupled {
             return;
         }
-        let start = self.bodies.start;
-        for &([i, j], force) in self.plan.pairs_in(&self.bodies) {
+        let (pairs, start) = match self.group {
+            Some(group) => (&group.pairs[..], 0),
+            None => (self.plan.pairs_in(&self.bodies), self.bodies.start),
+        };
+        for &([i, j], force) in pairs {
             act(&self.forces[force], i - start, j - start);
         }
         for &force in &self.plan.each_pair {

@@ -101,8 +101,10 @@ impl Session {
         };
         (steps > 0).then(|| {
             self.under_way = true;
+            // The copy, which lacks what a world keeps to save time, is only looked at.
+            let copy = self.world.clone();
             Job {
-                world: self.world.clone(),
+                world: std::mem::replace(&mut self.world, copy),
                 steps,
                 traced: self.display.trails,
                 reported: self.display.impacts,

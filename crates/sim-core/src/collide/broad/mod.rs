@@ -26,8 +26,9 @@ const WIDEST: f64 = 0.5;
 /// One of so many boxes may leave its wide one.
 const LEAVERS: usize = 8;
 
-/// Boxes and planes of bodies.
-#[derive(Clone, Debug, Default)]
+/// Boxes and planes of bodies, filled anew in each step. What is kept saves time and changes no answer,
+/// so a copy starts without.
+#[derive(Debug, Default)]
 pub(crate) struct Broad {
     /// Who has a box.
     bodies: Vec<usize>,
@@ -54,6 +55,12 @@ struct Wall {
     /// How far it may come along its normal, rounding with it, m, before they are others.
     level: f64,
     bodies: Vec<usize>,
+}
+
+impl Clone for Broad {
+    fn clone(&self) -> Broad {
+        Broad::default()
+    }
 }
 
 impl Broad {

@@ -18,7 +18,7 @@ impl Swept {
     };
 
     #[inline(always)]
-    pub(super) fn meets(&self, other: &Swept) -> bool {
+    pub(crate) fn meets(&self, other: &Swept) -> bool {
         self.meets_along([0, 1, 2], other)
     }
 

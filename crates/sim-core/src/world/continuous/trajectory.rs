@@ -256,6 +256,7 @@ impl World {
             mass: &self.mass[bodies.clone()],
             acceleration: &continuous.acceleration[bodies.clone()],
             bodies: bodies.clone(),
+            group: None,
         };
         let time = self.time() + continuous.since[body];
         let mut all = vec![DVec3::ZERO; bodies.len()];

@@ -1,0 +1,490 @@
+//! Collisions as in the course: found where a step ends, and nothing in between.
+//!
+//! Bodies that meet exchange an impulse along the contact normal and go back to where the step began.
+//! Putting one back may make it meet a third, so this goes on until none meets. It ends, because each
+//! round puts back at least one body more, and at the beginning of the step nothing met. It leaves
+//! the invariant that the next step relies on: no two bodies meet, but for pairs that were put into
+//! the world in overlap.
+//!
+//! Those that touch first on the way go first, and those that touch at the same time go together. So
+//! the order of bodies has no say in it.
+
+use alloc::{
+    collections::{BTreeMap, BinaryHeap},
+    vec::Vec,
+};
+use core::{cmp::Ordering, mem};
+use glam::DVec3;
+
+use super::{
+    World,
+    order::{self, Key},
+};
+use crate::{
+    collide::{Broad, Contact},
+    impulse::{Joined, reflect},
+    pieces::Pieces,
+};
+
+/// Of so many bodies or fewer, all pairs are looked at: to put them in order takes longer.
+const FEW: usize = 16;
+
+/// What is kept from step to step to find pairs that come near. It saves time, and a copy starts
+/// without.
+#[derive(Debug, Default)]
+pub(super) struct Discrete {
+    broad: Broad,
+    /// Pairs whose boxes meet on the way of the step, and those that meet where it ends.
+    near: Vec<(usize, usize)>,
+    meeting: Vec<(usize, usize)>,
+    /// What is to be answered, and what is answered at once.
+    meetings: BinaryHeap<Meeting>,
+    group: Vec<Meeting>,
+    /// Who has been put back in this step, and who just now; empty between steps.
+    is_back: Vec<bool>,
+    put_back: Vec<usize>,
+}
+
+impl Clone for Discrete {
+    fn clone(&self) -> Discrete {
+        Discrete::default()
+    }
+}
+
+/// Two bodies that meet.
+#[derive(Debug)]
+struct Meeting {
+    /// Part of the step at which they touch.
+    time: f64,
+    bodies: (usize, usize),
+    /// Whether each had been put back when this was found.
+    were_back: (bool, bool),
+    /// Its point is in the world; `None` where nothing moves them.
+    contact: Option<Contact>,
+}
+
+impl Ord for Meeting {
+    /// The earliest is the greatest; at the same time the one of the lowest bodies.
+    fn cmp(&self, other: &Meeting) -> Ordering {
+        let time = other.time.total_cmp(&self.time);
+        time.then(other.bodies.cmp(&self.bodies))
+    }
+}
+
+impl PartialOrd for Meeting {
+    fn partial_cmp(&self, other: &Meeting) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Meeting {
+    fn eq(&self, other: &Meeting) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Meeting {}
+
+impl World {
+    /// Lets bodies that meet bounce, and puts them back to where the step began.
+    pub(super) fn collide(&mut self) {
+        // What this mode does to bodies in contact it does where a step ends.
+        self.contacts.clear();
+        self.continuous.placed = true;
+        self.find_meeting_pairs();
+        if !self.discrete.meeting.is_empty() {
+            self.bounce_all();
+        }
+        self.part_overlapping();
+    }
+
+    /// Finds the pairs that meet now and were apart.
+    fn find_meeting_pairs(&mut self) {
+        let mut meeting = mem::take(&mut self.discrete.meeting);
+        meeting.clear();
+        if self.is_few() {
+            for (second, &j) in self.solid.iter().enumerate() {
+                for &i in &self.solid[..second] {
+                    if self.collides(i, j) {
+                        meeting.push((i, j));
+                    }
+                }
+            }
+        } else {
+            self.find_near_pairs();
+            let near = self.discrete.near.iter().copied();
+            meeting.extend(near.filter(|&(i, j)| self.collides(i, j)));
+        }
+        self.discrete.meeting = meeting;
+    }
+
+    /// Finds the pairs that may meet on the way of the step.
+    fn find_near_pairs(&mut self) {
+        let mut broad = mem::take(&mut self.discrete.broad);
+        let way = |body: usize| (self.previous.position[body], self.current.position[body]);
+        broad.fill(
+            &self.solid,
+            |body| self.swept_box(body, way(body).0, way(body).1),
+            |body| self.swept_front(body, way(body).0, way(body).1),
+        );
+        let near = &mut self.discrete.near;
+        near.clear();
+        broad.each_pair(|i, j| near.push((i, j)));
+        self.discrete.broad = broad;
+    }
+
+    fn is_few(&self) -> bool {
+        self.solid.len() <= FEW
+    }
+
+    /// Bounces and puts back until no pair collides.
+    fn bounce_all(&mut self) {
+        // Out of the world while it is changed.
+        let mut meetings = mem::take(&mut self.discrete.meetings);
+        let mut group = mem::take(&mut self.discrete.group);
+        let mut is_back = mem::take(&mut self.discrete.is_back);
+        let mut put_back = mem::take(&mut self.discrete.put_back);
+        is_back.clear();
+        is_back.resize(self.len(), false);
+        let pairs = self.discrete.meeting.iter();
+        meetings.extend(pairs.map(|&pair| self.meeting_of(pair, &is_back)));
+        while let Some(first) = next(&mut meetings, f64::INFINITY, &is_back) {
+            // The same time, but for rounding.
+            let until = first.time + 4.0 * f64::EPSILON * first.time;
+            group.push(first);
+            while let Some(meeting) = next(&mut meetings, until, &is_back) {
+                group.push(meeting);
+            }
+            self.exchange_at_once(&group);
+            for body in group
+                .drain(..)
+                .flat_map(|meeting| [meeting.bodies.0, meeting.bodies.1])
+            {
+                if !mem::replace(&mut is_back[body], true) {
+                    self.current.position[body] = self.previous.position[body];
+                    put_back.push(body);
+                }
+            }
+            for body in put_back.drain(..) {
+                self.each_near(body, |other| {
+                    // Where the step began nobody met.
+                    if !is_back[other] && self.collides(body, other) {
+                        let pair = (body.min(other), body.max(other));
+                        meetings.push(self.meeting_of(pair, &is_back));
+                    }
+                });
+            }
+        }
+        let discrete = &mut self.discrete;
+        (discrete.meetings, discrete.group) = (meetings, group);
+        (discrete.is_back, discrete.put_back) = (is_back, put_back);
+    }
+
+    /// Every other body whose box meets that of a body on the way of the step.
+    fn each_near(&self, body: usize, mut found: impl FnMut(usize)) {
+        if self.is_few() {
+            let others = self.solid.iter().copied();
+            others.filter(|&other| other != body).for_each(found);
+        } else {
+            self.discrete.broad.each_partner(body, &mut found);
+        }
+    }
+
+    /// Whether two bodies meet that were apart.
+    fn collides(&self, i: usize, j: usize) -> bool {
+        self.may_collide(i, j) && self.meet(i, j)
+    }
+
+    fn meeting_of(&self, (i, j): (usize, usize), is_back: &[bool]) -> Meeting {
+        let contact = self.contact_on_way(i, j);
+        Meeting {
+            time: contact.as_ref().map_or(1.0, |contact| contact.time),
+            bodies: (i, j),
+            were_back: (is_back[i], is_back[j]),
+            contact,
+        }
+    }
+
+    /// Lets bodies that touch at the same time part by their restitution.
+    fn exchange_at_once(&mut self, group: &[Meeting]) {
+        if let [only] = group {
+            if let Some(contact) = &only.contact {
+                self.exchange_on_way(only.bodies, contact);
+            }
+            return;
+        }
+        let touching = group.iter().filter_map(|meeting| self.touching(meeting));
+        let mut touching: Vec<Touching> = touching.collect();
+        touching.sort_by(Touching::in_order);
+        let bodies = sorted(touching.iter().flat_map(|touching| touching.bodies));
+        let place = |body: usize| bodies.partition_point(|&other| other < body);
+        // What an immovable body is given does not reach others.
+        let mut pieces = Pieces::new(bodies.len());
+        for Touching { bodies: [i, j], .. } in &touching {
+            if self.mass[*i].is_finite() && self.mass[*j].is_finite() {
+                pieces.join(place(*i), place(*j));
+            }
+        }
+        let mut piece_of = |touching: &Touching| {
+            let [i, j] = touching.bodies;
+            pieces.first(place(if self.mass[i].is_finite() { i } else { j }))
+        };
+        let mut in_pieces: Vec<(usize, Touching)> = touching
+            .into_iter()
+            .map(|touching| (piece_of(&touching), touching))
+            .collect();
+        in_pieces.sort_by_key(|&(piece, _)| piece);
+        for piece in in_pieces.chunk_by(|a, b| a.0 == b.0) {
+            match piece {
+                [(_, only)] => self.exchange_on_way(only.pair(), &only.contact),
+                _ => self.reflect_piece(piece),
+            }
+        }
+    }
+
+    /// What touches in a meeting, from the body that comes first in an order of motion.
+    fn touching(&self, meeting: &Meeting) -> Option<Touching> {
+        let (contact, (i, j)) = (meeting.contact?, meeting.bodies);
+        let keys = [self.motion_key(i), self.motion_key(j)];
+        let is_turned = keys[1] < keys[0];
+        Some(Touching {
+            is_turned,
+            bodies: if is_turned { [j, i] } else { [i, j] },
+            keys: if is_turned { [keys[1], keys[0]] } else { keys },
+            normal: if is_turned {
+                -contact.normal
+            } else {
+                contact.normal
+            },
+            contact,
+        })
+    }
+
+    fn exchange_on_way(&mut self, bodies: (usize, usize), contact: &Contact) {
+        let time = self.time() + contact.time * self.settings.dt;
+        self.exchange_now(bodies, contact, time);
+    }
+
+    /// Lets bodies that hang together part with the least restitution of all.
+    fn reflect_piece(&mut self, piece: &[(usize, Touching)]) {
+        let piece = || piece.iter().map(|(_, touching)| touching);
+        // In the order in which they come up, which is one of motion.
+        let mut bodies: Vec<usize> = Vec::new();
+        let mut places: BTreeMap<usize, usize> = BTreeMap::new();
+        for body in piece().flat_map(|touching| touching.bodies) {
+            places.entry(body).or_insert_with(|| {
+                bodies.push(body);
+                bodies.len() - 1
+            });
+        }
+        let joined = piece().map(|touching| Joined {
+            bodies: (places[&touching.bodies[0]], places[&touching.bodies[1]]),
+            normal: touching.normal,
+        });
+        let joined: Vec<Joined> = joined.collect();
+        let restitution = piece()
+            .map(|touching| self.pair_restitution(touching.bodies[0], touching.bodies[1]))
+            .fold(1.0, f64::min);
+        let inverse_mass: Vec<f64> = bodies.iter().map(|&body| 1.0 / self.mass[body]).collect();
+        let velocity = bodies.iter().map(|&body| self.current.velocity[body]);
+        let before: Vec<DVec3> = velocity.collect();
+        let mut after = before.clone();
+        let impulses = reflect(&joined, &inverse_mass, &mut after, restitution);
+        for (&body, &velocity) in bodies.iter().zip(&after) {
+            self.current.velocity[body] = velocity;
+        }
+        for ((touching, joined), impulse) in piece().zip(&joined).zip(impulses) {
+            if impulse > 0.0 {
+                let speeds = (-joined.opening(&before), joined.opening(&after));
+                let time = self.time() + touching.contact.time * self.settings.dt;
+                self.note_impact(touching.pair(), &touching.contact, impulse, speeds, time);
+            }
+        }
+    }
+}
+
+/// Two bodies that touch.
+struct Touching {
+    /// The first in an order of motion, and the other.
+    bodies: [usize; 2],
+    keys: [Key; 2],
+    /// From the first to the other.
+    normal: DVec3,
+    /// Of the lower body and the higher.
+    contact: Contact,
+    /// Whether the first is the higher.
+    is_turned: bool,
+}
+
+impl Touching {
+    fn pair(&self) -> (usize, usize) {
+        let [first, second] = self.bodies;
+        match self.is_turned {
+            true => (second, first),
+            false => (first, second),
+        }
+    }
+
+    fn in_order(&self, other: &Touching) -> Ordering {
+        let keys = self.keys.cmp(&other.keys);
+        keys.then_with(|| order::of_vectors(self.normal, other.normal))
+    }
+}
+
+/// Bodies in the order of their places, each once.
+fn sorted(bodies: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut bodies: Vec<usize> = bodies.collect();
+    bodies.sort_unstable();
+    bodies.dedup();
+    bodies
+}
+
+/// The next meeting no later than a time, of bodies that are where they were when it was found.
+fn next(meetings: &mut BinaryHeap<Meeting>, until: f64, is_back: &[bool]) -> Option<Meeting> {
+    while meetings.peek()?.time <= until {
+        let meeting = meetings.pop()?;
+        let (i, j) = meeting.bodies;
+        if meeting.were_back == (is_back[i], is_back[j]) {
+            return Some(meeting);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::{sync::Arc, vec::Vec};
+
+    use super::*;
+    use crate::{
+        Body, Collision, Settings, Shape,
+        test_meshes::{cube, sphere},
+        test_random::Random,
+    };
+
+    /// Balls, cubes and bumpy balls in a room of walls, some of them fast, some immovable, some in
+    /// overlap.
+    pub(in crate::world) fn crowd(seed: u64, count: usize, collision: Collision) -> World {
+        let mut random = Random(seed);
+        let (cube, bumpy) = (Arc::new(cube()), Arc::new(sphere(5)));
+        let mut world = World::new(Settings {
+            collision,
+            ..Settings::default()
+        })
+        .unwrap();
+        let half = 3 + count as i64 / 20;
+        for normal in [DVec3::Y, DVec3::NEG_Y, DVec3::new(1.0, 0.25, 0.0)] {
+            let wall = Body {
+                shape: Some(Shape::HalfSpace { normal }),
+                position: -(half as f64 + 0.5) * normal,
+                mass: f64::INFINITY,
+                ..Body::default()
+            };
+            world.add(wall).unwrap();
+        }
+        for i in 0..count {
+            let is_immovable = i % 11 == 10;
+            let speed = match i % 7 {
+                _ if is_immovable => 0.0,
+                0 => 0.4,
+                _ => 0.05,
+            };
+            world
+                .add(Body {
+                    shape: Some(match i % 3 {
+                        0 => Shape::Sphere { radius: 0.25 },
+                        1 => cube.clone().into(),
+                        _ => bumpy.clone().into(),
+                    }),
+                    position: 1e-2 * random.vector(100 * half),
+                    velocity: speed * random.vector(100),
+                    mass: if is_immovable {
+                        f64::INFINITY
+                    } else {
+                        1.0 + (i % 4) as f64
+                    },
+                    restitution: if i % 5 == 0 { 0.5 } else { 1.0 },
+                    ..Body::default()
+                })
+                .unwrap();
+        }
+        world
+    }
+
+    fn pairs(world: &World, is: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
+        let pairs = (0..world.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+        pairs.filter(|&(i, j)| is(i, j)).collect()
+    }
+
+    #[test]
+    fn pairs_that_meet_are_those_of_brute_force() {
+        let (mut met, mut back) = (0, 0);
+        for (seed, count) in (1..).zip([2, 12, 20, 60, 150]) {
+            for collision in [Collision::Bvh, Collision::Naive] {
+                let mut world = crowd(seed, count, collision);
+                for _ in 0..30 {
+                    world.seek_overlaps();
+                    // As far as a step goes before it looks at collisions.
+                    mem::swap(&mut world.previous, &mut world.current);
+                    world.integrate().unwrap();
+                    world.find_meeting_pairs();
+                    let mut meeting = world.discrete.meeting.clone();
+                    meeting.sort_unstable_by_key(|&(i, j)| (j, i));
+                    assert_eq!(meeting, pairs(&world, |i, j| world.collides(i, j)));
+                    met += meeting.len();
+                    // Whoever may meet where one or both are put back is near.
+                    let there = [world.previous.clone(), world.current.clone()];
+                    for (one, other) in [(0, 0), (0, 1), (1, 0)] {
+                        let mut moved = world.clone();
+                        let meet = |moved: &mut World, i: usize, j: usize| {
+                            moved.current.position[i] = there[one].position[i];
+                            moved.current.position[j] = there[other].position[j];
+                            moved.meet(i, j)
+                        };
+                        for (i, j) in pairs(&world, |_, _| true) {
+                            if meet(&mut moved, i, j) {
+                                let mut is_near = false;
+                                world.each_near(i, |near| is_near |= near == j);
+                                assert!(is_near, "{i} {j}");
+                                back += 1;
+                            }
+                        }
+                    }
+                    world.collide();
+                    world.steps += 1;
+                }
+            }
+        }
+        assert!(met > 150 && back > 500, "{met} {back}");
+    }
+
+    #[test]
+    fn no_two_meet_after_a_step_and_none_gains_energy() {
+        let mut impacts = 0;
+        for (seed, count) in (1..).zip([12, 20, 60, 150]) {
+            let mut world = crowd(seed, count, Collision::Bvh);
+            for _ in 0..60 {
+                let energy = world.kinetic_energy();
+                world.step().unwrap();
+                assert_eq!(pairs(&world, |i, j| world.collides(i, j)), [], "{seed}");
+                assert!(world.kinetic_energy() <= energy * (1.0 + 1e-12), "{seed}");
+            }
+            impacts += world.impacts();
+        }
+        assert!(impacts > 150, "{impacts}");
+    }
+
+    #[test]
+    fn a_copy_goes_on_to_the_bit_as_the_world_does() {
+        for collision in [Collision::Bvh, Collision::Continuous] {
+            let mut world = crowd(3, 40, collision);
+            for step in 0..40 {
+                let mut copy = world.clone();
+                assert_eq!(copy.state_hash(), world.state_hash());
+                world.step().unwrap();
+                copy.step().unwrap();
+                assert_eq!(copy.state_hash(), world.state_hash(), "{step}");
+            }
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! An order of bodies that comes from their motion, whatever their places in the columns are.
+
+use core::cmp::Ordering;
+use glam::DVec3;
+
+use super::World;
+
+/// What tells one body from another: position, velocity, mass, and the acceleration by constant
+/// forces. Bodies of which these are the same may take each other's place.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Key([f64; 10]);
+
+impl World {
+    /// The key of a body where the step begins.
+    pub(super) fn motion_key(&self, body: usize) -> Key {
+        let [x, y, z] = self.previous.position[body].to_array();
+        let [u, v, w] = self.previous.velocity[body].to_array();
+        let [a, b, c] = self.acceleration[body].to_array();
+        Key([x, y, z, u, v, w, self.mass[body], a, b, c])
+    }
+}
+
+impl Ord for Key {
+    fn cmp(&self, other: &Key) -> Ordering {
+        lexicographic(&self.0, &other.0)
+    }
+}
+
+impl PartialOrd for Key {
+    fn partial_cmp(&self, other: &Key) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Key) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Key {}
+
+/// Of vectors: by the first component that differs.
+pub(super) fn of_vectors(one: DVec3, other: DVec3) -> Ordering {
+    lexicographic(&one.to_array(), &other.to_array())
+}
+
+fn lexicographic(one: &[f64], other: &[f64]) -> Ordering {
+    let pairs = one.iter().zip(other);
+    pairs
+        .map(|(one, other)| one.total_cmp(other))
+        .find(|order| order.is_ne())
+        .unwrap_or(Ordering::Equal)
+}
