@@ -52,8 +52,9 @@ impl World {
             hash.number(impact.speeds.0);
             hash.number(impact.speeds.1);
         }
-        hash.word(self.overlapping.len() as u64);
-        for &pair in &self.overlapping {
+        let overlapping = self.overlapping();
+        hash.word(overlapping.len() as u64);
+        for &pair in overlapping {
             hash.pair(pair);
         }
         hash.0
