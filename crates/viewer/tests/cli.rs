@@ -363,11 +363,17 @@ fn check_describes_a_mesh() {
     assert_eq!(
         keys(&report),
         [
+            "boundary_edges",
             "closed",
+            "components",
+            "extent",
             "format",
+            "non_manifold_edges",
             "oriented",
             "repairs",
             "triangles",
+            "unit",
+            "up_axis",
             "vertices",
             "volume"
         ]
