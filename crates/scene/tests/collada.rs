@@ -464,7 +464,7 @@ fn wrong_files_get_a_message_with_element_and_line() {
             "blown up",
             "<node id=\"n\">",
             "<node id=\"n\"><scale>1e200 1e200 1</scale>",
-            "blow it up",
+            "blow the geometry up",
         ),
         (
             "short matrix",
