@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::gallery::SCENES;
+use crate::shown;
 
 /// Why there is no scene, or no world from it. The message names file, line, body and field as
 /// far as they are known, and the remedy.
@@ -13,7 +14,8 @@ use crate::gallery::SCENES;
 pub enum SceneError {
     /// Neither a gallery scene nor a scene file.
     #[error(
-        "there is no scene `{name}`: give the path of a .toml file or one of {}",
+        "there is no scene `{}`: give the path of a .toml file or one of {}",
+        shown::name(name),
         gallery()
     )]
     Unknown {
@@ -21,15 +23,28 @@ pub enum SceneError {
         name: String,
     },
     /// The scene file cannot be read.
-    #[error("{}: cannot read the scene file: {error}", path.display())]
+    #[error("{}: cannot read the scene file: {error}", shown::path(path))]
     Read {
         /// The file.
         path: PathBuf,
         /// The system's answer.
         error: io::Error,
     },
+    /// The file is larger than any sensible scene.
+    #[error(
+        "{}: the scene file has {bytes} bytes or more: the most is {most}",
+        shown::path(path)
+    )]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its size.
+        bytes: u64,
+        /// The most that is read.
+        most: u64,
+    },
     /// The scene file cannot be written.
-    #[error("{}: cannot write the scene file: {error}", path.display())]
+    #[error("{}: cannot write the scene file: {error}", shown::path(path))]
     Write {
         /// The file.
         path: PathBuf,
@@ -37,7 +52,10 @@ pub enum SceneError {
         error: io::Error,
     },
     /// The scene file says something wrong.
-    #[error("{}{}: {}{what}", file.display(), line_suffix(*line), subject(body, field))]
+    #[error(
+        "{}{}: {}{}",
+        shown::path(file), line_suffix(*line), subject(body, field), shown::part(what)
+    )]
     Content {
         /// The file, or the name of a gallery scene.
         file: PathBuf,
@@ -51,7 +69,12 @@ pub enum SceneError {
         what: String,
     },
     /// The scene, changed in memory, makes no world.
-    #[error("scene `{scene}`: {}{what}", subject(body, field))]
+    #[error(
+        "scene `{}`: {}{}",
+        shown::name(scene),
+        subject(body, field),
+        shown::part(what)
+    )]
     World {
         /// Name of the scene.
         scene: String,
@@ -74,6 +97,8 @@ fn line_suffix(line: Option<usize>) -> String {
 }
 
 fn subject(body: &Option<String>, field: &Option<String>) -> String {
+    let body = body.as_deref().map(shown::name);
+    let field = field.as_deref().map(shown::name);
     match (body, field) {
         (Some(body), Some(field)) => format!("body `{body}`, {field}: "),
         (Some(body), None) => format!("body `{body}`: "),

@@ -13,15 +13,17 @@
 
 mod colour;
 mod error;
+pub mod file;
 mod gallery;
 pub mod mesh_file;
 mod mesh_ref;
 mod scene;
 mod scene_file;
+pub mod shown;
 mod world;
 
 pub use error::SceneError;
 pub use gallery::{GalleryScene, SCENES};
-pub use mesh_file::{FORMATS, Format, LoadedMesh, MeshFileError};
+pub use mesh_file::{FORMATS, Format, LoadedMesh, MeshFileError, MeshReport};
 pub use mesh_ref::MeshRef;
 pub use scene::{Scene, SceneBody, SceneShape};

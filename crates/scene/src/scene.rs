@@ -1,15 +1,19 @@
 //! A scene in memory.
 
 use std::cmp::Ordering;
-use std::fs;
+use std::io;
 use std::path::{self, Path};
 
 use glam::DVec3;
 use sim_core::{Collision, Force, Method};
 
+use crate::file::{self, Refusal};
 use crate::gallery::SCENES;
 use crate::scene_file::{self, MeshSource};
-use crate::{MeshRef, SceneError};
+use crate::{MeshRef, SceneError, shown};
+
+/// The largest scene file that is read, in bytes.
+const MAX_BYTES: u64 = 1 << 26;
 
 /// The description of a world: its bodies and how time passes in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,21 +116,38 @@ impl SceneBody {
 impl Scene {
     /// A scene of the gallery by its name, or a scene file by its path, which ends in `.toml`.
     ///
-    /// A gallery scene opens no file.
-    pub fn load(name_or_path: &str) -> Result<Scene, SceneError> {
-        if let Some(gallery) = SCENES.iter().find(|scene| scene.name == name_or_path) {
+    /// A gallery scene opens no file. A path need not be text.
+    pub fn load(name_or_path: impl AsRef<Path>) -> Result<Scene, SceneError> {
+        let path = name_or_path.as_ref();
+        if let Some(gallery) = SCENES.iter().find(|scene| path == Path::new(scene.name)) {
             return gallery.scene();
         }
-        let path = Path::new(name_or_path);
         let extension = path.extension().unwrap_or_default();
         if !extension.eq_ignore_ascii_case("toml") {
             return Err(SceneError::Unknown {
-                name: name_or_path.to_owned(),
+                name: path.to_string_lossy().into_owned(),
             });
         }
-        let text = fs::read_to_string(path).map_err(|error| SceneError::Read {
-            path: path.to_owned(),
-            error,
+        let bytes = file::read(path, MAX_BYTES).map_err(|refusal| match refusal {
+            Refusal::Io(error) => SceneError::Read {
+                path: path.to_owned(),
+                error,
+            },
+            Refusal::TooLarge(bytes) => SceneError::TooLarge {
+                path: path.to_owned(),
+                bytes,
+                most: MAX_BYTES,
+            },
+        })?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+            SceneError::Content {
+                file: path.to_owned(),
+                line: Some(1 + before.iter().filter(|&&byte| byte == b'\n').count()),
+                body: None,
+                field: None,
+                what: "is not UTF-8 text: save as UTF-8".to_owned(),
+            }
         })?;
         Scene::parse(&text, path)
     }
@@ -169,28 +190,33 @@ impl Scene {
         body.map_or_else(String::new, |body| body.name.clone())
     }
 
-    /// Writes the scene to a file. Meshes of other folders keep their place.
+    /// Writes the scene to a file, whole or not at all. Meshes of other folders keep their place.
     pub fn save(&self, path: &Path) -> Result<(), SceneError> {
+        let refused = |error| SceneError::Write {
+            path: path.to_owned(),
+            error,
+        };
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut scene = self.clone();
         for body in &mut scene.bodies {
             let SceneShape::Mesh(mesh) = &mut body.shape else {
                 continue;
             };
-            let Some(file) = mesh.path() else { continue };
-            let found_from_there = folder.join(mesh.name()) == file;
+            let Some(mesh_file) = mesh.path() else {
+                continue;
+            };
+            let found_from_there = folder.join(mesh.name()) == mesh_file;
             if !found_from_there {
-                let absolute = path::absolute(file).map_err(|error| SceneError::Write {
-                    path: path.to_owned(),
-                    error,
-                })?;
-                let name = absolute.to_string_lossy().into_owned();
-                *mesh = mesh.renamed(name);
+                let absolute = path::absolute(mesh_file).map_err(refused)?;
+                let Some(name) = absolute.to_str() else {
+                    return Err(refused(io::Error::other(format!(
+                        "the path of the mesh {} is not text: rename it",
+                        shown::path(&absolute)
+                    ))));
+                };
+                *mesh = mesh.renamed(name.to_owned());
             }
         }
-        fs::write(path, scene.to_toml()).map_err(|error| SceneError::Write {
-            path: path.to_owned(),
-            error,
-        })
+        file::write(path, scene.to_toml().as_bytes()).map_err(refused)
     }
 }

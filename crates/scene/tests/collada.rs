@@ -458,13 +458,13 @@ fn wrong_files_get_a_message_with_element_and_line() {
             "flat",
             "<node id=\"n\">",
             "<node id=\"n\"><scale>1 0 1</scale>",
-            "flatten the geometry",
+            "transforms flatten all 1 instances",
         ),
         (
             "blown up",
             "<node id=\"n\">",
             "<node id=\"n\"><scale>1e200 1e200 1</scale>",
-            "blow it up",
+            "blow the geometry up",
         ),
         (
             "short matrix",
@@ -507,7 +507,7 @@ fn wrong_files_get_a_message_with_element_and_line() {
             "hole",
             "<p>",
             "<ph><p>0 1 2</p><h>1 2 3</h></ph><p>",
-            "polygons with holes are not supported",
+            "a hole of the polygon crosses",
         ),
         (
             "controller",

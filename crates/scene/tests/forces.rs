@@ -122,7 +122,7 @@ damping = 1
         (
             "['a', 'b']",
             "['a']",
-            ":11: force 1, bodies: invalid length 1",
+            ":11: force 1, bodies: must be the names of two bodies, has 1",
         ),
         ("['a', 'b']", "'a'", ":11: force 1, bodies: invalid type"),
         (

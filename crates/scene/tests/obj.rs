@@ -158,7 +158,7 @@ fn wrong_files_get_a_message_with_the_line() {
         (
             "not text",
             b"# x\nv 0 0 \xff\n".to_vec(),
-            "test.obj:2: is not text",
+            "test.obj:2: z of the vertex is `\u{fffd}`",
         ),
         (
             "index too high",
@@ -260,7 +260,7 @@ fn paths_choose_the_format_and_errors_name_them() {
     let directory = folder.path().join("folder.obj");
     std::fs::create_dir(&directory).expect("a folder");
     let cases = [
-        (file("a.stl", ""), "the extension must be .obj or .dae"),
+        (file("a.3ds", ""), "the extension must be .obj or .dae"),
         (file("obj", ""), "the extension must be .obj or .dae"),
         (
             folder.path().join("missing.obj"),

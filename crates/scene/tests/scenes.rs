@@ -571,7 +571,9 @@ fn shape() -> impl Strategy<Value = SceneShape> {
 }
 
 fn body() -> impl Strategy<Value = SceneBody> {
-    let scale = vector().prop_map(|v| DVec3::select(v.cmpeq(DVec3::ZERO), DVec3::ONE, v));
+    // What a mesh of some metres can be scaled by.
+    let (least, most) = (DVec3::splat(1e-9), DVec3::splat(1e9));
+    let scale = vector().prop_map(move |v| v.abs().clamp(least, most).copysign(v));
     let moved = (vector(), vector(), vector());
     let turned = (vector(), scale);
     let colour = proptest::option::of(any::<[u8; 3]>());

@@ -1,21 +1,25 @@
 //! The command line.
 //!
 //! Exit codes: 0 done; 1 a run failed on the way; 2 the arguments or a file were refused;
-//! 3 no display or graphics adapter.
+//! 3 no display or graphics adapter; 130 a run was interrupted, and its result is what was reached.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use scene::Scene;
-use sim_core::{Collision, METHODS, Method, Settings};
+use scene::{Scene, shown};
+use sim_core::{Collision, FixedStep, METHODS, Method, Settings};
 
+use crate::interrupt::Interrupt;
 use crate::{app, failure::Failure, headless, shot};
 
 /// Scene of the window when none is named.
 const FIRST_SCENE: &str = "cube-cow";
+
+/// Exit code after an interrupt, as shells have it.
+pub const INTERRUPTED: u8 = 130;
 
 /// What `run` says, as far as the names do not say it.
 const FIGURES: &str = "\
@@ -43,14 +47,14 @@ Figures, by their names in --json; drifts and errors count from the start, and n
     version,
     args_conflicts_with_subcommands = true,
     after_help = "Exit codes: 0 done; 1 a run failed on the way; 2 arguments or a file refused; \
-                  3 no display or graphics adapter."
+                  3 no display or graphics adapter; 130 a run was interrupted (Ctrl-C)."
 )]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
     /// Scene to open: a name from the gallery or the path of a .toml file
     #[arg(value_name = "NAME|PATH", default_value = FIRST_SCENE)]
-    scene: String,
+    scene: PathBuf,
     #[command(flatten)]
     settings: SettingArgs,
 }
@@ -62,7 +66,7 @@ enum Command {
     Run {
         /// Name from the gallery or path of a .toml file
         #[arg(value_name = "NAME|PATH")]
-        scene: String,
+        scene: PathBuf,
         /// Number of steps
         #[arg(long, value_name = "N", default_value_t = 600)]
         steps: u64,
@@ -84,7 +88,7 @@ enum Command {
     Shot {
         /// Name from the gallery or path of a .toml file
         #[arg(value_name = "NAME|PATH")]
-        scene: String,
+        scene: PathBuf,
         #[command(flatten)]
         shot: ShotArgs,
         #[command(flatten)]
@@ -153,24 +157,35 @@ enum CollisionArg {
 
 /// Does what the arguments of the process ask for.
 pub fn main() -> ExitCode {
+    let interrupt = Interrupt::default();
     let done = match Cli::try_parse() {
-        Ok(cli) => obey(cli),
+        Ok(cli) => obey(cli, &interrupt),
         Err(error) if error.use_stderr() => Err(Failure::Refused(one_line(&error))),
         // Help and version.
         Err(error) => Ok(error.render().to_string()),
     };
     match done {
-        Ok(text) => print(&text),
+        Ok(text) => {
+            let code = print(&text);
+            if interrupt.came() && code == ExitCode::SUCCESS {
+                return ExitCode::from(INTERRUPTED);
+            }
+            code
+        }
         Err(failure) => {
             // Nothing is left to do if even that cannot be written.
-            let _ = writeln!(std::io::stderr(), "cowbell: {}", failure.message());
+            let _ = writeln!(
+                std::io::stderr(),
+                "cowbell: {}",
+                shown::message(failure.message())
+            );
             ExitCode::from(failure.code())
         }
     }
 }
 
 /// Runs a command; the answer is the text for stdout.
-fn obey(cli: Cli) -> Result<String, Failure> {
+fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
     match cli.command {
         None => {
             app::run(load(&cli.scene, &cli.settings)?)?;
@@ -181,7 +196,7 @@ fn obey(cli: Cli) -> Result<String, Failure> {
             steps,
             json,
             settings,
-        }) => headless::run(&load(&scene, &settings)?, steps, json),
+        }) => headless::run(&load(&scene, &settings)?, steps, json, interrupt),
         Some(Command::Check { file, json }) => headless::check(&file, json),
         Some(Command::Shot {
             scene,
@@ -192,12 +207,19 @@ fn obey(cli: Cli) -> Result<String, Failure> {
 }
 
 /// Reads a scene and overrules what the arguments overrule.
-fn load(name_or_path: &str, settings: &SettingArgs) -> Result<Scene, Failure> {
+fn load(name_or_path: &Path, settings: &SettingArgs) -> Result<Scene, Failure> {
     let mut scene = Scene::load(name_or_path).map_err(Failure::refused)?;
     if let Some(method) = settings.method.as_deref().and_then(Method::named) {
         scene.method = method;
     }
     if let Some(dt) = settings.dt.or(settings.rate.map(|rate| 1.0 / rate)) {
+        // The world would speak of a dt that nobody gave.
+        if let Some(rate) = settings.rate
+            && !FixedStep::DT_RANGE.contains(&dt)
+        {
+            let what = format!("--rate {rate:e}: must be from 1e-3 to 1e9 Hz");
+            return Err(Failure::Refused(what));
+        }
         scene.dt = dt;
     }
     if let Some(tolerance) = settings.tolerance {

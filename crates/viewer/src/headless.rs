@@ -1,13 +1,15 @@
 //! Runs and checks without a window, as text or JSON. Needs neither display nor graphics adapter.
 
 use std::fmt::{Display, Write};
+use std::io::Write as _;
 use std::path::Path;
 
-use scene::{Scene, mesh_file};
+use scene::{MeshReport, Scene, mesh_file, shown};
 use serde::Serialize;
-use sim_core::{DVec3, Repairs, StepError, World};
+use sim_core::{DVec3, StepError, World};
 
 use crate::failure::Failure;
+use crate::interrupt::{Interrupt, Progress};
 use crate::number;
 use crate::session::{Drift, Reference};
 use crate::stopwatch::Stopwatch;
@@ -69,6 +71,12 @@ struct CheckReport {
     closed: bool,
     oriented: bool,
     volume: Option<f64>,
+    boundary_edges: usize,
+    non_manifold_edges: usize,
+    components: usize,
+    extent: [f64; 3],
+    unit: Option<f64>,
+    up_axis: Option<char>,
     repairs: Vec<RepairReport>,
 }
 
@@ -78,17 +86,39 @@ struct RepairReport {
     count: usize,
 }
 
-/// Takes `steps` steps of a scene; the final state as JSON or as a table.
-pub fn run(scene: &Scene, steps: u64, json: bool) -> Result<String, Failure> {
+/// Takes `steps` steps of a scene, or as many as there are before an interrupt; the final state as
+/// JSON or as a table.
+pub fn run(
+    scene: &Scene,
+    steps: u64,
+    json: bool,
+    interrupt: &Interrupt,
+) -> Result<String, Failure> {
     let mut world = scene.world().map_err(Failure::refused)?;
     let reference = Reference::of(&world);
+    interrupt
+        .listen()
+        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    let mut progress = Progress::new(steps);
     let stopwatch = Stopwatch::start();
-    for _ in 0..steps {
-        world
-            .step()
-            .map_err(|error| Failure::Run(step_error(scene, &error)))?;
+    while world.steps() < steps && !interrupt.came() {
+        let stepped = world.step();
+        if let Err(error) = stepped {
+            progress.end();
+            return Err(Failure::Run(step_error(scene, &error)));
+        }
+        progress.at(world.steps());
     }
-    let seconds_per_step = stopwatch.read().as_secs_f64() / steps.max(1) as f64;
+    let seconds_per_step = stopwatch.read().as_secs_f64() / world.steps().max(1) as f64;
+    progress.end();
+    if interrupt.came() {
+        let reached = world.steps();
+        // Nothing is lost if it cannot be told: the result has the count too.
+        let _ = writeln!(
+            std::io::stderr(),
+            "cowbell: interrupted after {reached} of {steps} steps"
+        );
+    }
     let drift = reference.drift(&world);
     let report = RunReport::of(scene, &world, &drift);
     Ok(if json {
@@ -101,14 +131,21 @@ pub fn run(scene: &Scene, steps: u64, json: bool) -> Result<String, Failure> {
 /// Reads a mesh file; what is in it as JSON or as text.
 pub fn check(file: &Path, json: bool) -> Result<String, Failure> {
     let loaded = mesh_file::load(file).map_err(Failure::refused)?;
+    let figures = loaded.report();
     let report = CheckReport {
         format: loaded.format,
-        vertices: loaded.mesh.vertices().len(),
-        triangles: loaded.mesh.triangles().len(),
-        closed: loaded.mesh.is_closed(),
-        oriented: loaded.mesh.is_oriented(),
-        volume: loaded.mesh.volume(),
-        repairs: repairs(&loaded.repairs),
+        vertices: figures.vertices,
+        triangles: figures.triangles,
+        closed: figures.closed,
+        oriented: figures.oriented,
+        volume: figures.volume,
+        boundary_edges: figures.boundary_edges,
+        non_manifold_edges: figures.non_manifold_edges,
+        components: figures.components,
+        extent: figures.extent,
+        unit: figures.unit,
+        up_axis: figures.up_axis,
+        repairs: repairs(&figures),
     };
     Ok(if json {
         to_json(&report)
@@ -121,7 +158,7 @@ pub fn check(file: &Path, json: bool) -> Result<String, Failure> {
 pub fn step_error(scene: &Scene, error: &StepError) -> String {
     format!(
         "scene `{}`: {}",
-        scene.name,
+        shown::name(&scene.name),
         with_name(scene, error.body(), error)
     )
 }
@@ -129,23 +166,42 @@ pub fn step_error(scene: &Scene, error: &StepError) -> String {
 /// An error's message with a body's name in place of its index.
 pub fn with_name(scene: &Scene, body: usize, error: &impl Display) -> String {
     let name = scene.bodies.get(body).map_or("?", |body| &body.name);
-    error
-        .to_string()
-        .replacen(&format!("body {body}"), &format!("body `{name}`"), 1)
+    error.to_string().replacen(
+        &format!("body {body}"),
+        &format!("body `{}`", shown::name(name)),
+        1,
+    )
 }
 
 fn to_json(report: &impl Serialize) -> String {
     // Plain structs of numbers and text: nothing in them can be refused.
-    serde_json::to_string(report).map_or_else(|error| error.to_string(), |text| text + "\n")
+    serde_json::to_string(report).map_or_else(
+        |error| error.to_string(),
+        |text| {
+            let mut safe = String::with_capacity(text.len() + 1);
+            for character in text.chars() {
+                if shown::is_unsafe(character) {
+                    // Only in strings, and there this says the same.
+                    for unit in character.encode_utf16(&mut [0; 2]) {
+                        let _ = write!(safe, "\\u{unit:04x}");
+                    }
+                } else {
+                    safe.push(character);
+                }
+            }
+            safe + "\n"
+        },
+    )
 }
 
-fn repairs(repairs: &Repairs) -> Vec<RepairReport> {
+fn repairs(repairs: &MeshReport) -> Vec<RepairReport> {
     [
         ("welded_vertices", repairs.welded_vertices),
         ("degenerate_triangles", repairs.degenerate_triangles),
         ("duplicate_triangles", repairs.duplicate_triangles),
         ("unreferenced_vertices", repairs.unreferenced_vertices),
-        ("reversed_winding", usize::from(repairs.reversed_winding)),
+        ("flipped_triangles", repairs.flipped_triangles),
+        ("flat_instances", repairs.flat_instances),
     ]
     .into_iter()
     .filter(|&(_, count)| count > 0)
@@ -205,7 +261,7 @@ impl<'a> RunReport<'a> {
             collision_name(scene)
         );
         let lines = [
-            ("Scene", scene.title.clone()),
+            ("Scene", shown::part(&scene.title)),
             ("Run", settings),
             ("Time", format!("{} s", self.time)),
             ("Impacts", self.impacts.to_string()),
@@ -246,7 +302,7 @@ impl<'a> RunReport<'a> {
         let width = self
             .bodies
             .iter()
-            .map(|body| body.name.chars().count())
+            .map(|body| shown::name(body.name).chars().count())
             .max()
             .unwrap_or(0)
             .max(4);
@@ -259,7 +315,7 @@ impl<'a> RunReport<'a> {
             let _ = writeln!(
                 text,
                 "{:<width$} {:>10} {:>38} {:>38}",
-                body.name,
+                shown::name(body.name),
                 body.mass
                     .map_or_else(|| "immovable".to_owned(), |mass| mass.to_string()),
                 vector(body.position.into()),
@@ -275,8 +331,8 @@ impl ImpactReport<'_> {
         format!(
             "{} s, {} and {}, {} N s, {} m/s before and {} m/s after",
             self.time,
-            self.bodies[0],
-            self.bodies[1],
+            shown::name(self.bodies[0]),
+            shown::name(self.bodies[1]),
             self.impulse,
             number::figure(self.approaching),
             number::figure(self.parting)
@@ -331,13 +387,24 @@ impl CheckReport {
             || "none: the surface does not enclose one".to_owned(),
             |volume| format!("{volume} m^3"),
         );
+        let unsaid = || "not said in the file".to_owned();
+        let unit = self.unit.map_or_else(unsaid, |unit| format!("{unit} m"));
+        let up_axis = self.up_axis.map_or_else(unsaid, |axis| axis.to_string());
         let mut text = format!(
-            "Format     {}\nVertices   {}\nTriangles  {}\nClosed     {}\nOriented   {}\nVolume     {volume}\n",
+            "Format     {}\nVertices   {}\nTriangles  {}\nClosed     {}\nOriented   {}\nVolume     {volume}\n\
+             Edges      {} of one triangle, {} of more than two\nPieces     {}\n\
+             Extent     {} by {} by {} m\nUnit       {unit}\nUp axis    {up_axis}\n",
             self.format,
             self.vertices,
             self.triangles,
             yes(self.closed),
             yes(self.oriented),
+            self.boundary_edges,
+            self.non_manifold_edges,
+            self.components,
+            self.extent[0],
+            self.extent[1],
+            self.extent[2],
         );
         for repair in &self.repairs {
             let _ = writeln!(text, "Repaired   {}: {}", repair.kind, repair.count);

@@ -12,6 +12,7 @@ pub mod cli;
 pub mod failure;
 pub mod gpu;
 pub mod headless;
+pub mod interrupt;
 pub mod number;
 pub mod picture;
 pub mod render;

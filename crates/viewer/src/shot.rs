@@ -1,11 +1,13 @@
 //! A picture of a scene in a PNG file, drawn without a window.
 
+use std::io::Cursor;
 use std::time::Duration;
 
-use scene::Scene;
+use scene::{Scene, file, shown};
 
 use crate::cli::{Depth, ShotArgs};
 use crate::failure::Failure;
+use crate::interrupt::survive_file_limits;
 use crate::render::offscreen::{self, ShotError};
 use crate::session::Session;
 use crate::stopwatch::Stopwatch;
@@ -28,7 +30,7 @@ pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
             if depth >= levels {
                 return Err(Failure::Refused(format!(
                     "--bvh {depth}: the hierarchies of {} have depths below {levels}",
-                    session.scene().name
+                    shown::name(&session.scene().name)
                 )));
             }
             session.display.bvh.depth = depth;
@@ -47,14 +49,18 @@ pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
         }
     }
     let image = offscreen::shot(&session.picture(), args.size).map_err(failure)?;
+    let mut png = Cursor::new(Vec::new());
     image
-        .save_with_format(&args.output, image::ImageFormat::Png)
-        .map_err(|error| {
-            Failure::Refused(format!("cannot write {}: {error}", args.output.display()))
-        })?;
+        .write_to(&mut png, image::ImageFormat::Png)
+        .map_err(|error| Failure::Run(format!("cannot encode the picture: {error}")))?;
+    survive_file_limits();
+    file::write(&args.output, png.get_ref()).map_err(|error| {
+        let path = shown::path(&args.output);
+        Failure::Refused(format!("cannot write {path}: {error}"))
+    })?;
     Ok(format!(
         "{}: {} by {} pixels, step {}\n",
-        args.output.display(),
+        shown::path(&args.output),
         args.size[0],
         args.size[1],
         session.world().steps()
@@ -71,10 +77,15 @@ fn failure(error: ShotError) -> Failure {
 }
 
 fn no_such_body(scene: &Scene, name: &str) -> Failure {
-    let names: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let names: Vec<String> = scene
+        .bodies
+        .iter()
+        .map(|body| shown::name(&body.name))
+        .collect();
     Failure::Refused(format!(
-        "{} has no body {name}; it has {}",
-        scene.name,
+        "{} has no body {}; it has {}",
+        shown::name(&scene.name),
+        shown::name(name),
         names.join(", ")
     ))
 }

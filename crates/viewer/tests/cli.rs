@@ -363,11 +363,17 @@ fn check_describes_a_mesh() {
     assert_eq!(
         keys(&report),
         [
+            "boundary_edges",
             "closed",
+            "components",
+            "extent",
             "format",
+            "non_manifold_edges",
             "oriented",
             "repairs",
             "triangles",
+            "unit",
+            "up_axis",
             "vertices",
             "volume"
         ]
@@ -434,4 +440,78 @@ fn without_a_display_says_so() {
         let text = refusal(command, 3);
         assert!(text.contains("cowbell run cube-cow"), "{text}");
     }
+}
+
+/// Characters that act on a terminal, in one word of a scene or of an argument.
+const ACTING: &str = "a\u{1b}]0;x\u{7}\u{9b}\u{202e}";
+
+fn nothing_acts(output: &Output) {
+    for bytes in [&output.stdout, &output.stderr] {
+        let text = String::from_utf8(bytes.clone()).expect("text");
+        let acts = |c: char| c != '\n' && scene::shown::is_unsafe(c);
+        assert!(!text.contains(acts), "{text:?}");
+    }
+}
+
+#[test]
+fn names_and_arguments_do_not_act_on_the_terminal() {
+    let name = ACTING
+        .replace('\u{1b}', "\\u001b")
+        .replace('\u{7}', "\\u0007");
+    for name in [name, "x".repeat(65_536)] {
+        let text = format!(
+            "rate = 60\ntitle = \"{name}\"\n[[body]]\nname = \"{name}\"\nsphere = 1\nvelocity = [9, 0, 0]\n\
+             [[body]]\nname = 'b'\nsphere = 1\nposition = [2.1, 0, 0]\n"
+        );
+        let path = file("acts.toml", &text);
+        let path_text = path.to_string_lossy();
+        for json in [&["--json"][..], &[]] {
+            let output = answer(&[&["run", &path_text, "--steps", "9"][..], json].concat());
+            assert_eq!(output.status.code(), Some(0));
+            nothing_acts(&output);
+        }
+        fs::remove_file(path).expect("the file is removed");
+    }
+    for word in [ACTING.to_owned(), "x".repeat(100_000)] {
+        for arguments in [
+            &["run", &word][..],
+            &["run", "cube-cow", "--method", &word],
+            &["run", "cube-cow", "--steps", &word],
+            &["check", &word],
+            &[&word, &word],
+            &["shot", "cube-cow", "--select", &word, "-o", "x.png"],
+        ] {
+            let text = refusal(cowbell(arguments), 2);
+            assert!(text.len() <= 1024, "{} bytes", text.len());
+            nothing_acts(&answer(arguments));
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_tells_what_it_reached() {
+    let run = [
+        "run",
+        "parabola",
+        "--json",
+        "--steps",
+        "1000000000000000000",
+    ];
+    let mut command = cowbell(&run);
+    let child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    let id = child.id().to_string();
+    let killed = Command::new("kill").args(["-INT", &id]).status();
+    assert!(killed.expect("kill").success());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130));
+    let state: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(state["steps"].as_u64().is_some_and(|steps| steps > 0));
+    let text = String::from_utf8(output.stderr).expect("text");
+    assert!(text.starts_with("cowbell: interrupted after "), "{text}");
 }

@@ -2,22 +2,29 @@
 
 mod builtin;
 mod collada;
+mod encoding;
 mod obj;
+mod ply;
 mod polygon;
+mod report;
 mod soup;
+mod stl;
 
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use sim_core::{Mesh, MeshError, Repairs};
 use thiserror::Error;
 
+use crate::file::{self, Refusal};
+use crate::shown;
+
 pub use builtin::{BUILTIN_MESHES, builtin};
+pub use report::MeshReport;
 pub use soup::{ReadError, Soup};
 
 /// The mesh file formats that can be read.
-pub static FORMATS: &[Format] = &[obj::FORMAT, collada::FORMAT];
+pub static FORMATS: &[Format] = &[obj::FORMAT, collada::FORMAT, stl::FORMAT, ply::FORMAT];
 
 /// The largest file that is read, in bytes.
 const MAX_BYTES: u64 = 1 << 30;
@@ -39,6 +46,14 @@ impl Format {
     /// The format of a path by its extension, upper or lower case.
     pub fn of(path: &Path) -> Result<&'static Format, MeshFileError> {
         let extension = path.extension().unwrap_or_default().to_string_lossy();
+        if ["gltf", "glb"]
+            .iter()
+            .any(|gltf| extension.eq_ignore_ascii_case(gltf))
+        {
+            return Err(MeshFileError::Gltf {
+                path: path.to_owned(),
+            });
+        }
         FORMATS
             .iter()
             .find(|format| {
@@ -60,19 +75,39 @@ pub struct LoadedMesh {
     pub mesh: Mesh,
     /// What was mended on the way.
     pub repairs: Repairs,
+    /// Metres in a unit of the file, where it says so; `mesh` is in metres.
+    pub unit: Option<f64>,
+    /// The axis that is up in the file, where it says so; `mesh` has y up.
+    pub up_axis: Option<char>,
+    /// Instances that the file scales to nothing and that are left out.
+    pub flat_instances: usize,
 }
 
 /// Why a mesh file gives no mesh.
 #[derive(Debug, Error)]
 pub enum MeshFileError {
     /// The extension belongs to no format.
-    #[error("{}: not a known kind of mesh file: the extension must be {}", path.display(), extensions())]
+    #[error(
+        "{}: not a known kind of mesh file: the extension must be {}",
+        shown::path(path),
+        extensions()
+    )]
     UnknownFormat {
         /// The file.
         path: PathBuf,
     },
+    /// A format that is known and not read.
+    #[error(
+        "{}: glTF files are not read: export the mesh as {}",
+        shown::path(path),
+        extensions()
+    )]
+    Gltf {
+        /// The file.
+        path: PathBuf,
+    },
     /// The file cannot be read at all.
-    #[error("{}: cannot read the mesh file: {error}", path.display())]
+    #[error("{}: cannot read the mesh file: {error}", shown::path(path))]
     Io {
         /// The file.
         path: PathBuf,
@@ -80,7 +115,10 @@ pub enum MeshFileError {
         error: io::Error,
     },
     /// The file is larger than any sensible mesh.
-    #[error("{}: the mesh file has {bytes} bytes: the most is {MAX_BYTES}", path.display())]
+    #[error(
+        "{}: the mesh file has {bytes} bytes: the most is {MAX_BYTES}",
+        shown::path(path)
+    )]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -88,7 +126,7 @@ pub enum MeshFileError {
         bytes: u64,
     },
     /// The contents are not what the format asks for.
-    #[error("{}: {}", place(path, error.line), error.what)]
+    #[error("{}: {}", place(path, error.line), shown::part(&error.what))]
     Content {
         /// The file.
         path: PathBuf,
@@ -96,7 +134,7 @@ pub enum MeshFileError {
         error: ReadError,
     },
     /// The triangles make no mesh.
-    #[error("{}: {error}", path.display())]
+    #[error("{}: {error}", shown::path(path))]
     Mesh {
         /// The file.
         path: PathBuf,
@@ -107,8 +145,8 @@ pub enum MeshFileError {
 
 fn place(path: &Path, line: Option<usize>) -> String {
     match line {
-        Some(line) => format!("{}:{line}", path.display()),
-        None => path.display().to_string(),
+        Some(line) => format!("{}:{line}", shown::path(path)),
+        None => shown::path(path),
     }
 }
 
@@ -121,22 +159,16 @@ fn extensions() -> String {
 /// Reads a mesh file. The extension tells the format; no other file is opened.
 pub fn load(path: &Path) -> Result<LoadedMesh, MeshFileError> {
     let format = Format::of(path)?;
-    let io = |error| MeshFileError::Io {
-        path: path.to_owned(),
-        error,
-    };
-    // Reading a pipe or a device could take for ever.
-    let metadata = fs::metadata(path).map_err(io)?;
-    if !metadata.is_file() {
-        return Err(io(io::Error::other("it is not a regular file")));
-    }
-    if metadata.len() > MAX_BYTES {
-        return Err(MeshFileError::TooLarge {
+    let bytes = file::read(path, MAX_BYTES).map_err(|refusal| match refusal {
+        Refusal::Io(error) => MeshFileError::Io {
             path: path.to_owned(),
-            bytes: metadata.len(),
-        });
-    }
-    let bytes = fs::read(path).map_err(io)?;
+            error,
+        },
+        Refusal::TooLarge(bytes) => MeshFileError::TooLarge {
+            path: path.to_owned(),
+            bytes,
+        },
+    })?;
     read(format, path, &bytes)
 }
 
@@ -160,5 +192,8 @@ pub fn read(
         format: format.name,
         mesh,
         repairs,
+        unit: soup.unit,
+        up_axis: soup.up_axis,
+        flat_instances: soup.flat_instances,
     })
 }

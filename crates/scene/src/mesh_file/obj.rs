@@ -11,9 +11,10 @@ use std::io::{self, BufRead, Read};
 use glam::Vec3;
 use tobj::LoadOptions;
 
-use super::Format;
 use super::polygon::{MAX_CONCAVE_CORNERS, triangulate};
 use super::soup::{MAX_TRIANGLES, ReadError, Soup};
+use super::{Format, encoding};
+use crate::shown;
 
 /// Wavefront OBJ.
 pub(super) const FORMAT: Format = Format {
@@ -24,6 +25,8 @@ pub(super) const FORMAT: Format = Format {
 };
 
 fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
+    let decoded = encoding::by_mark(bytes);
+    let bytes = decoded.as_ref();
     let mut sieve = Sieve::new(bytes);
     let options = LoadOptions {
         ignore_lines: true,
@@ -102,6 +105,11 @@ fn index_error(line: usize, index: impl std::fmt::Display, vertices: usize) -> R
     ReadError::at(line, format!("a face uses vertex {index}, but {range}"))
 }
 
+/// Whether the next line belongs to this one: blanks after the backslash do not matter.
+fn goes_on(line: &[u8]) -> bool {
+    line.trim_ascii_end().ends_with(b"\\")
+}
+
 /// A reader that turns an OBJ file into checked `v x y z` and `f i j k ...` lines.
 struct Sieve<'a> {
     rest: &'a [u8],
@@ -120,7 +128,7 @@ struct Sieve<'a> {
 impl<'a> Sieve<'a> {
     fn new(bytes: &'a [u8]) -> Sieve<'a> {
         Sieve {
-            rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes),
+            rest: bytes,
             line: 0,
             statement: Vec::new(),
             consumed: 0,
@@ -156,8 +164,8 @@ impl<'a> Sieve<'a> {
                 continue;
             }
             let mut whole = line.to_vec();
-            while whole.last() == Some(&b'\\') {
-                whole.pop();
+            while goes_on(&whole) {
+                whole.truncate(whole.trim_ascii_end().len() - 1);
                 whole.push(b' ');
                 match self.take_line() {
                     Some(line) => whole.extend_from_slice(line),
@@ -166,8 +174,8 @@ impl<'a> Sieve<'a> {
             }
             // Comments are free text in any encoding, so they go before the check.
             let end = whole.iter().position(|&byte| byte == b'#');
-            let text = std::str::from_utf8(&whole[..end.unwrap_or(whole.len())])
-                .map_err(|_| ReadError::at(start, "is not text: expected numbers"))?;
+            // A word that is no text is no number, and the message shows it.
+            let text = String::from_utf8_lossy(&whole[..end.unwrap_or(whole.len())]);
             let words = text.split_ascii_whitespace().skip(1);
             return if keyword == Some(b"v") {
                 self.vertex(start, words)
@@ -180,9 +188,9 @@ impl<'a> Sieve<'a> {
 
     /// A left-out statement may also go on over several lines; a comment may not.
     fn skip_continuation(&mut self, line: &[u8]) {
-        let mut continued = !line.trim_ascii_start().starts_with(b"#") && line.ends_with(b"\\");
+        let mut continued = !line.trim_ascii_start().starts_with(b"#") && goes_on(line);
         while continued {
-            continued = self.take_line().is_some_and(|line| line.ends_with(b"\\"));
+            continued = self.take_line().is_some_and(goes_on);
         }
     }
 
@@ -199,7 +207,8 @@ impl<'a> Sieve<'a> {
             };
             if !word.parse::<f32>().is_ok_and(f32::is_finite) {
                 let what = format!(
-                    "{axis} of the vertex is `{word}`: it must be a finite number below 3.4e38"
+                    "{axis} of the vertex is `{}`: it must be a finite number below 3.4e38",
+                    shown::name(word)
                 );
                 return Err(ReadError::at(line, what));
             }
@@ -222,8 +231,9 @@ impl<'a> Sieve<'a> {
             let index = word.split('/').next().unwrap_or(word);
             let number: i64 = index.parse().map_err(|_| {
                 let what = format!(
-                    "`{word}` is not a corner of a face: expected a vertex index such as 7, -1 \
-                     or 7/2/3"
+                    "`{}` is not a corner of a face: expected a vertex index such as 7, -1 \
+                     or 7/2/3",
+                    shown::name(word)
                 );
                 ReadError::at(line, what)
             })?;

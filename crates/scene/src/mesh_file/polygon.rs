@@ -33,11 +33,130 @@ pub(super) fn triangulate(corners: &[DVec3], out: &mut Vec<[usize; 3]>) -> bool 
     true
 }
 
+/// Cuts a polygon with holes into triangles of corner numbers. `rings` says how many corners the
+/// outline and each hole have, in whichever direction they run.
+///
+/// Each hole is tied to what is around it by a bridge, there and back, that crosses no side.
+pub(super) fn pierced(corners: &[DVec3], rings: &[usize]) -> Result<Vec<[usize; 3]>, String> {
+    if corners.len() + 2 * (rings.len() - 1) > MAX_CONCAVE_CORNERS {
+        return Err(format!(
+            "a polygon with holes has more than {MAX_CONCAVE_CORNERS} corners: cut it before export"
+        ));
+    }
+    let flat = projected_by(&corners[..rings[0]], corners);
+    let mut start = rings[0];
+    let mut holes: Vec<Vec<usize>> = Vec::new();
+    for &length in &rings[1..] {
+        let mut hole: Vec<usize> = (start..start + length).collect();
+        if doubled_area(&flat, &hole) > 0.0 {
+            hole.reverse();
+        }
+        holes.push(hole);
+        start += length;
+    }
+    let mut outline: Vec<usize> = (0..rings[0]).collect();
+    while !holes.is_empty() {
+        let (place, hole, corner) = bridge(&flat, &outline, &holes).ok_or(
+            "a hole of the polygon crosses its outline or another hole: mend it before export",
+        )?;
+        let mut ring = holes.swap_remove(hole);
+        ring.rotate_left(corner);
+        ring.push(ring[0]);
+        ring.push(outline[place]);
+        outline.splice(place + 1..place + 1, ring);
+    }
+    let around: Vec<DVec2> = outline.iter().map(|&corner| flat[corner]).collect();
+    let mut cut = Vec::new();
+    cut_ears(&around, &mut cut);
+    Ok(cut.into_iter().map(|t| t.map(|at| outline[at])).collect())
+}
+
+/// The shortest way from the outline to a hole that crosses no side: the place in the outline, the
+/// hole, and the place in it.
+fn bridge(
+    flat: &[DVec2],
+    outline: &[usize],
+    holes: &[Vec<usize>],
+) -> Option<(usize, usize, usize)> {
+    let mut ways = Vec::new();
+    for (place, &from) in outline.iter().enumerate() {
+        for (hole, ring) in holes.iter().enumerate() {
+            for (corner, &to) in ring.iter().enumerate() {
+                ways.push((flat[from].distance_squared(flat[to]), place, hole, corner));
+            }
+        }
+    }
+    ways.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let sides: Vec<[DVec2; 2]> = std::iter::once(outline)
+        .chain(holes.iter().map(Vec::as_slice))
+        .flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]))
+        .map(|side| side.map(|corner| flat[corner]))
+        .collect();
+    ways.into_iter()
+        .find(|&(_, place, hole, corner)| {
+            let (from, to) = (flat[outline[place]], flat[holes[hole][corner]]);
+            let n = outline.len();
+            let before = flat[outline[(place + n - 1) % n]];
+            let after = flat[outline[(place + 1) % n]];
+            is_within(before, from, after, to)
+                && sides.iter().all(|&[a, b]| !crosses(from, to, a, b))
+        })
+        .map(|(_, place, hole, corner)| (place, hole, corner))
+}
+
+/// Whether the way from a corner to a point starts on the inner side of that corner.
+fn is_within(before: DVec2, corner: DVec2, after: DVec2, point: DVec2) -> bool {
+    let (left_of_in, left_of_out) = (turn(before, corner, point), turn(corner, after, point));
+    if turn(before, corner, after) > 0.0 {
+        left_of_in > 0.0 && left_of_out > 0.0
+    } else {
+        left_of_in > 0.0 || left_of_out > 0.0
+    }
+}
+
+/// Whether a bridge meets a side other than at a common end.
+fn crosses(from: DVec2, to: DVec2, a: DVec2, b: DVec2) -> bool {
+    let on = |p: DVec2| {
+        p != from
+            && p != to
+            && turn(from, to, p) == 0.0
+            && p.cmpge(from.min(to)).all()
+            && p.cmple(from.max(to)).all()
+    };
+    let touches = |p: DVec2| {
+        p != a
+            && p != b
+            && turn(a, b, p) == 0.0
+            && p.cmpge(a.min(b)).all()
+            && p.cmple(a.max(b)).all()
+    };
+    let apart = |x: f64, y: f64| (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0);
+    on(a)
+        || on(b)
+        || touches(from)
+        || touches(to)
+        || apart(turn(from, to, a), turn(from, to, b)) && apart(turn(a, b, from), turn(a, b, to))
+}
+
+/// Twice the area of a ring, positive where it runs counter-clockwise.
+fn doubled_area(flat: &[DVec2], ring: &[usize]) -> f64 {
+    let origin = flat[ring[0]];
+    let pairs = ring.windows(2);
+    pairs
+        .map(|pair| (flat[pair[0]] - origin).perp_dot(flat[pair[1]] - origin))
+        .sum()
+}
+
 /// The polygon seen along the axis closest to its normal (Newell's method), counter-clockwise.
 ///
 /// Dropping a coordinate is exact, so the turns below have the signs of the file's own numbers.
 fn projected(corners: &[DVec3]) -> Vec<DVec2> {
-    let n = corners.len();
+    projected_by(corners, corners)
+}
+
+/// Points seen as a polygon is.
+fn projected_by(polygon: &[DVec3], points: &[DVec3]) -> Vec<DVec2> {
+    let (corners, n) = (polygon, polygon.len());
     let mut normal = DVec3::ZERO;
     for i in 1..n - 1 {
         normal += (corners[i] - corners[0]).cross(corners[i + 1] - corners[0]);
@@ -56,7 +175,7 @@ fn projected(corners: &[DVec3]) -> Vec<DVec2> {
         along = |p| DVec2::new(p.x, p.y);
     }
     let mirror = if positive { 1.0 } else { -1.0 };
-    corners
+    points
         .iter()
         .map(|p| along(p) * DVec2::new(mirror, 1.0))
         .collect()

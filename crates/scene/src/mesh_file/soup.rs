@@ -18,6 +18,12 @@ pub struct Soup {
     pub triangles: Vec<[u32; 3]>,
     /// Vertices of the file that no face uses and that `vertices` leaves out.
     pub unreferenced: usize,
+    /// Metres in a unit of the file, where it says so.
+    pub unit: Option<f64>,
+    /// The axis that is up in the file, where it says so.
+    pub up_axis: Option<char>,
+    /// Instances that the file scales to nothing and that are left out.
+    pub flat_instances: usize,
 }
 
 /// Why a mesh file cannot be read, without its path.

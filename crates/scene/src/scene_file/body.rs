@@ -1,6 +1,7 @@
 //! A `[[body]]` to the bodies that it stands for.
 
 use glam::DVec3;
+use sim_core::MeshError;
 use toml::Spanned;
 
 use super::copies::{self, Obstacles};
@@ -11,6 +12,8 @@ use super::text::Body;
 use crate::colour;
 use crate::error::SceneError;
 use crate::scene::{SceneBody, SceneShape};
+use crate::shown;
+use crate::world::baked_field;
 
 /// The bodies of a table: one, or its copies, which keep clear of those before it.
 pub(super) fn parse(
@@ -29,6 +32,8 @@ pub(super) fn parse(
     let mut body = SceneBody::new(name.clone(), shape);
     refuse_senseless(&place, &text, &body.shape)?;
     let copies = copies::parse(&place, &text)?;
+    let scale_span = text.scale.as_ref().map(Spanned::span);
+    let rotation_span = text.rotation.as_ref().map(Spanned::span);
     body.position = place.vector("position", text.position)?;
     body.rotation = place.vector("rotation", text.rotation)?;
     body.velocity = place.vector("velocity", text.velocity)?;
@@ -36,9 +41,20 @@ pub(super) fn parse(
     if let Some(value) = text.scale {
         body.scale = value.get_ref().0;
         if !body.scale.is_finite() || body.scale.cmpeq(DVec3::ZERO).any() {
-            let what = format!("must be finite and not 0, is {}", body.scale);
+            let what = {
+                let [x, y, z] = body.scale.to_array().map(shown::number);
+                format!("must be finite and not 0, is [{x}, {y}, {z}]")
+            };
             return Err(place.error(value.span(), "scale", what));
         }
+    }
+    if let Some(mesh) = body.mesh() {
+        // As its world will have it: here its line is known.
+        obstacles.baked.mesh(mesh, &body).map_err(|error| {
+            let field = baked_field(&error);
+            let span = scale_span.or(rotation_span).unwrap_or(text.name.span());
+            place.error(span, field, baked_what(&error, body.scale))
+        })?;
     }
     if let Some(value) = text.mass {
         body.mass = mass(&place, &value)?;
@@ -51,7 +67,7 @@ pub(super) fn parse(
         if !(0.0..=1.0).contains(&body.restitution) {
             let what = format!(
                 "must be from 0 (keeps nothing of the approaching speed) to 1 (all of it), is {}",
-                body.restitution
+                shown::number(body.restitution)
             );
             return Err(place.error(value.span(), "restitution", what));
         }
@@ -61,7 +77,7 @@ pub(super) fn parse(
         if !(0.0..=f64::INFINITY).contains(&body.friction) {
             let what = format!(
                 "must be a coefficient from 0 (smooth) to inf (never slips), is {}",
-                body.friction
+                shown::number(body.friction)
             );
             return Err(place.error(value.span(), "friction", what));
         }
@@ -69,13 +85,30 @@ pub(super) fn parse(
     if let Some(value) = text.colour {
         body.colour = colour::parse(value.get_ref());
         if body.colour.is_none() {
-            let what = format!("must look like `#c8553d`, is `{}`", value.get_ref());
+            let what = format!(
+                "must look like `#c8553d`, is `{}`",
+                shown::name(value.get_ref())
+            );
             return Err(place.error(value.span(), "colour", what));
         }
     }
     match copies {
         Some(copies) => copies.place(&place, &body, before, obstacles),
         None => Ok(vec![body]),
+    }
+}
+
+/// Why a mesh cannot be turned and scaled so.
+fn baked_what(error: &MeshError, scale: DVec3) -> String {
+    let [x, y, z] = scale.to_array().map(shown::number);
+    match error {
+        MeshError::NotFinite { .. } => {
+            format!("is [{x}, {y}, {z}]: the mesh grows beyond 3.4e38 m; give numbers nearer to 1")
+        }
+        MeshError::Scale { .. } => {
+            format!("is [{x}, {y}, {z}]: nothing is left of the mesh; give numbers nearer to 1")
+        }
+        other => other.to_string(),
     }
 }
 
@@ -90,7 +123,10 @@ fn shape(place: &Place, text: &Body, meshes: &mut MeshSource) -> Result<SceneSha
         (None, Some(value), None) => {
             let Number(radius) = *value.get_ref();
             if !(0.0..=LARGEST).contains(&radius) {
-                let what = format!("must be a radius in m from 0 to 1e100, is {radius}");
+                let what = format!(
+                    "must be a radius in m from 0 to 1e100, is {}",
+                    shown::number(radius)
+                );
                 return Err(place.error(value.span(), "sphere", what));
             }
             Ok(SceneShape::Sphere { radius })
@@ -161,7 +197,10 @@ fn mass(place: &Place, value: &Spanned<Number>) -> Result<f64, SceneError> {
     if (1.0 / LARGEST..=LARGEST).contains(&mass) {
         return Ok(mass);
     }
-    let mut what = format!("must be a mass in kg above 0 (from 1e-100 to 1e100), is {mass}");
+    let mut what = format!(
+        "must be a mass in kg above 0 (from 1e-100 to 1e100), is {}",
+        shown::number(mass)
+    );
     if mass == f64::INFINITY {
         what += "; a body that nothing moves is `immovable = true`";
     }

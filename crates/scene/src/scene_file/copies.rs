@@ -8,6 +8,7 @@ use super::parse::{LARGEST, Place};
 use super::text::Body;
 use crate::error::SceneError;
 use crate::scene::{SceneBody, SceneShape};
+use crate::shown;
 use crate::world::{Baked, baked_field};
 
 /// The most copies of one body.
@@ -59,7 +60,10 @@ pub(super) fn parse(place: &Place, text: &Body) -> Result<Option<Copies>, SceneE
     };
     let speed = text.speed.as_ref().map_or(0.0, |value| value.get_ref().0);
     if !(0.0..=LARGEST).contains(&speed) {
-        let what = format!("must be a speed in m/s from 0 to 1e100, is {speed}");
+        let what = format!(
+            "must be a speed in m/s from 0 to 1e100, is {}",
+            shown::number(speed)
+        );
         let span = text.speed.as_ref().map_or(count.span(), Spanned::span);
         return Err(place.error(span, "speed", what));
     }
@@ -146,7 +150,7 @@ impl Copies {
 #[derive(Default)]
 pub(super) struct Obstacles {
     all: Vec<Obstacle>,
-    baked: Baked,
+    pub(super) baked: Baked,
 }
 
 /// Where no copy can be.

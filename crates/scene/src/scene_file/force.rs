@@ -10,6 +10,7 @@ use toml::de::{DeTable, DeValue};
 use super::number::{Number, Triple};
 use super::parse::{Place, Source, Subject, fields};
 use crate::error::SceneError;
+use crate::shown;
 
 /// The kinds of forces that a file can hold.
 const KINDS: [&str; 7] = [
@@ -55,7 +56,7 @@ pub(super) struct Anchor {
 #[serde(deny_unknown_fields)]
 pub(super) struct Spring {
     kind: String,
-    bodies: [String; 2],
+    bodies: Vec<String>,
     #[serde(default = "zero")]
     rest_length: Number,
     stiffness: Number,
@@ -111,7 +112,7 @@ pub(super) fn parse(
     };
     let body = |field: &str, name: &String| {
         names.get(name.as_str()).copied().ok_or_else(|| {
-            let what = format!("there is no body `{name}`");
+            let what = format!("there is no body `{}`", shown::name(name));
             place.error(at(field), field, what)
         })
     };
@@ -149,7 +150,11 @@ pub(super) fn parse(
         }
         "spring" => {
             let text: Spring = source.read(whole, place.subject)?;
-            let [first, second] = &text.bodies;
+            // A fixed array would drop a third name without a word.
+            let [first, second] = &text.bodies[..] else {
+                let what = format!("must be the names of two bodies, has {}", text.bodies.len());
+                return Err(place.error(at("bodies"), "bodies", what));
+            };
             Force::Spring {
                 bodies: [body("bodies", first)?, body("bodies", second)?],
                 rest_length: text.rest_length.0,
@@ -172,7 +177,11 @@ pub(super) fn parse(
             }
         }
         _ => {
-            let what = format!("must be one of {}, is `{kind}`", KINDS.join(", "));
+            let what = format!(
+                "must be one of {}, is `{}`",
+                KINDS.join(", "),
+                shown::name(&kind)
+            );
             return Err(place.error(at("kind"), "kind", what));
         }
     };
@@ -218,7 +227,7 @@ pub(super) fn write(force: &Force, name: impl Fn(usize) -> String) -> Option<For
             damping,
         } => ForceText::Spring(Spring {
             kind,
-            bodies: bodies.map(name),
+            bodies: bodies.map(name).to_vec(),
             rest_length: Number(rest_length),
             stiffness: Number(stiffness),
             damping: Number(damping),

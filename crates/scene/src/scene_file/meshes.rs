@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use crate::MeshRef;
 use crate::mesh_file::BUILTIN_MESHES;
+use crate::{MeshRef, shown};
 
 /// Finds meshes by the names in a scene file, each once.
 pub(crate) struct MeshSource {
@@ -51,9 +51,12 @@ impl MeshSource {
             match path {
                 Some(path) => format!(
                     "there is no mesh file {}, and the built-in meshes are {builtin}",
-                    path.display()
+                    shown::path(&path)
                 ),
-                None => format!("there is no mesh `{name}`: the built-in ones are {builtin}"),
+                None => {
+                    let name = shown::name(name);
+                    format!("there is no mesh `{name}`: the built-in ones are {builtin}")
+                }
             }
         })
     }

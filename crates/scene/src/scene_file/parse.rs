@@ -18,6 +18,7 @@ use super::text::{Body, Header};
 use super::{body, force};
 use crate::error::SceneError;
 use crate::scene::Scene;
+use crate::shown;
 
 /// The ways to search for collisions, by the names in scene files.
 const COLLISIONS: [(&str, Collision); 3] = [
@@ -163,12 +164,19 @@ impl Source<'_> {
     ) -> SceneError {
         let start = error.span().map(|span| span.start);
         let field = start.and_then(|start| fields.iter().find(|(_, span)| span.contains(&start)));
+        let mut what = error.message().trim_end().replace('\n', ", ");
+        // The parser points at the key, but does not say it.
+        if let Some(key) = error.span().and_then(|span| self.text.get(span))
+            && what == "duplicate key"
+        {
+            what += &format!(" `{}`: give it once", shown::name(key));
+        }
         SceneError::Content {
             file: self.file.to_owned(),
             line: start.map(|start| self.line(start)),
             body: subject.body(),
             field: subject.field(field.map(|(name, _)| name.as_str())),
-            what: error.message().to_owned(),
+            what,
         }
     }
 }
@@ -206,7 +214,8 @@ impl<'a> Place<'a> {
         let Triple(v) = *value.get_ref();
         // NaN is not below anything.
         if !v.abs().cmple(DVec3::splat(LARGEST)).all() {
-            let what = format!("must be three numbers within ±1e100, is {v}");
+            let [x, y, z] = v.to_array().map(shown::number);
+            let what = format!("must be three numbers within ±1e100, is [{x}, {y}, {z}]");
             return Err(self.error(value.span(), field, what));
         }
         Ok(v)
@@ -269,7 +278,7 @@ fn dt(source: &Source, header: &Header) -> Result<f64, SceneError> {
             "rate" => "must be from 1e-6 to 1e9 Hz",
             _ => "must be from 1e-9 to 1e3 s",
         };
-        let what = format!("{what}, is {}", value.get_ref().0);
+        let what = format!("{what}, is {}", shown::number(value.get_ref().0));
         return Err(place.error(value.span(), field, what));
     }
     Ok(dt)
@@ -284,7 +293,7 @@ fn method(source: &Source, name: Option<Spanned<String>>) -> Result<&'static Met
         let what = format!(
             "must be one of {}, is `{}`",
             known.join(", "),
-            name.get_ref()
+            shown::name(name.get_ref())
         );
         Place::new(source, Subject::Scene).error(name.span(), "method", what)
     })
@@ -296,7 +305,10 @@ fn collision(source: &Source, name: Option<Spanned<String>>) -> Result<Collision
     };
     let known = COLLISIONS.iter().find(|known| known.0 == name.get_ref());
     known.map(|known| known.1).ok_or_else(|| {
-        let what = format!("must be naive, bvh or continuous, is `{}`", name.get_ref());
+        let what = format!(
+            "must be naive, bvh or continuous, is `{}`",
+            shown::name(name.get_ref())
+        );
         Place::new(source, Subject::Scene).error(name.span(), "collision", what)
     })
 }
@@ -307,7 +319,7 @@ fn tolerance(source: &Source, value: Option<Spanned<Number>>) -> Result<f64, Sce
     };
     let Number(tolerance) = *value.get_ref();
     if !Settings::TOLERANCES.contains(&tolerance) {
-        let what = format!("must be from 1e-15 to 1, is {tolerance}");
+        let what = format!("must be from 1e-15 to 1, is {}", shown::number(tolerance));
         return Err(Place::new(source, Subject::Scene).error(value.span(), "tolerance", what));
     }
     Ok(tolerance)

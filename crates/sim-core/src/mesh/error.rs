@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
     /// There is no triangle.
-    #[error("the mesh has no triangle: a mesh needs at least one face")]
+    #[error("the mesh has no triangle with an area: a mesh needs at least one")]
     Empty,
     /// A coordinate is NaN, infinite, or beyond the range of f32.
     #[error("vertex {vertex} is not finite: coordinates must be numbers within ±3.4e38 m")]
@@ -37,7 +37,11 @@ pub enum MeshError {
         count: usize,
     },
     /// A scale that is zero or not finite along some axis.
-    #[error("scale {scale} flattens the mesh: every component must be finite and not zero")]
+    #[error(
+        "scale [{:e}, {:e}, {:e}] leaves nothing of the mesh: every component must be finite and not \
+         0, and sizes in m must be within f32",
+        scale.x, scale.y, scale.z
+    )]
     Scale {
         /// The scale asked for.
         scale: DVec3,

@@ -259,6 +259,41 @@ mod tests {
     }
 
     #[test]
+    fn triangles_on_a_line_go_unless_they_close_the_mesh() {
+        let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|v| v * 0.1);
+        // Beside the surface, and not by exact arithmetic on a line: a last bit away.
+        let (third, off) = (Vec3::splat(0.1), Vec3::new(0.2, 0.2, 0.2_f32.next_up()));
+        let vertices = |last| [&points[..], &[third, last]].concat();
+        let with = |triangle| [&tetrahedron[..], &[triangle]].concat();
+        let (mesh, repairs) = Mesh::repaired(vertices(Vec3::splat(0.2)), with([0, 4, 5])).unwrap();
+        assert_eq!(
+            (mesh.triangles().len(), repairs.degenerate_triangles),
+            (4, 1)
+        );
+        assert!(mesh.is_closed() && mesh.vertices().len() == 4);
+        let (mesh, repairs) = Mesh::repaired(vertices(off), with([0, 4, 5])).unwrap();
+        assert_eq!(
+            (mesh.triangles().len(), repairs.degenerate_triangles),
+            (5, 0)
+        );
+        // The side from 0 to 1 is whole below and in halves above: a triangle fills the seam.
+        let halved = [
+            [0, 2, 1],
+            [0, 4, 3],
+            [4, 1, 3],
+            [1, 2, 3],
+            [2, 0, 3],
+            [0, 1, 4],
+        ];
+        let seam = [&points[..], &[Vec3::X * 0.05]].concat();
+        let (mesh, repairs) = Mesh::repaired(seam, halved.to_vec()).unwrap();
+        assert!(mesh.is_closed() && mesh.volume().is_some() && repairs.is_empty());
+        let alone = Mesh::repaired(vec![Vec3::ZERO, Vec3::X, Vec3::X * 2.0], vec![[0, 1, 2]]);
+        assert_eq!(alone.unwrap_err(), MeshError::Empty);
+    }
+
+    #[test]
     fn minus_zero_is_zero_to_the_weld() {
         let vertices = vec![Vec3::ZERO, Vec3::X, Vec3::Y, -Vec3::ZERO, -Vec3::X];
         let (mesh, repairs) = Mesh::repaired(vertices, vec![[0, 1, 2], [3, 2, 4]]).unwrap();

@@ -2,6 +2,7 @@
 
 use alloc::{vec, vec::Vec};
 use glam::Vec3;
+use robust::{Coord, orient2d};
 
 use super::{Mesh, MeshError, error};
 
@@ -11,7 +12,8 @@ use super::{Mesh, MeshError, error};
 pub struct Repairs {
     /// Vertices merged into an earlier one at the same position.
     pub welded_vertices: usize,
-    /// Triangles dropped because two of their corners are the same vertex.
+    /// Triangles dropped because they have no area: their corners lie on a line, by exact
+    /// arithmetic, or two are the same vertex.
     pub degenerate_triangles: usize,
     /// Triangles dropped because an earlier one has the same corners.
     pub duplicate_triangles: usize,
@@ -30,8 +32,11 @@ impl Repairs {
 }
 
 impl Mesh {
-    /// Welds vertices at equal positions, drops triangles with a repeated corner or the corners
-    /// of an earlier one, drops vertices without a triangle, and turns a closed mesh outward.
+    /// Welds vertices at equal positions, drops triangles without area or with the corners of an
+    /// earlier one, drops vertices without a triangle, and turns a closed mesh outward.
+    ///
+    /// Where triangles on a line close the mesh, as between the two halves of a side and the whole
+    /// of it, they stay: without them there would be no inside.
     ///
     /// Files split vertices at seams of normals and texture coordinates; without the weld no
     /// such mesh would be closed. Positions are compared exactly: no tolerance, no moved vertex.
@@ -50,6 +55,17 @@ impl Mesh {
         triangles.retain(|t| !has_repeated_corner(t));
         repairs.degenerate_triangles = before - triangles.len();
         repairs.duplicate_triangles = drop_duplicates(&mut triangles);
+        let with_area = |t: &[u32; 3]| !is_on_a_line(t.map(|v| vertices[v as usize]));
+        let solid: Vec<[u32; 3]> = triangles.iter().copied().filter(with_area).collect();
+        let on_a_line = triangles.len() - solid.len();
+        let needed = on_a_line > 0
+            && !solid.is_empty()
+            && Mesh::new(vertices.clone(), triangles.clone())?.is_closed()
+            && !Mesh::new(vertices.clone(), solid.clone())?.is_closed();
+        if !needed {
+            triangles = solid;
+            repairs.degenerate_triangles += on_a_line;
+        }
         // A vertex only of dropped triangles is gone with them.
         drop_unreferenced(&mut vertices, &mut triangles);
 
@@ -64,6 +80,17 @@ impl Mesh {
 
 pub(super) fn has_repeated_corner(&[a, b, c]: &[u32; 3]) -> bool {
     a == b || b == c || c == a
+}
+
+/// Whether three points are on a line: exactly, as its shadow on each plane of the axes then is.
+fn is_on_a_line(corners: [Vec3; 3]) -> bool {
+    [[0, 1], [1, 2], [2, 0]].into_iter().all(|[u, v]| {
+        let [a, b, c] = corners.map(|p| Coord {
+            x: f64::from(p[u]),
+            y: f64::from(p[v]),
+        });
+        orient2d(a, b, c) == 0.0
+    })
 }
 
 /// Gives vertices at the same position one index, that of the first.

@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use scene::{MeshRef, Scene, SceneBody, SceneShape};
+use scene::{MeshRef, Scene, SceneBody, SceneShape, shown};
 
 use super::Session;
 
 impl Session {
     /// Opens a scene of the gallery, by name, or of a file, by path. On failure the present one
     /// stays.
-    pub fn open(&mut self, name_or_path: &str) {
+    pub fn open(&mut self, name_or_path: impl AsRef<Path>) {
+        let name_or_path = name_or_path.as_ref();
         let opened = Scene::load(name_or_path).map_err(anyhow::Error::new);
         match opened.and_then(Session::new) {
             Ok(session) => {
@@ -50,7 +51,7 @@ impl Session {
     /// Opens a scene or adds a mesh, by the name's ending.
     pub fn take_in(&mut self, path: &Path) {
         if is_scene_file(path) {
-            self.open(&path.to_string_lossy());
+            self.open(path);
         } else {
             self.import(path);
         }
@@ -68,14 +69,14 @@ impl Session {
         let path = PathBuf::from(file);
         let own = self.file.as_deref() == Some(path.as_path());
         if path.exists() && !own && !agreed {
-            let text = format!("{} exists: choose another name.", path.display());
+            let text = format!("{} exists: choose another name.", shown::path(&path));
             self.notices.error("save", text);
             return;
         }
         match self.scene.save(&path) {
             Ok(()) => {
                 self.notices
-                    .info("save", format!("Saved {}.", path.display()));
+                    .info("save", format!("Saved {}.", shown::path(&path)));
                 self.file = Some(path);
             }
             Err(error) => self.notices.error("save", error.to_string()),

@@ -1,5 +1,7 @@
 //! Messages to the person at the window.
 
+use scene::shown;
+
 /// One message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
@@ -24,7 +26,7 @@ impl Notices {
         self.push(Notice {
             about,
             error: false,
-            text,
+            text: shown::message(&text),
         });
     }
 
@@ -33,7 +35,7 @@ impl Notices {
         self.push(Notice {
             about,
             error: true,
-            text,
+            text: shown::message(&text),
         });
     }
 

@@ -7,6 +7,7 @@ use std::rc::Rc;
 use roxmltree::{Node, NodeId};
 
 use crate::mesh_file::soup::ReadError;
+use crate::shown;
 
 /// A COLLADA document.
 pub(super) struct Document<'d, 'x> {
@@ -43,11 +44,15 @@ impl<'d, 'x> Document<'d, 'x> {
         // The id may be on an element around it.
         let owner = node.ancestors().find(|n| n.has_attribute("id"));
         let name = match owner {
-            Some(owner) if owner == node => format!("<{} id=\"{}\">", tag(node), id(node)),
-            Some(owner) => {
-                format!("<{}> in <{} id=\"{}\">", tag(node), tag(owner), id(owner))
+            Some(owner) if owner == node => {
+                let (tag, id) = (shown::name(tag(node)), shown::name(id(node)));
+                format!("<{tag} id=\"{id}\">")
             }
-            None => format!("<{}>", tag(node)),
+            Some(owner) => {
+                let (outer, id) = (shown::name(tag(owner)), shown::name(id(owner)));
+                format!("<{}> in <{outer} id=\"{id}\">", shown::name(tag(node)))
+            }
+            None => format!("<{}>", shown::name(tag(node))),
         };
         let line = node.document().text_pos_at(node.range().start).row as usize;
         ReadError::at(line, format!("{name}: {what}"))
@@ -69,16 +74,26 @@ impl<'d, 'x> Document<'d, 'x> {
         let reference = self.attribute(node, attribute)?;
         let Some(id) = reference.trim().strip_prefix('#') else {
             let what = format!(
-                "{attribute} is `{reference}`: it must be `#` and an id of this document; \
-                 references to other files are not followed"
+                "{attribute} is `{}`: it must be `#` and an id of this document; references to \
+                 other files are not followed",
+                shown::name(reference)
             );
             return Err(self.error(node, what));
         };
-        let found = tags.iter().find_map(|&tag| self.by_id.get(&(tag, id)));
-        found.copied().ok_or_else(|| {
+        // A URL may write any byte as `%` and two digits; an id may also hold a `%` of its own.
+        let found = self
+            .with_id(tags, id)
+            .or_else(|| self.with_id(tags, &percent_decoded(id)?));
+        found.ok_or_else(|| {
+            let id = shown::name(id);
             let what = format!("there is no <{}> with the id `{id}`", tags.join("> or <"));
             self.error(node, what)
         })
+    }
+
+    fn with_id(&self, tags: &[&str], id: &str) -> Option<Node<'d, 'x>> {
+        let mut nodes = tags.iter().map(|&tag| self.by_id.get(&(tag, id)));
+        nodes.find_map(Option::<&Node>::copied)
     }
 
     /// The text of an element, also where comments cut it in pieces.
@@ -137,6 +152,7 @@ impl<'d, 'x> Document<'d, 'x> {
         words
             .map(|(i, word)| {
                 parse(word).ok_or_else(|| {
+                    let word = shown::name(word);
                     let what = format!("value {} is `{word}`: it must be {expected}", i + 1);
                     self.error(node, what)
                 })
@@ -153,6 +169,7 @@ impl<'d, 'x> Document<'d, 'x> {
     ) -> Result<usize, ReadError> {
         node.attribute(name).map_or(Ok(default), |text| {
             text.trim().parse().map_err(|_| {
+                let text = shown::name(text);
                 let what = format!("{name} is `{text}`: it must be a whole number from 0");
                 self.error(node, what)
             })
@@ -168,6 +185,22 @@ pub(super) fn tag<'x>(node: Node<'_, 'x>) -> &'x str {
 /// The first child element with the tag.
 pub(super) fn child<'d, 'x>(node: Node<'d, 'x>, name: &str) -> Option<Node<'d, 'x>> {
     node.children().find(|child| tag(*child) == name)
+}
+
+/// Text in which `%` and two hexadecimal digits stand for a byte; none if that gives no text.
+fn percent_decoded(text: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((&first, after)) = rest.split_first() {
+        let digits = after.first_chunk::<2>().filter(|_| first == b'%');
+        let byte = digits.and_then(|digits| {
+            let digit = |at: usize| char::from(digits[at]).to_digit(16);
+            u8::try_from(16 * digit(0)? + digit(1)?).ok()
+        });
+        bytes.push(byte.unwrap_or(first));
+        rest = if byte.is_some() { &after[2..] } else { after };
+    }
+    String::from_utf8(bytes).ok()
 }
 
 fn id<'d>(node: Node<'d, '_>) -> &'d str {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use roxmltree::{Node, NodeId};
 
 use super::document::{Document, child, tag};
-use crate::mesh_file::polygon::{MAX_CONCAVE_CORNERS, triangulate};
+use crate::mesh_file::polygon::{MAX_CONCAVE_CORNERS, pierced, triangulate};
 use crate::mesh_file::soup::{MAX_TRIANGLES, MAX_VERTICES, ReadError};
 
 /// Triangles of one geometry.
@@ -64,10 +64,6 @@ impl<'d, 'x> Reader<'_, 'd, 'x> {
         ) {
             return Ok(());
         }
-        if let Some(hole) = child(element, "ph") {
-            let what = "polygons with holes are not supported: triangulate them before export";
-            return Err(self.document.error(hole, what));
-        }
         let layout = self.layout(element)?;
         let mut arities = match child(element, "vcount") {
             Some(vcount) if kind == "polylist" => self.document.indices(vcount)?,
@@ -115,6 +111,9 @@ impl<'d, 'x> Reader<'_, 'd, 'x> {
                     }
                 }
             }
+        }
+        for pierced in element.children().filter(|child| tag(*child) == "ph") {
+            self.pierced(pierced, &layout)?;
         }
         if !arities.is_empty() {
             return Err(self
@@ -190,6 +189,46 @@ impl<'d, 'x> Reader<'_, 'd, 'x> {
                 Ok((layout.first + index as usize) as u32)
             })
             .collect()
+    }
+
+    /// A polygon with holes.
+    fn pierced(&mut self, ph: Node<'d, 'x>, layout: &Layout) -> Result<(), ReadError> {
+        let document = self.document;
+        let outline = child(ph, "p").ok_or_else(|| document.error(ph, "<p> is missing"))?;
+        let mut face = self.corners(outline, layout)?;
+        if face.len() < 3 {
+            let what = format!(
+                "a polygon has {} corners: it needs at least three",
+                face.len()
+            );
+            return Err(document.error(outline, what));
+        }
+        let mut rings = vec![face.len()];
+        for hole in ph.children().filter(|child| tag(*child) == "h") {
+            let corners = self.corners(hole, layout)?;
+            if corners.len() < 3 {
+                let what = format!(
+                    "a hole has {} corners: it needs at least three",
+                    corners.len()
+                );
+                return Err(document.error(hole, what));
+            }
+            rings.push(corners.len());
+            face.extend(corners);
+        }
+        if let [_] = rings[..] {
+            return self.polygon(outline, &face);
+        }
+        let at = |&i: &u32| self.read.vertices[i as usize];
+        let corners: Vec<DVec3> = face.iter().map(at).collect();
+        let cut = pierced(&corners, &rings).map_err(|what| document.error(ph, what))?;
+        if self.read.triangles.len() + cut.len() > MAX_TRIANGLES {
+            let what = format!("there are more than {MAX_TRIANGLES} triangles: simplify the mesh");
+            return Err(document.error(ph, what));
+        }
+        let triangles = cut.iter().map(|t| t.map(|corner| face[corner]));
+        self.read.triangles.extend(triangles);
+        Ok(())
     }
 
     fn polygon(&mut self, p: Node<'d, 'x>, face: &[u32]) -> Result<(), ReadError> {

@@ -13,8 +13,9 @@ mod transform;
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::Format;
 use super::soup::{ReadError, Soup};
+use super::{Format, encoding};
+use crate::shown;
 use document::{Document, child};
 use node::Assembly;
 
@@ -27,11 +28,8 @@ pub(super) const FORMAT: Format = Format {
 };
 
 fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let before = &bytes[..error.valid_up_to()];
-        let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
-        ReadError::at(line, "is not UTF-8 text: save the COLLADA file as UTF-8")
-    })?;
+    let text = encoding::xml(bytes)?;
+    let text = text.as_ref();
     guard::check(text)?;
     // The default options refuse document type definitions, and with them entity expansion.
     let xml = roxmltree::Document::parse(text).map_err(|error| {
@@ -40,7 +38,7 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
     })?;
     let document = Document::new(&xml)?;
     let mut assembly = Assembly::new(&document);
-    let placement = into_metres_y_up(&document)?;
+    let (placement, unit, up_axis) = into_metres_y_up(&document)?;
     let scene = child(document.root, "scene")
         .and_then(|scene| child(scene, "instance_visual_scene"))
         .map(|instance| document.target(instance, "url", &["visual_scene"]))
@@ -49,7 +47,14 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
         Some(scene) => assembly.add_nodes(scene, placement)?,
         None => assembly.add_all_geometries(placement)?,
     }
-    let soup = assembly.soup;
+    let mut soup = assembly.soup;
+    (soup.unit, soup.up_axis) = (unit, up_axis);
+    if soup.triangles.is_empty() && soup.flat_instances > 0 {
+        return Err(ReadError::new(format!(
+            "shows no triangles with an area: transforms flatten all {} instances of geometries",
+            soup.flat_instances
+        )));
+    }
     if soup.triangles.is_empty() {
         return Err(ReadError::new(
             "shows no triangles: its scene must instance a geometry with polygons",
@@ -58,31 +63,37 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
     Ok(soup)
 }
 
-/// From the document's unit and up axis to metres and y up.
-fn into_metres_y_up(document: &Document) -> Result<DMat4, ReadError> {
+/// From the document's unit and up axis to metres and y up, and those as far as it tells them. An
+/// empty element or attribute tells nothing.
+fn into_metres_y_up(document: &Document) -> Result<(DMat4, Option<f64>, Option<char>), ReadError> {
     let asset = child(document.root, "asset");
     let unit = asset.and_then(|asset| child(asset, "unit"));
-    let mut metres = 1.0;
-    if let Some((unit, text)) = unit.and_then(|unit| Some((unit, unit.attribute("meter")?))) {
-        let number = text.trim().parse().ok();
+    let mut metres = None;
+    let meter = unit.and_then(|unit| Some((unit, unit.attribute("meter")?.trim())));
+    if let Some((unit, text)) = meter.filter(|(_, text)| !text.is_empty()) {
+        let number = text.parse().ok();
         let valid = number.filter(|metres: &f64| *metres > 0.0 && metres.is_finite());
-        metres = valid.ok_or_else(|| {
+        metres = Some(valid.ok_or_else(|| {
+            let text = shown::name(text);
             let what = format!("meter is `{text}`: it must be a number above 0");
             document.error(unit, what)
-        })?;
+        })?);
     }
-    let axes = match asset.and_then(|asset| child(asset, "up_axis")) {
-        None => DMat3::IDENTITY,
+    let (axes, up_axis) = match asset.and_then(|asset| child(asset, "up_axis")) {
+        None => (DMat3::IDENTITY, None),
         Some(up_axis) => match document.text(up_axis).trim() {
-            "Y_UP" => DMat3::IDENTITY,
+            "" => (DMat3::IDENTITY, None),
+            "Y_UP" => (DMat3::IDENTITY, Some('y')),
             // Columns: where x, y and z of the document point.
-            "X_UP" => DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z),
-            "Z_UP" => DMat3::from_cols(DVec3::X, -DVec3::Z, DVec3::Y),
+            "X_UP" => (DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z), Some('x')),
+            "Z_UP" => (DMat3::from_cols(DVec3::X, -DVec3::Z, DVec3::Y), Some('z')),
             other => {
+                let other = shown::name(other);
                 let what = format!("the up axis is `{other}`: it must be X_UP, Y_UP or Z_UP");
                 return Err(document.error(up_axis, what));
             }
         },
     };
-    Ok(DMat4::from_mat3(axes * metres))
+    let placement = DMat4::from_mat3(axes * metres.unwrap_or(1.0));
+    Ok((placement, metres, up_axis))
 }

@@ -142,9 +142,14 @@ impl<'r, 'd, 'x> Assembly<'r, 'd, 'x> {
             }
         };
         let determinant = placement.determinant();
-        if determinant == 0.0 || !determinant.is_finite() {
-            let what = "the transforms flatten the geometry or blow it up beyond all numbers";
+        if !determinant.is_finite() {
+            let what = "the transforms blow the geometry up beyond all numbers";
             return Err(self.document.error(instance, what));
+        }
+        // Helpers of exporters and animations that hide something are scaled to nothing.
+        if determinant == 0.0 {
+            self.soup.flat_instances += 1;
+            return Ok(());
         }
         let soup = &mut self.soup;
         if soup.triangles.len() + geometry.triangles.len() > MAX_TRIANGLES

@@ -6,6 +6,17 @@ use roxmltree::Node;
 use super::document::{Document, tag};
 use crate::mesh_file::soup::ReadError;
 
+/// What exporters that calculate in f32 leave of a number that should be 0, or add to one of size 1.
+const ROUNDING: f64 = 1e-6;
+
+/// The sine of angles below which two directions count as one: rounding leaves some 1e-16.
+const IN_LINE: f64 = 1e-12;
+
+/// Of length 1, also where squares of the numbers are too large or too small for f64.
+fn direction(v: DVec3) -> Option<DVec3> {
+    (v / v.abs().max_element()).try_normalize()
+}
+
 /// The matrix of a node's transform elements, from the node's frame to its parent's.
 pub(super) fn of_node<'d, 'x>(
     document: &Document<'d, 'x>,
@@ -25,8 +36,7 @@ fn of_element<'d, 'x>(
     element: Node<'d, 'x>,
 ) -> Result<Option<DMat4>, ReadError> {
     let axis = |x: f64, y: f64, z: f64| {
-        DVec3::new(x, y, z)
-            .try_normalize()
+        direction(DVec3::new(x, y, z))
             .ok_or_else(|| document.error(element, "the axis has no direction"))
     };
     let matrix = match tag(element) {
@@ -46,6 +56,9 @@ fn of_element<'d, 'x>(
             .ok_or_else(|| document.error(element, "eye, point of interest and up are in line"))?,
         "skew" => {
             let [degrees, x1, y1, z1, x2, y2, z2] = document.exactly(element)?;
+            if degrees == 0.0 {
+                return Ok(Some(DMat4::IDENTITY));
+            }
             skew(degrees.to_radians(), axis(x1, y1, z1)?, axis(x2, y2, z2)?)
                 .ok_or_else(|| document.error(element, "the angle must turn between the axes"))?
         }
@@ -59,9 +72,17 @@ pub(super) fn matrix<'d, 'x>(
     document: &Document<'d, 'x>,
     element: Node<'d, 'x>,
 ) -> Result<DMat4, ReadError> {
-    let matrix = DMat4::from_cols_array(&document.exactly(element)?).transpose();
-    if matrix.row(3) != glam::DVec4::W {
+    let mut matrix = DMat4::from_cols_array(&document.exactly(element)?).transpose();
+    let off = (matrix.row(3) - glam::DVec4::W).abs().max_element();
+    if off > ROUNDING {
         return Err(document.error(element, "the last row must be 0 0 0 1"));
+    }
+    for (axis, last) in matrix
+        .as_mut()
+        .chunks_exact_mut(4)
+        .zip(glam::DVec4::W.to_array())
+    {
+        axis[3] = last;
     }
     Ok(matrix)
 }
@@ -69,8 +90,9 @@ pub(super) fn matrix<'d, 'x>(
 /// Stands at the eye, looks along -z at the point of interest; None without a direction.
 fn look_at([ex, ey, ez, ix, iy, iz, ux, uy, uz]: [f64; 9]) -> Option<DMat4> {
     let eye = DVec3::new(ex, ey, ez);
-    let back = (eye - DVec3::new(ix, iy, iz)).try_normalize()?;
-    let right = DVec3::new(ux, uy, uz).cross(back).try_normalize()?;
+    let back = direction(eye - DVec3::new(ix, iy, iz))?;
+    let right = direction(DVec3::new(ux, uy, uz))?.cross(back);
+    let right = (right.length() > IN_LINE).then(|| right.normalize())?;
     let up = back.cross(right);
     Some(DMat4::from_cols(
         right.extend(0.0),
@@ -83,10 +105,11 @@ fn look_at([ex, ey, ez, ix, iy, iz, ux, uy, uz]: [f64; 9]) -> Option<DMat4> {
 /// RenderMan's skew: shifts points along `along` so that `from` turns towards it by the angle.
 fn skew(angle: f64, from: DVec3, along: DVec3) -> Option<DMat4> {
     let cosine = from.dot(along);
-    let across = (from - cosine * along).try_normalize()?;
+    let across = from - cosine * along;
+    let across = (across.length() > IN_LINE).then(|| across.normalize())?;
     let sine = from.dot(across);
     let turned = sine.atan2(cosine) - angle;
-    if !(turned > 0.0 && turned < std::f64::consts::PI) {
+    if !(IN_LINE..std::f64::consts::PI - IN_LINE).contains(&turned) {
         return None;
     }
     // `from` is (cosine, sine) along (`along`, `across`); its shifted image must make the angle
@@ -126,6 +149,11 @@ mod tests {
         assert!((skewed.determinant() - 1.0).abs() < 1e-12);
         assert!(skew(3.0, from, along).is_none());
         assert!(skew(0.1, from, from).is_none());
+        // Up to where the axes become one, but not there, where rounding alone gives a direction.
+        let between = from.angle_between(along);
+        assert!(skew(between, from, along).is_none());
+        assert!(skew(between - 1e-9, from, along).is_some());
+        assert!(skew(0.1, from, (3.0 * from).normalize()).is_none());
     }
 
     #[test]
@@ -133,5 +161,10 @@ mod tests {
         let m = look_at([1.0, 2.0, 3.0, 1.0, 2.0, -4.0, 0.0, 1.0, 0.0]).expect("a direction");
         assert_eq!(m, DMat4::from_translation(DVec3::new(1.0, 2.0, 3.0)));
         assert!(look_at([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]).is_none());
+        assert!(look_at([0.3, 0.6, 0.7, 0.0, 0.0, 0.0, 0.03, 0.06, 0.07]).is_none());
+        for size in [1e-200, 1e200] {
+            let m = look_at([0.0, 0.0, size, 0.0, 0.0, 0.0, 0.0, size, 0.0]).expect("a direction");
+            assert_eq!(m, DMat4::from_translation(DVec3::Z * size));
+        }
     }
 }

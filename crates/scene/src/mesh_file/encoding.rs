@@ -1,0 +1,73 @@
+//! Bytes of text files to UTF-8.
+
+use std::borrow::Cow;
+
+use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE};
+
+use super::soup::ReadError;
+use crate::shown;
+
+/// Text whose byte order mark, if it has one, tells the encoding; other bytes stay as they are.
+pub(super) fn by_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
+    match Encoding::for_bom(bytes) {
+        Some((encoding, length)) if encoding == UTF_8 => Cow::Borrowed(&bytes[length..]),
+        Some((encoding, length)) => {
+            let (text, _) = encoding.decode_without_bom_handling(&bytes[length..]);
+            Cow::Owned(text.into_owned().into_bytes())
+        }
+        None => Cow::Borrowed(bytes),
+    }
+}
+
+/// The text of an XML document: by its byte order mark, by the zeros in its first characters, by
+/// what it declares, or else UTF-8.
+pub(super) fn xml(bytes: &[u8]) -> Result<Cow<'_, str>, ReadError> {
+    let (encoding, bytes) = match Encoding::for_bom(bytes) {
+        Some((encoding, length)) => (encoding, &bytes[length..]),
+        None if bytes.starts_with(b"<\0") => (UTF_16LE, bytes),
+        None if bytes.starts_with(b"\0<") => (UTF_16BE, bytes),
+        None => (declared(bytes)?, bytes),
+    };
+    encoding
+        .decode_without_bom_handling_and_without_replacement(bytes)
+        .ok_or_else(|| match std::str::from_utf8(bytes) {
+            Err(error) if encoding == UTF_8 => {
+                let before = &bytes[..error.valid_up_to()];
+                let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
+                ReadError::at(line, "is not UTF-8 text: save the COLLADA file as UTF-8")
+            }
+            _ => ReadError::new(format!(
+                "is not {} text: save the COLLADA file as UTF-8",
+                encoding.name()
+            )),
+        })
+}
+
+/// The encoding that `<?xml ... encoding="..."?>` names, UTF-8 without one.
+fn declared(bytes: &[u8]) -> Result<&'static Encoding, ReadError> {
+    let head = &bytes[..bytes.len().min(1024)];
+    let head: String = head.iter().map(|&byte| char::from(byte)).collect();
+    let declaration = head
+        .strip_prefix("<?xml")
+        .and_then(|rest| rest.split_once("?>"));
+    let Some(value) = declaration
+        .and_then(|(inside, _)| inside.split_once("encoding"))
+        .and_then(|(_, rest)| rest.trim_start().strip_prefix('='))
+    else {
+        return Ok(UTF_8);
+    };
+    let label = value.trim_start().get(1..).unwrap_or_default();
+    let label = label.split(['"', '\'']).next().unwrap_or_default();
+    match Encoding::for_label(label.as_bytes()) {
+        // The declaration itself would not be read so.
+        Some(encoding) if encoding == UTF_16LE || encoding == UTF_16BE => Ok(UTF_8),
+        Some(encoding) => Ok(encoding),
+        None => Err(ReadError::at(
+            1,
+            format!(
+                "the encoding `{}` is not known: save the COLLADA file as UTF-8",
+                shown::name(label)
+            ),
+        )),
+    }
+}

@@ -1,0 +1,110 @@
+//! Ctrl-C, and how far a long run has come.
+
+use std::io::{IsTerminal, Write, stderr};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+
+use crate::cli::INTERRUPTED;
+use crate::stopwatch::Stopwatch;
+
+/// Whether someone wants the run to end.
+#[derive(Debug, Default)]
+pub struct Interrupt(Arc<AtomicBool>);
+
+impl Interrupt {
+    /// From now on the first signal to end is only noted, and the second ends the program.
+    pub fn listen(&self) -> std::io::Result<()> {
+        for signal in [SIGINT, SIGTERM] {
+            // Asked first, so that it acts on what an earlier signal has noted.
+            flag::register_conditional_shutdown(signal, INTERRUPTED.into(), self.0.clone())?;
+            flag::register(signal, self.0.clone())?;
+        }
+        Ok(())
+    }
+
+    /// Whether a signal came.
+    pub fn came(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// A write beyond the limit of file sizes becomes an error, as on a full disk, instead of the end
+/// of the program.
+pub fn survive_file_limits() {
+    #[cfg(unix)]
+    {
+        // Where this fails the program ends as it would have.
+        let _ = flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+    }
+}
+
+/// The line on a terminal that says how far a run is.
+#[derive(Debug)]
+pub struct Progress {
+    stopwatch: Option<Stopwatch>,
+    total: u64,
+    /// The step to look at the clock after, and how many lie between two looks.
+    next: u64,
+    stride: u64,
+    looked: Duration,
+    shown: Option<Duration>,
+}
+
+impl Progress {
+    /// How long a run may take before it tells how far it is, and from one time to the next.
+    const PAUSE: Duration = Duration::from_millis(500);
+
+    /// Of so many steps; silent where stderr is no terminal.
+    pub fn new(total: u64) -> Progress {
+        Progress {
+            stopwatch: stderr().is_terminal().then(Stopwatch::start),
+            total,
+            next: 1,
+            stride: 1,
+            looked: Duration::ZERO,
+            shown: None,
+        }
+    }
+
+    /// Tells it if it is time to; most calls compare two numbers.
+    pub fn at(&mut self, steps: u64) {
+        if steps < self.next {
+            return;
+        }
+        let Some(stopwatch) = self.stopwatch else {
+            self.next = u64::MAX;
+            return;
+        };
+        let now = stopwatch.read();
+        // Short steps are not slowed by the clock, long ones not left alone.
+        let pause = now - self.looked;
+        self.looked = now;
+        if pause < Self::PAUSE / 16 {
+            self.stride = self.stride.saturating_mul(2);
+        } else if pause > Self::PAUSE / 4 {
+            self.stride = (self.stride / 2).max(1);
+        }
+        self.next = steps.saturating_add(self.stride);
+        if now - self.shown.unwrap_or_default() >= Self::PAUSE {
+            self.shown = Some(now);
+            let percent = 100.0 * steps as f64 / self.total as f64;
+            // Nothing is lost if it cannot be told.
+            let _ = write!(
+                stderr(),
+                "\r{steps} of {} steps, {percent:.1} % ",
+                self.total
+            );
+        }
+    }
+
+    /// Removes the line.
+    pub fn end(&self) {
+        if self.shown.is_some() {
+            let _ = write!(stderr(), "\r\x1b[K");
+        }
+    }
+}
