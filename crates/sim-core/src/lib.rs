@@ -102,4 +102,6 @@ pub use mesh::{Mesh, MeshError, Repairs};
 pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
 pub(crate) use shape::Extent;
 pub use shape::Shape;
-pub use world::{Collision, Impact, Settings, StepError, World, WorldError};
+pub use world::{
+    Bundled, Collision, Impact, RestingContact, Settings, StepError, World, WorldError,
+};

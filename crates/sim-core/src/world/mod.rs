@@ -1,6 +1,7 @@
 //! The running state of a scene.
 
 mod collision;
+mod contacts;
 mod continuous;
 mod discrete;
 mod error;
@@ -27,6 +28,7 @@ use crate::{
     integrate::{Method, Scratch},
 };
 pub use collision::Impact;
+pub use contacts::{Bundled, RestingContact};
 use continuous::{ContactSet, Continuous};
 use discrete::Discrete;
 pub use error::{StepError, WorldError};
@@ -93,6 +95,8 @@ pub struct World {
     placed: Placed,
     steps: u64,
     impacts: u64,
+    contact_steps: u64,
+    bundled: Bundled,
     last_impact: Option<Impact>,
     /// Where impacts are listed, while someone asks.
     report: Option<Vec<Impact>>,
@@ -211,6 +215,8 @@ impl World {
             placed: Placed::default(),
             steps: 0,
             impacts: 0,
+            contact_steps: 0,
+            bundled: Bundled::default(),
             last_impact: None,
             report: None,
             contacts: ContactSet::default(),

@@ -309,6 +309,8 @@ impl World {
         {
             return Err(crushed);
         }
+        let bundled = is_bundled
+            .then(|| self.cost_of_bundling(places, (&before, &velocity), &target, &given, left));
         let is_busy = is_bundled
             && (0..count)
                 .any(|k| held[k] || target[k] < 0.0 && (given[k] > 0.0 || solution.force[k] > 0.0));
@@ -325,10 +327,44 @@ impl World {
             constraint.is_turning = solution.recession[k] > 0.0;
             constraint.ends_at = f64::INFINITY;
         }
+        if let Some((energy, distance)) = bundled {
+            self.bundled.energy += energy;
+            self.bundled.distance = self.bundled.distance.max(distance);
+        }
         if is_busy {
             self.contacts.keep_bundled(&island.bodies);
         }
         Ok(solution)
+    }
+
+    /// The kinetic energy that contacts have taken from bundled bodies, J, and how far ahead of their time
+    /// gaps are closed or what height flights would have had, m.
+    fn cost_of_bundling(
+        &self,
+        places: &Places,
+        (before, after): (&[DVec3], &[DVec3]),
+        target: &[f64],
+        given: &[f64],
+        left: f64,
+    ) -> (f64, f64) {
+        let masses = places.bodies.iter().map(|&body| self.mass[body]);
+        let lost =
+            masses
+                .zip(before.iter().zip(after))
+                .map(|(mass, (v, u))| match mass.is_finite() {
+                    true => 0.5 * mass * (v.length_squared() - u.length_squared()),
+                    false => 0.0,
+                });
+        let distance = |k: usize| match (target[k] < 0.0, given[k]) {
+            (true, pushed) if pushed > 0.0 => -target[k] * left,
+            // Up and down again within the time: a quarter of what its speed would make of it.
+            (false, pulled) if pulled < 0.0 => {
+                0.25 * left * places.joined[k].opening(before).max(0.0)
+            }
+            _ => 0.0,
+        };
+        let farthest = (0..given.len()).map(distance).fold(0.0, f64::max);
+        (lost.sum::<f64>().max(0.0), farthest)
     }
 
     /// That the bodies of a contact are crushed, if immovable bodies of the island move against each other.

@@ -13,7 +13,7 @@ pub(in crate::world) struct ContactConstraint {
     /// Unit normal, from the first body to the second.
     pub(in crate::world) normal: DVec3,
     /// How far apart the bodies are, where it was last looked at, m.
-    pub(super) gap: f64,
+    pub(in crate::world) gap: f64,
     /// Least speed along the normal for the rest of the step, m/s; negative where a gap may close.
     pub(super) target: f64,
     /// Acceleration by which the surface falls away below what slides over it, m/s².
@@ -21,16 +21,16 @@ pub(in crate::world) struct ContactConstraint {
     /// Whether its normal turns below what slides over it.
     pub(super) is_turning: bool,
     /// Speed at which forces would close it in a step, m/s.
-    pub(super) load_speed: f64,
+    pub(in crate::world) load_speed: f64,
     /// When in the step its surface ends or begins to turn, s from the step's start; infinite where
     /// it does not.
     pub(super) ends_at: f64,
     /// Where it was touched, from the first body, m.
-    pub(super) point: DVec3,
+    pub(in crate::world) point: DVec3,
     /// Impulse on the second body along the normal in its last solution, N s.
     pub(super) impulse: f64,
     /// Friction on the second body in its last solution, N.
-    pub(super) friction: DVec3,
+    pub(in crate::world) friction: DVec3,
     /// Whether the bodies overlap: they are kept from moving farther into each other, and nothing
     /// else is known of their surfaces.
     pub(in crate::world) is_overlap: bool,
@@ -151,6 +151,10 @@ impl ContactSet {
 
     pub(super) fn is_bundled(&self, body: usize) -> bool {
         self.bundled.get(body).is_some_and(|&bundled| bundled)
+    }
+
+    pub(super) fn bundled_bodies(&self) -> usize {
+        self.bundled.iter().filter(|&&bundled| bundled).count()
     }
 
     /// Bundles the contacts of some bodies for the rest of the step.

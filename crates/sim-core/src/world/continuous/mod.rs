@@ -36,7 +36,7 @@ use alloc::{collections::BinaryHeap, vec::Vec};
 use core::{cmp::Ordering, mem};
 use glam::DVec3;
 
-use super::{StepError, World, state::State, stepping::Cause};
+use super::{Bundled, StepError, World, state::State, stepping::Cause};
 use crate::{
     Extent, Shape,
     collide::{Broad, Contact, Front, Swept},
@@ -187,6 +187,7 @@ impl World {
             let position = self.previous.position.clone();
             (position, self.overlapping.clone())
         });
+        self.bundled = Bundled::default();
         self.separate_placed();
         self.begin_trajectories();
         let done = self
@@ -208,6 +209,8 @@ impl World {
         }
         self.forget_parted_overlaps();
         self.contacts.end_step();
+        self.contact_steps += u64::from(!self.contacts.is_empty());
+        self.bundled.bodies = self.contacts.bundled_bodies();
         Ok(())
     }
 
