@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use sim_core::{Body, DVec3, Force, Mesh, Method, Settings, Shape, Vec3, World};
 
-pub const GRAVITY: f64 = 9.81;
+pub(crate) const GRAVITY: f64 = 9.81;
 
 /// A world under gravity, stepped by a method at 60 Hz.
-pub fn world(method: &'static Method) -> World {
+pub(crate) fn world(method: &'static Method) -> World {
     let settings = Settings {
         method,
         ..Settings::default()
@@ -21,7 +21,7 @@ pub fn world(method: &'static Method) -> World {
 }
 
 /// A half-space that nothing moves, below a plane through a place.
-pub fn ground(normal: DVec3, position: DVec3) -> Body {
+pub(crate) fn ground(normal: DVec3, position: DVec3) -> Body {
     Body {
         shape: Some(Shape::HalfSpace { normal }),
         position,
@@ -31,12 +31,12 @@ pub fn ground(normal: DVec3, position: DVec3) -> Body {
     }
 }
 
-pub fn ball(radius: f64) -> Shape {
+pub(crate) fn ball(radius: f64) -> Shape {
     Shape::Sphere { radius }
 }
 
 /// A cube of side 1 m about its origin.
-pub fn cube() -> Shape {
+pub(crate) fn cube() -> Shape {
     let corner = |i: i32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) - 0.5;
     let quads: [[u32; 4]; 6] = [
         [0, 4, 6, 2],
@@ -54,7 +54,7 @@ pub fn cube() -> Shape {
     Shape::Mesh(Arc::new(mesh.expect("a cube")))
 }
 
-pub fn step(world: &mut World, steps: u32) {
+pub(crate) fn step(world: &mut World, steps: u32) {
     for _ in 0..steps {
         world.step().expect("a step");
     }

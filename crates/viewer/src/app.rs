@@ -14,7 +14,7 @@ use winit::window::{Window, WindowId};
 
 use crate::failure::Failure;
 use crate::gpu::{Gpu, UiFrame};
-use crate::session::{Done, Job, STEP_BUDGET, Session, State, Trial, Tried};
+use crate::session::{Done, Job, Outlook, STEP_BUDGET, Session, State, Trial, Tried};
 use crate::stopwatch::Stopwatch;
 use crate::ui::{self, Ui};
 use crate::worker::Worker;
@@ -33,6 +33,7 @@ pub fn run(scene: Scene) -> Result<(), Failure> {
         ui: Ui::default(),
         worker: None,
         measurer: None,
+        scout: None,
         stopwatch: Stopwatch::start(),
         proxy: event_loop.create_proxy(),
         open: None,
@@ -57,6 +58,8 @@ struct App {
     worker: Option<Worker<Job, Done>>,
     /// Measures naive against BVH; none while that is off.
     measurer: Option<Worker<Trial, Tried>>,
+    /// Looks ahead for the opening view; none while that is settled.
+    scout: Option<Worker<Outlook, Outlook>>,
     stopwatch: Stopwatch,
     proxy: EventLoopProxy<Redraw>,
     open: Option<Open>,
@@ -170,12 +173,33 @@ impl App {
         }
     }
 
+    /// Lets the opening view of a scene just opened come, never waiting for it.
+    fn look_ahead(&mut self) {
+        if let Some(outlook) = self.session.outlook() {
+            let run = |outlook: Outlook, time: &Stopwatch| outlook.run(|| time.read());
+            self.scout = Worker::start("opening view", run).ok();
+            if let Some(scout) = &mut self.scout {
+                scout.hand_over(outlook);
+            }
+        }
+        let Some(scout) = &mut self.scout else { return };
+        if let Some(seen) = scout.result(Duration::ZERO) {
+            self.session.accept_outlook(&seen);
+            self.scout = None;
+        } else if scout.is_gone() {
+            // The bodies are in view all the same.
+            self.scout = None;
+        }
+    }
+
     /// Lets physics go on, lays out the control panel and paints both.
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
         let now = self.stopwatch.read();
         let elapsed = now.saturating_sub(self.last_frame);
         self.steps(elapsed);
         self.measure(elapsed);
+        self.look_ahead();
+        self.session.notices().pass(elapsed);
         self.last_frame = now;
 
         let Some(open) = &mut self.open else { return };
@@ -211,7 +235,11 @@ impl App {
         let measuring = compare.on && (compare.is_under_way() || self.session.wants_trial());
         if self.session.state() == State::Running && shown {
             self.schedule(now + SHORTEST_FRAME);
-        } else if self.session.state() == State::Running || self.session.awaits_steps() || measuring
+        } else if self.session.state() == State::Running
+            || self.session.awaits_steps()
+            || measuring
+            || self.scout.is_some()
+            || self.session.notices().is_passing()
         {
             self.schedule(now + UNSEEN_FRAME);
         }

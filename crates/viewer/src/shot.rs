@@ -15,6 +15,7 @@ use crate::stopwatch::Stopwatch;
 /// Runs a scene for a number of steps, draws it and writes the file; says what was written.
 pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
     let mut session = Session::new(scene).map_err(Failure::refused)?;
+    session.look_ahead();
     if let Some(name) = &args.select {
         let body = session.scene().bodies.iter().position(|b| b.name == *name);
         if body.is_none() {

@@ -13,8 +13,12 @@ use super::Session;
 
 /// Tests of an edge with a triangle, a few nanoseconds each, beyond which the naive way is not tried.
 const MOST_TESTS: u64 = 2_000_000_000;
-/// A short answer is given again until this much time has gone by, and the mean is taken.
-const MEASURED: Duration = Duration::from_micros(500);
+/// A short answer is given so often that it fills this time, but not more often than that.
+const MEASURED: Duration = Duration::from_micros(100);
+const MOST_ANSWERS: f64 = 200.0;
+/// How often that is done, and the time after which it is not done again.
+const ROUNDS: u32 = 7;
+const PATIENCE: Duration = Duration::from_millis(500);
 /// The least time between two measurements, and the rest after one, in its own duration.
 const LEAST_REST: Duration = Duration::from_millis(200);
 const REST: u32 = 3;
@@ -51,9 +55,9 @@ pub struct Comparison {
 pub enum Contest {
     /// Fewer than two bodies with meshes, or none with the selected one.
     NoPair,
-    /// No two boxes overlap.
-    Apart,
-    /// These two.
+    /// No two boxes overlap; those of these two are nearest each other.
+    Apart(usize, usize),
+    /// The boxes of these two overlap.
     Pair(usize, usize),
 }
 
@@ -129,7 +133,7 @@ impl Trial {
             Cost {
                 boxes: work.boxes,
                 tests: work.tests,
-                seconds: mean(stopwatch, || naive::intersect(first, second, offset)),
+                seconds: least(stopwatch, || naive::intersect(first, second, offset)),
             }
         });
         let work = tree::work(first_tree, second_tree, offset);
@@ -141,7 +145,7 @@ impl Trial {
             tree: Cost {
                 boxes: work.boxes,
                 tests: work.tests,
-                seconds: mean(stopwatch, || {
+                seconds: least(stopwatch, || {
                     tree::intersect(first_tree, second_tree, offset)
                 }),
             },
@@ -150,35 +154,48 @@ impl Trial {
     }
 }
 
-/// Mean time of an answer, s.
-fn mean(stopwatch: &impl Fn() -> Duration, answer: impl Fn() -> bool) -> f64 {
+/// Time of an answer, s: the least of several means, since what disturbs one only adds to it.
+fn least(stopwatch: &impl Fn() -> Duration, answer: impl Fn() -> bool) -> f64 {
     // What comes first pays for cold caches.
-    let began = stopwatch();
-    std::hint::black_box(answer());
-    let first = stopwatch().saturating_sub(began);
-    if first > MEASURED {
-        return first.as_secs_f64();
-    }
-    let (began, mut answers) = (stopwatch(), 0);
-    loop {
-        std::hint::black_box(answer());
-        answers += 1;
-        let time = stopwatch().saturating_sub(began);
-        if time > MEASURED || answers == 200 {
-            return time.as_secs_f64() / f64::from(answers);
+    let (began, first) = timed(stopwatch, &answer, 1);
+    let mut best = first;
+    let answers = if first < MEASURED {
+        let fits = MEASURED.as_secs_f64() / first.as_secs_f64().max(1e-9);
+        fits.clamp(1.0, MOST_ANSWERS) as u32
+    } else {
+        1
+    };
+    for _ in 0..ROUNDS {
+        if stopwatch().saturating_sub(began) > PATIENCE {
+            break;
         }
+        best = best.min(timed(stopwatch, &answer, answers).1);
     }
+    best.as_secs_f64()
+}
+
+/// When some answers began, and the mean time of each.
+fn timed(
+    stopwatch: &impl Fn() -> Duration,
+    answer: &impl Fn() -> bool,
+    answers: u32,
+) -> (Duration, Duration) {
+    let began = stopwatch();
+    for _ in 0..answers {
+        std::hint::black_box(answer());
+    }
+    (began, stopwatch().saturating_sub(began) / answers)
 }
 
 impl Session {
     /// Which two bodies are compared: of those whose boxes overlap, and of which one is selected
-    /// if any body is, the two with the most triangles.
+    /// if any body is, the two with the most triangles; where none overlap, the two nearest.
     pub fn contest(&self) -> Contest {
         let world = &self.world;
         let solid: Vec<usize> = (0..world.len())
             .filter(|&i| world.mesh(i).is_some())
             .collect();
-        let (mut contest, mut most) = (Contest::NoPair, 0);
+        let (mut contest, mut most, mut nearest) = (Contest::NoPair, 0, f64::INFINITY);
         for (n, &i) in solid.iter().enumerate() {
             for &j in &solid[n + 1..] {
                 if self.selection.is_some_and(|s| s != i && s != j) {
@@ -186,12 +203,11 @@ impl Session {
                 }
                 let size = |i| world.mesh(i).map_or(0, |mesh| mesh.triangles().len());
                 let size = size(i) + size(j);
-                if boxes_overlap(world, i, j) {
-                    if size > most {
-                        (contest, most) = (Contest::Pair(i, j), size);
-                    }
-                } else if contest == Contest::NoPair {
-                    contest = Contest::Apart;
+                let gap = boxes_gap(world, i, j);
+                if gap <= 0.0 && size > most {
+                    (contest, most) = (Contest::Pair(i, j), size);
+                } else if most == 0 && gap < nearest {
+                    (contest, nearest) = (Contest::Apart(i, j), gap);
                 }
             }
         }
@@ -207,7 +223,7 @@ impl Session {
         if self.compare.under_way || !self.compare.rest.is_zero() || !self.wants_trial() {
             return None;
         }
-        let Contest::Pair(i, j) = self.contest() else {
+        let (Contest::Pair(i, j) | Contest::Apart(i, j)) = self.contest() else {
             return None;
         };
         self.world.build_bvhs();
@@ -238,7 +254,7 @@ impl Session {
 
     /// Whether the figure is of another moment than now.
     pub fn wants_trial(&self) -> bool {
-        let Contest::Pair(i, j) = self.contest() else {
+        let (Contest::Pair(i, j) | Contest::Apart(i, j)) = self.contest() else {
             return false;
         };
         let offset = self.world.position(j) - self.world.position(i);
@@ -247,12 +263,13 @@ impl Session {
     }
 }
 
-fn boxes_overlap(world: &World, i: usize, j: usize) -> bool {
+/// Distance between two boxes along the axis where it is greatest, m; not above 0 where they overlap.
+fn boxes_gap(world: &World, i: usize, j: usize) -> f64 {
     let (Some(first), Some(second)) = (world.mesh(i), world.mesh(j)) else {
-        return false;
+        return f64::INFINITY;
     };
     let offset = world.position(j) - world.position(i);
     let centres = second.bounds().centre() + offset - first.bounds().centre();
     let reach = first.bounds().half_extent() + second.bounds().half_extent();
-    centres.abs().cmple(reach).all()
+    (centres.abs() - reach).max_element()
 }

@@ -44,6 +44,18 @@ impl Session {
         });
     }
 
+    /// Makes the selected body immovable, or gives it back the mass it had, or 1 kg.
+    pub fn set_immovable(&mut self, immovable: bool) {
+        let Some(i) = self.selection else { return };
+        let name = self.scene.bodies[i].name.clone();
+        if immovable {
+            self.masses.insert(name, self.world.mass(i));
+            self.set_mass(f64::INFINITY);
+        } else {
+            self.set_mass(self.masses.get(&name).copied().unwrap_or(1.0));
+        }
+    }
+
     /// Says which part of the approaching speed the selected body leaves an impact with, 0 to 1.
     pub fn set_restitution(&mut self, restitution: f64) {
         self.edit("restitution", |session, i| {
@@ -138,6 +150,7 @@ impl Session {
                     keep(&mut self.scene.bodies[i]);
                 }
                 self.reference = Reference::of(&self.world);
+                self.playback.begin(&self.world);
             }
             Err(error) => {
                 let text = headless::with_name(&self.scene, i, &error);

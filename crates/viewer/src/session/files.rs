@@ -15,6 +15,7 @@ impl Session {
         match opened.and_then(Session::new) {
             Ok(session) => {
                 let (mut display, edition) = (self.display, self.edition + 1);
+                let opening = self.opening.next();
                 let mut compare = std::mem::take(&mut self.compare);
                 compare.forget();
                 display.trails = session.display.trails;
@@ -22,6 +23,7 @@ impl Session {
                 self.display = display;
                 self.compare = compare;
                 self.edition = edition;
+                self.opening = opening;
                 let path = PathBuf::from(name_or_path);
                 self.file = path.extension().is_some().then_some(path);
             }

@@ -29,6 +29,7 @@ impl Session {
                     self.scene.forces = self.world.forces().to_vec();
                 }
                 self.reference = Reference::of(&self.world);
+                self.playback.begin(&self.world);
             }
             Err(error) => self.notices.error("forces", error.to_string()),
         }

@@ -1,21 +1,16 @@
 //! The room that bodies take up, and the camera that looks at them.
 
 use scene::{SceneBody, SceneShape};
-use sim_core::{Aabb, DVec3, Force, Shape};
+use sim_core::{Aabb, DVec3, Shape};
 
 use super::{Session, State};
 
 /// Largest way that the opening view makes room for, in radii of the body: a bullet would be a
 /// dot in it. Half-spaces farther away are not looked at either.
-const OPENING_REACH: f64 = 8.0;
-/// Depth over width and height below which all is in an upright plane, and where to look at that
-/// from: yaw and pitch, radians.
-const FLAT: f64 = 0.3;
-const FRONT: (f64, f64) = (0.2, 0.16);
-/// How far ahead the opening view looks under forces: simulated time, s, steps, and positions.
-const OPENING_TIME: f64 = 6.4;
-const OPENING_STEPS: f64 = 720.0;
-const OPENING_POSITIONS: f64 = 20_000.0;
+pub(super) const OPENING_REACH: f64 = 8.0;
+
+/// Room below what stands on a new half-space, in sizes of all bodies: more than rounding.
+const STAND: f64 = 1e-9;
 
 /// A body's box about its position, m; that of points and half-spaces has no size.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,80 +53,8 @@ impl Session {
         Some(DVec3::new(middle.x, max.y, middle.z))
     }
 
-    /// Looks at all bodies with room around them, or at a single one and where it goes next, so
-    /// that nothing leaves the first view at once.
-    pub(super) fn frame_opening(&mut self) {
-        if !self.world.forces().is_empty() {
-            return self.frame_motion();
-        }
-        let mut bodies = (0..self.world.len()).filter(|&i| !self.is_half_space(i));
-        let Some(body) = bodies.next() else {
-            return self.frame();
-        };
-        let (centre, radius) = self.room();
-        if self.world.len() > 1 {
-            return self.camera.frame(centre, 1.2 * radius);
-        }
-        let velocity = self.world.velocity(body);
-        let acceleration = self.world.force(body) / self.world.mass(body);
-        let (mut min, mut max) = (centre - radius, centre + radius);
-        for time in [0.5, 1.0, 1.5, 2.0, 2.5, 3.0] {
-            let way = velocity * time + acceleration * (0.5 * time * time);
-            let there = centre + way.clamp_length_max(OPENING_REACH * radius);
-            (min, max) = (min.min(there - radius), max.max(there + radius));
-        }
-        let ball = (max - min).length() / 2.0;
-        self.camera.frame((min + max) / 2.0, ball);
-    }
-
-    /// Looks at where forces will take the bodies next. What falls below the lowest start is let go.
-    fn frame_motion(&mut self) {
-        let Some((low, high)) = self.world_box() else {
-            return;
-        };
-        let (low, high) = self.with_feet(low, high);
-        let has_weight = |force: &Force| matches!(force, Force::Gravity { .. });
-        let falls = self.world.forces().iter().any(has_weight);
-        let size = (high - low).max_element();
-        let (mut min, mut max) = (low, high);
-        for force in self.world.forces() {
-            if let Force::Anchor { anchor: point, .. } | Force::Attraction { centre: point, .. } =
-                *force
-            {
-                (min, max) = (min.min(point), max.max(point));
-            }
-        }
-        let mut ahead = self.world.clone();
-        let steps = (OPENING_TIME / ahead.settings().dt).min(OPENING_STEPS);
-        let steps = steps.min(OPENING_POSITIONS / self.world.len().max(1) as f64);
-        for _ in 0..steps as u32 {
-            if ahead.step().is_err() {
-                break;
-            }
-            for i in 0..ahead.len() {
-                let at = ahead.position(i);
-                if self.is_half_space(i) || falls && at.y < low.y {
-                    continue;
-                }
-                let at = at.clamp(low - OPENING_REACH * size, high + OPENING_REACH * size);
-                let half = self.bounds(i).half;
-                (min, max) = (min.min(at - half), max.max(at + half));
-            }
-        }
-        let (size, middle) = (max - min, 0.5 * (min + max));
-        if size.z < FLAT * size.x.max(size.y) {
-            // Motion in an upright plane is looked at nearly from the front.
-            (self.camera.yaw, self.camera.pitch) = FRONT;
-        }
-        let mut radius = (0.47 * size.length()).max(1e-3);
-        if (0..self.world.len()).any(|i| self.is_half_space(i)) {
-            radius = radius.max(1.1 * self.room().1);
-        }
-        self.camera.frame(middle, radius);
-    }
-
     /// A place for `body` that touches nothing: beside all others along x, at their height, or for
-    /// a half-space through the origin or else behind them all.
+    /// a half-space through the origin or else just behind them all.
     pub(super) fn free_place(&self, body: &SceneBody) -> DVec3 {
         let Some((min, max)) = self.world_box() else {
             return DVec3::ZERO;
@@ -141,11 +64,10 @@ impl Session {
             SceneShape::HalfSpace { normal } => {
                 let normal = normal.normalize_or_zero();
                 let lowest = (middle - 0.5 * normal.signum() * (max - min)).dot(normal);
-                return if lowest > 0.0 {
-                    DVec3::ZERO
-                } else {
-                    (lowest - 0.1) * normal
-                };
+                // Through the origin, or where what reaches behind it stands on it; with zeros that
+                // have no sign.
+                let gap = STAND * (max - min).max_element().max(lowest.abs());
+                return (lowest - gap).min(0.0) * normal + DVec3::ZERO;
             }
             SceneShape::Sphere { radius } => *radius,
             // However it is turned.
@@ -159,7 +81,7 @@ impl Session {
     }
 
     /// Box of all bodies as drawn, but for half-spaces.
-    fn world_box(&self) -> Option<(DVec3, DVec3)> {
+    pub(super) fn world_box(&self) -> Option<(DVec3, DVec3)> {
         (0..self.world.len())
             .filter(|&i| !self.is_half_space(i))
             .map(|i| self.body_box(i))
@@ -219,7 +141,7 @@ impl Session {
     }
 
     /// A box grown to where its middle stands on the half-spaces near it, as they were set up.
-    fn with_feet(&self, min: DVec3, max: DVec3) -> (DVec3, DVec3) {
+    pub(super) fn with_feet(&self, min: DVec3, max: DVec3) -> (DVec3, DVec3) {
         let middle = 0.5 * (min + max);
         let reach = OPENING_REACH * (max - min).length();
         (0..self.world.len())

@@ -26,8 +26,8 @@ pub(super) struct Impacts(VecDeque<Impact>);
 
 impl Impacts {
     /// Takes in those of some steps, and forgets what has faded by `now`, s.
-    pub(super) fn extend(&mut self, impacts: Vec<Impact>, now: f64) {
-        self.0.extend(impacts);
+    pub(super) fn extend(&mut self, impacts: &[Impact], now: f64) {
+        self.0.extend(impacts.iter().cloned());
         let beyond = self.0.len().saturating_sub(MOST);
         self.0.drain(..beyond);
         self.0.retain(|impact| now - impact.time < SHOWN);

@@ -7,9 +7,10 @@
 
 use std::time::Duration;
 
-use sim_core::{DVec3, Impact, StepError, World};
+use sim_core::{DVec3, StepError, World};
 
-use super::{Session, State, impacts, trails};
+use super::playback::Moment;
+use super::{Impacts, MAX_RATE, MIN_RATE, Remedy, Session, State, Trails, impacts, trails};
 use crate::headless;
 
 /// Real time that the steps of one frame may take before the rest of them is given up: leaves
@@ -23,8 +24,6 @@ pub struct Job {
     steps: u32,
     /// Positions are to be noted after each step.
     traced: bool,
-    /// Impacts are to be listed.
-    reported: bool,
     edition: u64,
 }
 
@@ -37,7 +36,7 @@ pub struct Done {
     time: Duration,
     error: Option<StepError>,
     trace: Vec<DVec3>,
-    impacts: Vec<Impact>,
+    moments: Vec<Moment>,
     edition: u64,
 }
 
@@ -47,14 +46,16 @@ impl Job {
     pub fn run(mut self, stopwatch: impl Fn() -> Duration) -> Done {
         let began = stopwatch();
         let (mut taken, mut time, mut error) = (0, Duration::ZERO, None);
-        let (mut trace, mut impacts) = (Vec::new(), Vec::new());
+        let (mut trace, mut moments) = (Vec::new(), Vec::new());
         while taken < self.steps && time <= STEP_BUDGET && error.is_none() {
-            error = match self.reported {
-                true => self.world.step_reporting(&mut impacts).err(),
-                false => self.world.step().err(),
-            };
+            let mut impacts = Vec::new();
+            error = self.world.step_reporting(&mut impacts).err();
             impacts.drain(..impacts.len().saturating_sub(impacts::MOST));
             taken += u32::from(error.is_none());
+            if error.is_none() {
+                let world = self.world.clone();
+                moments.push(Moment { world, impacts });
+            }
             if self.traced && error.is_none() {
                 trace.extend(trails::positions(&self.world));
             }
@@ -67,7 +68,7 @@ impl Job {
             time,
             error,
             trace,
-            impacts,
+            moments,
             edition: self.edition,
         }
     }
@@ -85,8 +86,8 @@ impl Session {
             }
             State::Running => {
                 self.figures.frame.add(elapsed);
-                let dropped = self.clock.advance(elapsed);
-                self.figures.fell_behind(dropped);
+                let dropped = self.clock.advance(elapsed.mul_f64(self.speed));
+                self.figures.fell_behind(dropped.div_f64(self.speed));
                 let mut steps = 0;
                 while self.clock.take() {
                     steps += 1;
@@ -107,7 +108,6 @@ impl Session {
                 world: std::mem::replace(&mut self.world, copy),
                 steps,
                 traced: self.display.trails,
-                reported: self.display.impacts,
                 edition: self.edition,
             }
         })
@@ -128,10 +128,13 @@ impl Session {
         if self.display.trails {
             self.trails.extend(&done.trace);
         }
-        self.impacts.extend(done.impacts, self.world.time());
+        for moment in &done.moments {
+            self.impacts.extend(&moment.impacts, self.world.time());
+        }
+        self.playback.extend(done.moments);
         match done.error {
             None if self.state == State::Running => {
-                let left = f64::from(done.due - done.taken) * self.clock.dt();
+                let left = f64::from(done.due - done.taken) * self.clock.dt() / self.speed;
                 self.figures
                     .fell_behind(Duration::try_from_secs_f64(left).unwrap_or_default());
             }
@@ -141,7 +144,44 @@ impl Session {
                 self.select(Some(error.body()));
                 self.notices
                     .error("step", headless::step_error(&self.scene, &error));
+                if let Some(rate) = stable_rate(&error) {
+                    self.notices.offer("step", Remedy::Rate(rate));
+                }
             }
+        }
+    }
+
+    /// Holds still at a state that has been kept.
+    pub fn go_to(&mut self, index: usize) {
+        self.pause();
+        self.disown_jobs();
+        let Some(moment) = self.playback.go_to(index) else {
+            return;
+        };
+        self.world = moment.world.clone();
+        let now = self.world.time();
+        self.impacts = Impacts::default();
+        for moment in self.playback.past() {
+            self.impacts.extend(&moment.impacts, now);
+        }
+        if self.display.trails {
+            self.trails = Trails::default();
+            for (n, moment) in self.playback.past().enumerate() {
+                match n {
+                    0 => self.trails.begin(&moment.world),
+                    _ => {
+                        let positions: Vec<DVec3> = trails::positions(&moment.world).collect();
+                        self.trails.extend(&positions);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Holds still and goes to the state before, if it is kept.
+    pub fn step_back(&mut self) {
+        if self.state != State::Layout {
+            self.go_to(self.playback.now().saturating_sub(1));
         }
     }
 
@@ -156,4 +196,18 @@ impl Session {
         self.under_way = false;
         self.steps_wanted = 0;
     }
+}
+
+/// The least whole rate, Hz, of two digits at which the method is stable, if there is one on offer.
+fn stable_rate(error: &StepError) -> Option<f64> {
+    let dt = match *error {
+        StepError::Unstable { stable_dt, .. } => stable_dt,
+        StepError::OutOfRange { stable_dt, .. } => stable_dt?,
+        _ => return None,
+    };
+    let least = 1.0 / dt;
+    let digit = 10_f64.powf(least.log10().floor() - 1.0).max(1.0);
+    // A whole rate that is just that of the limit loses nothing by rounding.
+    let rate = (least * (1.0 - 1e-9) / digit).ceil() * digit;
+    (MIN_RATE..=MAX_RATE).contains(&rate).then_some(rate)
 }

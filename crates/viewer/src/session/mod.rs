@@ -19,8 +19,10 @@ mod framing;
 mod impacts;
 mod job;
 mod notice;
+mod opening;
 mod pick;
 mod picture;
+mod playback;
 #[cfg(test)]
 mod tests;
 mod ties;
@@ -37,20 +39,26 @@ pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
 pub use figures::{Drift, Figures, Reference};
 use impacts::Impacts;
 pub use job::{Done, Job, STEP_BUDGET};
-pub use notice::{Notice, Notices};
+pub use notice::{Notice, Notices, Remedy};
+use opening::Opening;
+pub use opening::Outlook;
 pub use picture::{BvhView, Display};
+pub use playback::Playback;
 use trails::Trails;
 
 use crate::camera::Camera;
 
 /// Slowest rate offered, in steps per second of simulated time.
-pub const MIN_RATE: f64 = 5.0;
+pub const MIN_RATE: f64 = 1.0;
 /// Fastest rate offered, in steps per second of simulated time.
-pub const MAX_RATE: f64 = 240.0;
+pub const MAX_RATE: f64 = 100_000.0;
 
 /// Real time of one frame that may be caught up with; what exceeds it is dropped, so that a
 /// window that was held still for ten seconds does not have to simulate ten seconds at once.
 const CATCH_UP: Duration = Duration::from_millis(250);
+
+/// Simulated seconds in a real one that are offered.
+pub const SPEEDS: std::ops::RangeInclusive<f64> = 1e-3..=10.0;
 
 /// Bodies up to which their trails are shown at first.
 const MOST_TRAILS: usize = 20;
@@ -78,6 +86,12 @@ pub struct Session {
     trails: Trails,
     impacts: Impacts,
     balls: Balls,
+    opening: Opening,
+    playback: Playback,
+    /// Simulated seconds in a real one.
+    speed: f64,
+    /// Masses of bodies made immovable, kg, by name: what they get back.
+    masses: std::collections::BTreeMap<String, f64>,
     selection: Option<usize>,
     /// Steps are being taken on a copy of the world.
     under_way: bool,
@@ -99,7 +113,7 @@ impl Session {
     /// A session in the layout state that looks at the whole of `scene` and where it goes.
     pub fn new(scene: Scene) -> anyhow::Result<Self> {
         let world = scene.world()?;
-        let clock = FixedStep::new(scene.dt, CATCH_UP)?;
+        let clock = clock(scene.dt, 1.0)?;
         let mut session = Self {
             reference: Reference::of(&world),
             scene,
@@ -111,6 +125,10 @@ impl Session {
             trails: Trails::default(),
             impacts: Impacts::default(),
             balls: Balls::default(),
+            opening: Opening::default(),
+            playback: Playback::default(),
+            speed: 1.0,
+            masses: std::collections::BTreeMap::new(),
             selection: None,
             under_way: false,
             steps_wanted: 0,
@@ -123,6 +141,7 @@ impl Session {
         // Where paths are curved, they show what a method does; those of a crowd hide it.
         let few = session.world.len() <= MOST_TRAILS;
         session.show_trails(few && !session.scene.forces.is_empty());
+        session.playback.begin(&session.world);
         session.frame_opening();
         Ok(session)
     }
@@ -150,6 +169,27 @@ impl Session {
     /// How far energy and momentum are from where they should be.
     pub fn drift(&self) -> Drift {
         self.reference.drift(&self.world)
+    }
+
+    /// The states kept of this run.
+    pub fn playback(&self) -> &Playback {
+        &self.playback
+    }
+
+    /// Simulated seconds in a real one.
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Lets simulated time go faster or slower than real time; beyond [`SPEEDS`] the nearest of
+    /// these.
+    pub fn set_speed(&mut self, speed: f64) {
+        let speed = speed.clamp(*SPEEDS.start(), *SPEEDS.end());
+        if speed.is_finite()
+            && let Ok(clock) = clock(self.world.settings().dt, speed)
+        {
+            (self.speed, self.clock) = (speed, clock);
+        }
     }
 
     /// Messages to the person, newest last.
@@ -196,8 +236,11 @@ impl Session {
         }
     }
 
-    /// Holds still and makes one more step due.
+    /// Holds still and makes one more step due, or goes to the next state kept.
     pub fn step_once(&mut self) {
+        if self.playback.is_back() {
+            return self.go_to(self.playback.now() + 1);
+        }
         match self.state {
             State::Layout => self.begin(),
             State::Running => self.pause(),
@@ -210,7 +253,11 @@ impl Session {
     /// Returns to the layout state: every body as it was set up, time 0.
     pub fn reset(&mut self) {
         match self.scene.world() {
-            Ok(world) => self.adopt(world),
+            Ok(world) => {
+                // What was refused or failed belongs to what is left behind.
+                self.notices.clear();
+                self.adopt(world);
+            }
             Err(error) => self.notices.error("reset", error.to_string()),
         }
     }
@@ -223,9 +270,14 @@ impl Session {
         });
     }
 
-    /// Changes how many steps make one simulated second, at any time. Rates that are not
-    /// finite and positive, or too extreme for the clock, are refused.
+    /// Changes how many steps make one simulated second, at any time. Rates outside of
+    /// [`MIN_RATE`] to [`MAX_RATE`] are refused.
     pub fn set_rate(&mut self, rate: f64) {
+        if !(MIN_RATE..=MAX_RATE).contains(&rate) {
+            let text = format!("The rate goes from {MIN_RATE} to {MAX_RATE} Hz, not {rate}.");
+            self.notices.error("settings", text);
+            return;
+        }
         self.set_settings(Settings {
             dt: 1.0 / rate,
             ..*self.world.settings()
@@ -262,12 +314,13 @@ impl Session {
     }
 
     fn try_settings(&mut self, settings: Settings) -> anyhow::Result<()> {
-        let clock = FixedStep::new(settings.dt, CATCH_UP)?;
+        let clock = clock(settings.dt, self.speed)?;
         self.world.set_settings(settings)?;
         self.disown_jobs();
         if settings.dt != self.clock.dt() {
             self.clock = clock;
         }
+        self.playback.begin(&self.world);
         Ok(())
     }
 
@@ -285,6 +338,7 @@ impl Session {
         self.figures = Figures::default();
         self.compare.forget();
         self.impacts = Impacts::default();
+        self.playback.begin(&self.world);
         self.notices.dismiss("step");
         if self.display.trails {
             self.trails.begin(&self.world);
@@ -298,4 +352,9 @@ impl Session {
         self.select(self.selection);
         self.begin();
     }
+}
+
+/// A clock that lets as much real time wait at every speed.
+fn clock(dt: f64, speed: f64) -> Result<FixedStep, sim_core::ClockError> {
+    FixedStep::new(dt, CATCH_UP.mul_f64(speed.max(1.0)))
 }

@@ -1,9 +1,10 @@
 //! Messages to the person at the window.
 
 use scene::shown;
+use std::time::Duration;
 
 /// One message.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
     /// What it is about; a newer message about the same thing takes its place.
     pub about: &'static str,
@@ -11,6 +12,17 @@ pub struct Notice {
     pub error: bool,
     /// The message.
     pub text: String,
+    /// What would set it right, if one change does.
+    pub remedy: Option<Remedy>,
+    /// Real time since it came.
+    age: Duration,
+}
+
+/// A change of the settings that the person can agree to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Remedy {
+    /// Steps per second of simulated time.
+    Rate(f64),
 }
 
 /// The messages still shown, newest last.
@@ -19,6 +31,8 @@ pub struct Notices(Vec<Notice>);
 
 /// Messages shown at once; older ones make room.
 const SHOWN: usize = 4;
+/// How long a success is told.
+const STAY: Duration = Duration::from_secs(5);
 
 impl Notices {
     /// Tells of a success.
@@ -27,6 +41,8 @@ impl Notices {
             about,
             error: false,
             text: shown::message(&text),
+            remedy: None,
+            age: Duration::ZERO,
         });
     }
 
@@ -36,6 +52,8 @@ impl Notices {
             about,
             error: true,
             text: shown::message(&text),
+            remedy: None,
+            age: Duration::ZERO,
         });
     }
 
@@ -47,6 +65,32 @@ impl Notices {
     /// Forgets what was said about something.
     pub fn dismiss(&mut self, about: &str) {
         self.0.retain(|notice| notice.about != about);
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Offers to set right what the message about `about` tells.
+    pub fn offer(&mut self, about: &str, remedy: Remedy) {
+        let mut notices = self.0.iter_mut();
+        if let Some(notice) = notices.find(|notice| notice.about == about) {
+            notice.remedy = Some(remedy);
+        }
+    }
+
+    /// Lets real time pass: successes go by themselves.
+    pub fn pass(&mut self, elapsed: Duration) {
+        for notice in &mut self.0 {
+            notice.age += elapsed;
+        }
+        self.0.retain(|notice| notice.error || notice.age < STAY);
+    }
+
+    /// Whether one will go by itself.
+    pub fn is_passing(&self) -> bool {
+        self.0.iter().any(|notice| !notice.error)
     }
 
     fn push(&mut self, notice: Notice) {

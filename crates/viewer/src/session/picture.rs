@@ -16,7 +16,7 @@ const SLATE: [f32; 3] = [0.40, 0.45, 0.52];
 pub struct BvhView {
     /// Whether any are.
     pub shown: bool,
-    /// Of every body rather than of the selected one.
+    /// Of every body rather than of the selected one; where none is selected, of every one anyway.
     pub every_body: bool,
     /// All depths rather than [`depth`](Self::depth) alone.
     pub every_depth: bool,
@@ -95,7 +95,8 @@ impl Session {
             if selected || self.display.all_velocities {
                 picture.arrows.extend(self.velocity_arrow(i));
             }
-            if self.display.bvh.shown && (selected || self.display.bvh.every_body) {
+            let all = self.display.bvh.every_body || self.selection.is_none();
+            if self.display.bvh.shown && (selected || all) {
                 self.add_boxes(i, &mut picture.lines);
             }
             if self.display.trails {

@@ -8,6 +8,8 @@ use sim_core::{Collision, DVec3, METHODS};
 use super::{STEP_BUDGET, Session, State};
 
 mod forces;
+mod opening;
+mod playback;
 mod shapes;
 
 const FRAME: Duration = Duration::from_millis(17);
@@ -312,7 +314,7 @@ fn refused_values_change_nothing_and_are_explained() {
 #[test]
 fn senseless_rates_are_refused() {
     let mut session = session();
-    for rate in [0.0, -60.0, f64::NAN, f64::INFINITY, 1e300] {
+    for rate in [0.0, -60.0, 0.5, f64::NAN, f64::INFINITY, 1e6, 1e300] {
         session.set_rate(rate);
         assert!(complaint(&mut session, "settings").is_some(), "{rate}");
         assert_eq!(session.world().settings().dt, 1.0 / 60.0);
@@ -320,6 +322,41 @@ fn senseless_rates_are_refused() {
     session.start();
     advance(&mut session, FRAME, free());
     assert_eq!(session.world().steps(), 1);
+    for rate in [1.0, 1000.0, 100_000.0] {
+        session.set_rate(rate);
+        assert_eq!(session.world().settings().dt, 1.0 / rate);
+        assert_eq!(complaint(&mut session, "settings"), None);
+    }
+}
+
+#[test]
+fn a_body_made_immovable_gets_its_mass_back() {
+    let mut session = session();
+    session.select(Some(1));
+    session.set_immovable(true);
+    assert_eq!(session.world().mass(1), f64::INFINITY);
+    session.set_immovable(false);
+    assert_eq!(session.world().mass(1), 3.0);
+}
+
+#[test]
+fn successes_go_by_themselves_and_failures_with_a_reset() {
+    let mut session = session();
+    session.select(Some(0));
+    session.delete_selected();
+    session.open("no such scene");
+    assert_eq!(session.notices().iter().count(), 2);
+    session.notices().pass(Duration::from_secs(4));
+    assert!(session.notices().is_passing());
+    session.notices().pass(Duration::from_secs(4));
+    let left: Vec<&str> = session
+        .notices()
+        .iter()
+        .map(|notice| notice.about)
+        .collect();
+    assert_eq!(left, ["open"]);
+    session.reset();
+    assert_eq!(session.notices().iter().count(), 0);
 }
 
 #[test]
@@ -412,7 +449,7 @@ fn boxes_follow_the_chosen_bodies_and_depths() {
     let mut session = session();
     session.display.bvh.shown = true;
     session.display.bvh.depth = 0;
-    assert!(session.picture().lines.is_empty(), "none is selected");
+    assert_eq!(session.picture().lines.len(), 24, "none is selected");
     session.select(Some(0));
     assert_eq!(session.picture().lines.len(), 12);
     session.display.bvh.every_body = true;

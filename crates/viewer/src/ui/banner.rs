@@ -3,10 +3,11 @@
 use egui::{Area, Button, Frame, RichText, Stroke};
 
 use super::style;
-use crate::session::Session;
+use crate::number;
+use crate::session::{Remedy, Session};
 
 pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session) {
-    let mut dismissed = None;
+    let (mut dismissed, mut agreed) = (None, None);
     Area::new(egui::Id::unique("notices"))
         .order(egui::Order::Foreground)
         .fixed_pos(over.left_top() + egui::vec2(10.0, 10.0))
@@ -28,9 +29,20 @@ pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session)
                             }
                             ui.add(egui::Label::new(&notice.text).wrap());
                         });
+                        if let Some(Remedy::Rate(rate)) = notice.remedy {
+                            let text = format!("Reset, and step at {} Hz", number::count(rate));
+                            let button = ui.button(text);
+                            if button.clicked() {
+                                agreed = notice.remedy;
+                            }
+                        }
                     });
             }
         });
+    if let Some(Remedy::Rate(rate)) = agreed {
+        session.reset();
+        session.set_rate(rate);
+    }
     if let Some(about) = dismissed {
         session.notices().dismiss(about);
     }

@@ -120,7 +120,7 @@ fn mass_and_restitution(ui: &mut egui::Ui, session: &mut Session, mass: f64, res
             )
             .changed();
         if changed {
-            session.set_mass(if immovable { f64::INFINITY } else { 1.0 });
+            session.set_immovable(immovable);
         }
     });
     ui.horizontal(|ui| {

@@ -66,7 +66,7 @@ fn boxes(ui: &mut egui::Ui, session: &mut Session) {
         ui.selectable_value(&mut view.every_body, true, "every body");
     });
     if nothing {
-        ui.label(RichText::new("No body is selected.").weak());
+        ui.label(RichText::new("No body is selected: boxes of every body.").weak());
     }
     ui.horizontal(|ui| {
         field::label(

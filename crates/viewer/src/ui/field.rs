@@ -71,17 +71,62 @@ pub(super) fn figure(ui: &mut egui::Ui, name: &str, meaning: &str, value: impl I
     });
 }
 
+/// What was typed into a field since the last call and is no number, as a message.
+pub(super) fn take_refused(ctx: &egui::Context) -> Option<String> {
+    let typed = ctx.data_mut(|data| data.remove_temp::<String>(refused_id()))?;
+    Some(format!(
+        "\"{typed}\" is not a number: write it like 1.5 or -2e-3."
+    ))
+}
+
+fn refused_id() -> egui::Id {
+    egui::Id::unique("refused number")
+}
+
 /// A number that changes when typing ends rather than at each key, so that a mass of 0.5 can be
 /// typed although 0 is refused.
 fn number(ui: &mut egui::Ui, value: &mut f64, width: f32) -> egui::Response {
     let speed = 0.01 * value.abs().clamp(0.1, 1e9);
-    ui.add_sized(
+    let refused = std::cell::RefCell::new(None);
+    let response = ui.add_sized(
         [width, ui.spacing().interact_size.y],
         DragValue::new(value)
             .speed(speed)
             .max_decimals(4)
+            .custom_formatter(|value, decimals| shown(value, *decimals.end()))
+            .custom_parser(|typed| {
+                let number = parsed(typed);
+                if number.is_none() {
+                    refused.replace(Some(typed.to_owned()));
+                }
+                number
+            })
             .update_while_editing(false),
-    )
+    );
+    if let Some(typed) = refused.take() {
+        ui.data_mut(|data| data.insert_temp(refused_id(), typed));
+    }
+    response
+}
+
+/// A number as a field shows it, never wider than the field for long.
+fn shown(value: f64, decimals: usize) -> String {
+    // No zero has a sign, nor has what is rounded to it.
+    let value = value + 0.0;
+    if value.abs() >= 1e6 || value != 0.0 && value.abs() < 1e-3 {
+        return format!("{value:.2e}");
+    }
+    let text = format!("{value:.decimals$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
+/// The number that was typed, if it is one; a minus may be typographic.
+fn parsed(typed: &str) -> Option<f64> {
+    let number: f64 = typed.trim().replace('\u{2212}', "-").parse().ok()?;
+    (!number.is_nan()).then_some(number)
 }
 
 fn titled(name: &str, unit: &str) -> String {
@@ -89,5 +134,37 @@ fn titled(name: &str, unit: &str) -> String {
         name.to_owned()
     } else {
         format!("{name}, {unit}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{parsed, shown};
+
+    #[test]
+    fn what_is_typed_is_a_number_or_refused() {
+        assert_eq!(parsed(" 1.5 "), Some(1.5));
+        assert_eq!(parsed("\u{2212}2e-3"), Some(-2e-3));
+        assert_eq!(parsed("inf"), Some(f64::INFINITY));
+        for typed in ["nan", "NaN", "hello", "1,5", "2*3", ""] {
+            assert_eq!(parsed(typed), None, "{typed}");
+        }
+    }
+
+    #[test]
+    fn fields_show_every_number_in_little_room() {
+        let cases = [
+            (1.0, "1"),
+            (-0.0, "0"),
+            (0.25, "0.25"),
+            (100.0, "100"),
+            (-12.3456789, "-12.3457"),
+            (1e300, "1.00e300"),
+            (6562773022.0, "6.56e9"),
+            (-2e-9, "-2.00e-9"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(shown(value, 4), text);
+        }
     }
 }

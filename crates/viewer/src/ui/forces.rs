@@ -8,17 +8,17 @@ use crate::session::{Session, State};
 
 pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     let stopped = session.state() != State::Running;
-    ui.label(RichText::new("Beside the constant force of each body.").weak());
-    if !stopped {
-        ui.label(RichText::new("Pause to change them.").weak());
-    }
+    // One line in every state, so that what is below stays where it is.
+    let about = match session.state() {
+        State::Layout => "Beside the constant force of each body.",
+        State::Running => "Pause to change them.",
+        State::Paused => "Edits last until Reset.",
+    };
+    ui.label(RichText::new(about).weak());
     ui.add_enabled_ui(stopped, |ui| {
         list(ui, session);
         add(ui, session);
     });
-    if session.state() == State::Paused {
-        ui.label(RichText::new("Edits last until Reset.").weak());
-    }
 }
 
 fn list(ui: &mut egui::Ui, session: &mut Session) {

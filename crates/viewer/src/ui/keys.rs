@@ -14,7 +14,7 @@ struct Shortcut {
     act: fn(&mut Ui, &mut Session, Key),
 }
 
-static SHORTCUTS: [Shortcut; 12] = [
+static SHORTCUTS: [Shortcut; 14] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
@@ -26,6 +26,18 @@ static SHORTCUTS: [Shortcut; 12] = [
         label: "Right or .",
         meaning: "single step",
         act: |_, session, _| session.step_once(),
+    },
+    Shortcut {
+        keys: &[Key::ArrowLeft, Key::Comma],
+        label: "Left or ,",
+        meaning: "step back",
+        act: |_, session, _| session.step_back(),
+    },
+    Shortcut {
+        keys: &[Key::PageDown],
+        label: "Page down",
+        meaning: "five steps",
+        act: |_, session, _| super::time::five_steps(session),
     },
     Shortcut {
         keys: &[Key::R],

@@ -16,6 +16,7 @@ mod live;
 mod scene;
 mod simulation;
 mod style;
+mod time;
 mod viewport;
 
 use egui::{CollapsingHeader, Panel, RichText, ScrollArea};
@@ -45,8 +46,12 @@ impl Ui {
         keys::handle(root.ctx(), self, session);
         bar::show(root, self, session);
         keys::show_line(root);
+        time::show(root, session);
         if !self.panel_hidden {
             self.side_panel(root, session);
+        }
+        if let Some(text) = field::take_refused(root.ctx()) {
+            session.notices().error("number", text);
         }
         let rect = viewport::show(root, session, picture);
         if !self.live_hidden {

@@ -40,13 +40,17 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         field::label(ui, "Rate", "Steps per second of simulated time");
         let mut rate = 1.0 / now.dt;
         let slider = Slider::new(&mut rate, MIN_RATE..=MAX_RATE)
-            .clamping(egui::SliderClamping::Edits)
+            .logarithmic(true)
+            .clamping(egui::SliderClamping::Never)
             .suffix(" Hz")
             .max_decimals(1)
             .step_by(1.0);
         if ui
             .add(slider)
-            .on_hover_text(format!("One step is {}", number::seconds(now.dt)))
+            .on_hover_text(format!(
+                "One step is {}. From {MIN_RATE} to {MAX_RATE} Hz; click the number to type.",
+                number::seconds(now.dt)
+            ))
             .changed()
         {
             session.set_rate(rate);

@@ -6,7 +6,7 @@ use std::time::Duration;
 use scene::Scene;
 use sim_core::{DVec3, Force, Method};
 
-use super::super::{Contest, Session, State};
+use super::super::{Contest, Remedy, Session, State};
 use super::{FRAME, advance, complaint, free, positions, session, slow};
 
 /// A gallery scene.
@@ -15,17 +15,21 @@ fn gallery(name: &str) -> Session {
 }
 
 #[test]
-fn naive_and_bvh_are_compared_where_boxes_overlap_and_only_on_request() {
+fn naive_and_bvh_are_compared_near_and_apart_and_only_on_request() {
     let mut session = session();
     assert!(session.trial_due(FRAME).is_none(), "off by default");
     session.compare.on = true;
-    assert_eq!(session.contest(), Contest::Apart);
-    assert!(session.trial_due(FRAME).is_none(), "boxes are apart");
+    assert_eq!(session.contest(), Contest::Apart(0, 1));
+    let trial = session.trial_due(FRAME).expect("apart, it costs as well");
+    session.accept_trial(trial.run(slow(Duration::from_millis(1))));
+    let apart = *session.compare.last().expect("a figure");
+    assert!(!apart.meet && apart.naive.is_some_and(|cost| cost.tests == 2 * 18 * 12));
 
     session.select(Some(0));
     session.set_position(DVec3::new(-0.75, 0.75, 0.0));
     assert_eq!(session.contest(), Contest::Pair(0, 1));
-    let trial = session.trial_due(FRAME).expect("a trial is due");
+    let trial = session.trial_due(Duration::from_secs(9));
+    let trial = trial.expect("a trial is due");
     assert!(session.trial_due(FRAME).is_none(), "one at a time");
     session.accept_trial(trial.run(slow(Duration::from_millis(1))));
     let last = *session.compare.last().expect("a figure");
@@ -57,6 +61,9 @@ fn a_blow_up_pauses_names_its_cause_and_selects_the_body() {
     for part in ["`cube`", "RK4", "2.6225e-3 s"] {
         assert!(text.contains(part), "{part}: {text}");
     }
+    // 1 / 2.6225e-3 s is 381.3 Hz.
+    let remedy = session.notices().iter().find_map(|notice| notice.remedy);
+    assert_eq!(remedy, Some(Remedy::Rate(390.0)));
     assert!(positions(&session).iter().all(|at| at.is_finite()));
     session.reset();
     assert_eq!(session.state(), State::Layout);

@@ -1,0 +1,110 @@
+//! The states of a run, kept so that one can go back: a ring of bounded size.
+//!
+//! Each state is a whole world, so that to go on from it gives the same bits as the first time.
+
+use std::collections::VecDeque;
+
+use sim_core::{Impact, World};
+
+/// The most states kept, and the most bodies in all of them together.
+const MOST_STATES: usize = 3600;
+const MOST_BODIES: usize = 200_000;
+
+/// A world after a step, and the impacts of that step.
+#[derive(Clone, Debug)]
+pub(super) struct Moment {
+    pub(super) world: World,
+    pub(super) impacts: Vec<Impact>,
+}
+
+/// The states since the start or the last change, the oldest first, and the one that is looked at.
+#[derive(Debug, Default)]
+pub struct Playback {
+    moments: VecDeque<Moment>,
+    now: usize,
+}
+
+impl Playback {
+    /// Begins afresh with a world.
+    pub(super) fn begin(&mut self, world: &World) {
+        self.moments.clear();
+        self.now = 0;
+        let impacts = Vec::new();
+        let world = world.clone();
+        self.moments.push_back(Moment { world, impacts });
+    }
+
+    /// Takes in what came after the state looked at; what was there after it goes, and so does the
+    /// oldest where there is no more room.
+    pub(super) fn extend(&mut self, moments: Vec<Moment>) {
+        self.moments.truncate(self.now + 1);
+        self.moments.extend(moments);
+        let bodies = self.moments.back().map_or(0, |last| last.world.len());
+        let kept = capacity(bodies);
+        let beyond = self.moments.len().saturating_sub(kept);
+        self.moments.drain(..beyond);
+        self.now = self.moments.len().saturating_sub(1);
+    }
+
+    /// Looks at a state; the last one where there are not so many.
+    pub(super) fn go_to(&mut self, index: usize) -> Option<&Moment> {
+        self.now = index.min(self.moments.len().saturating_sub(1));
+        self.moments.get(self.now)
+    }
+
+    /// The states up to the one looked at, the oldest first.
+    pub(super) fn past(&self) -> impl DoubleEndedIterator<Item = &Moment> {
+        self.moments.range(..self.moments.len().min(self.now + 1))
+    }
+
+    /// How many states there are, at least one once a scene is open.
+    #[expect(
+        clippy::len_without_is_empty,
+        reason = "it never is, for whoever sees it"
+    )]
+    pub fn len(&self) -> usize {
+        self.moments.len()
+    }
+
+    /// The most states that are kept of a world with so many bodies.
+    pub fn capacity(&self) -> usize {
+        capacity(self.moments.back().map_or(0, |last| last.world.len()))
+    }
+
+    /// Index of the state looked at.
+    pub fn now(&self) -> usize {
+        self.now
+    }
+
+    /// Whether there are states after the one looked at.
+    pub fn is_back(&self) -> bool {
+        self.now + 1 < self.moments.len()
+    }
+
+    /// Simulated times of the oldest and of the latest state, s.
+    pub fn span(&self) -> [f64; 2] {
+        let time = |moment: Option<&Moment>| moment.map_or(0.0, |moment| moment.world.time());
+        [time(self.moments.front()), time(self.moments.back())]
+    }
+
+    /// Index of the state nearest to a simulated time, s.
+    pub fn nearest(&self, time: f64) -> usize {
+        let after = self.moments.partition_point(|m| m.world.time() < time);
+        let away = |i: usize| (self.moments[i].world.time() - time).abs();
+        match (after.checked_sub(1), self.moments.len()) {
+            (None, _) => 0,
+            (Some(before), len) if after == len || away(before) <= away(after) => before,
+            _ => after,
+        }
+    }
+
+    /// Simulated times at which something hit something, s, in order of the steps.
+    pub fn impact_times(&self) -> impl Iterator<Item = f64> {
+        let impacts = self.moments.iter().flat_map(|moment| &moment.impacts);
+        impacts.map(|impact| impact.time)
+    }
+}
+
+fn capacity(bodies: usize) -> usize {
+    (MOST_BODIES / bodies.max(1)).clamp(2, MOST_STATES)
+}

@@ -1,0 +1,107 @@
+//! The line of time under the picture: what is kept of the run, its impacts, and the speed.
+
+use egui::{Button, Color32, Panel, Sense, Slider, Stroke};
+
+use super::style;
+use crate::number;
+use crate::session::{SPEEDS, Session, State};
+
+/// The most impacts that are marked; more would be one colour.
+const MARKS: usize = 2000;
+
+pub(super) fn show(root: &mut egui::Ui, session: &mut Session) {
+    Panel::bottom("time").show(root, |ui| {
+        ui.add_space(2.0);
+        ui.horizontal(|ui| {
+            buttons(ui, session);
+            speed(ui, session);
+            line(ui, session);
+        });
+        ui.add_space(2.0);
+    });
+}
+
+fn buttons(ui: &mut egui::Ui, session: &mut Session) {
+    let can_go_back = session.state() != State::Layout && session.playback().now() > 0;
+    if ui
+        .add_enabled(can_go_back, Button::new("⏴"))
+        .on_hover_text("Go one step back (left arrow or ,)")
+        .on_disabled_hover_text("No earlier state is kept")
+        .clicked()
+    {
+        session.step_back();
+    }
+    if ui
+        .button("⏵⏵ 5")
+        .on_hover_text("Go five steps ahead and hold there (page down)")
+        .clicked()
+    {
+        five_steps(session);
+    }
+}
+
+/// Five steps ahead.
+pub(super) fn five_steps(session: &mut Session) {
+    for _ in 0..5 {
+        session.step_once();
+    }
+}
+
+fn speed(ui: &mut egui::Ui, session: &mut Session) {
+    let mut speed = session.speed();
+    ui.spacing_mut().slider_width = 90.0;
+    let slider = Slider::new(&mut speed, SPEEDS)
+        .logarithmic(true)
+        .prefix("×")
+        .max_decimals(3);
+    let response = ui
+        .add(slider)
+        .on_hover_text("Simulated seconds in a real one: slow motion below 1. Double click for 1.");
+    if response.double_clicked() {
+        session.set_speed(1.0);
+    } else if response.changed() {
+        session.set_speed(speed);
+    }
+}
+
+fn line(ui: &mut egui::Ui, session: &mut Session) {
+    let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    let [first, last] = session.playback().span();
+    let [left, right] = [rect.left() + 6.0, rect.right() - 6.0];
+    let long = (last - first).max(f64::MIN_POSITIVE);
+    let place =
+        |time: f64| egui::lerp(left..=right, ((time - first) / long).clamp(0.0, 1.0) as f32);
+    let painter = ui.painter_at(rect);
+    let bar = rect.shrink2(egui::vec2(6.0, 7.0));
+    painter.rect_filled(bar, 3.0, ui.visuals().extreme_bg_color);
+    let now = session.world().time();
+    let gone = bar.with_max_x(place(now).max(bar.left()));
+    painter.rect_filled(gone, 3.0, style::BLUE.gamma_multiply(0.5));
+    let mark = Stroke::new(1.5, Color32::from_rgb(255, 140, 50));
+    for time in session.playback().impact_times().take(MARKS) {
+        painter.vline(place(time), rect.shrink(3.0).y_range(), mark);
+    }
+    let hand = Stroke::new(2.0, ui.visuals().strong_text_color());
+    painter.vline(place(now), rect.y_range(), hand);
+    let pointed = response.interact_pointer_pos().or(response.hover_pos());
+    let pointed = pointed.map(|at| {
+        let part = f64::from((at.x - left) / (right - left).max(1.0));
+        session
+            .playback()
+            .nearest(first + part.clamp(0.0, 1.0) * long)
+    });
+    if let Some(index) = pointed
+        && session.state() != State::Layout
+        && (response.clicked() || response.dragged())
+    {
+        session.go_to(index);
+    }
+    let kept = session.playback();
+    response.on_hover_text(format!(
+        "{} states kept, from {first:.3} to {last:.3} s, at most {}: the run since the start or the \
+         last change. Click or drag to go there; impacts are orange.",
+        number::count(kept.len() as f64),
+        number::count(kept.capacity() as f64),
+    ));
+}
