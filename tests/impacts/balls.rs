@@ -183,8 +183,9 @@ fn what_slides_down_a_slope_hits_nothing() {
                 (speed / (600.0 / 64.0 * pull) - 1.0).abs() < 2e-3,
                 "{what}: {speed}"
             );
+            // It keeps apart by a part of its coordinates, which grow.
             let away = world.velocity(1).dot(slope).abs();
-            assert!(away < 1e-9, "{what}: leaves at {away:e}");
+            assert!(away < 1e-9 + 1e-11 * far, "{what}: leaves at {away:e}");
         }
     }
 }

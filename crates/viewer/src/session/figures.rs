@@ -72,6 +72,8 @@ pub struct Reference {
     total: f64,
     momentum: DVec3,
     impacts: u64,
+    /// Steps that ended with bodies in contact.
+    contact_steps: u64,
     /// Position and velocity of each body.
     motion: Vec<(DVec3, DVec3)>,
 }
@@ -111,6 +113,7 @@ impl Reference {
             total: total_energy(world),
             momentum: world.momentum(),
             impacts: world.impacts(),
+            contact_steps: world.contact_steps(),
             motion: (0..world.len())
                 .map(|i| (world.position(i), world.velocity(i)))
                 .collect(),
@@ -138,14 +141,16 @@ impl Reference {
         let energy = (world.kinetic_energy() - self.energy - work)
             + (varying_potential(world) - self.potential);
         let energy = Some(energy).filter(|change| change.is_finite());
-        let (forces, same_impacts) = (world.forces(), world.impacts() == self.impacts);
+        let forces = world.forces();
+        // Nobody has met or lain on anybody.
+        let has_met =
+            world.impacts() != self.impacts || world.contact_steps() != self.contact_steps;
         let mut bodies = 0..world.len();
-        let inelastic = !same_impacts && bodies.clone().any(|i| world.restitution(i) < 1.0);
+        let inelastic = has_met && bodies.clone().any(|i| world.restitution(i) < 1.0);
         // One rough body among smooth ones slides freely.
-        let rough =
-            !same_impacts && bodies.clone().filter(|&i| world.friction(i) > 0.0).count() > 1;
-        let pushed = !same_impacts && bodies.clone().any(|i| is_driven(world, i));
-        let closed = same_impacts || bodies.all(|i| world.mass(i).is_finite());
+        let rough = has_met && bodies.clone().filter(|&i| world.friction(i) > 0.0).count() > 1;
+        let pushed = has_met && bodies.clone().any(|i| is_driven(world, i));
+        let closed = !has_met || bodies.all(|i| world.mass(i).is_finite());
         let kept = |force| is_weight(force) || is_internal(world, force);
         let momentum = (world.momentum() - impulse - self.momentum).length();
         let momentum = (closed && forces.iter().all(kept)).then_some(momentum);
@@ -156,7 +161,7 @@ impl Reference {
             driven: pushed || forces.iter().any(|force| drives(world, force)),
             momentum,
             relative_momentum: momentum.and_then(|error| ratio(error, pushes)),
-            position: (same_impacts && forces.iter().all(is_weight)).then_some(away),
+            position: (!has_met && forces.iter().all(is_weight)).then_some(away),
         }
     }
 }

@@ -249,6 +249,16 @@ impl World {
                 .iter()
                 .all(|&missing| missing <= enough)
         };
+        // Whether widening gaps takes no more than forces give back who press them together.
+        let is_light = |given: &[f64], target: &[f64]| {
+            let widened = (0..count).filter(|&k| target[k] > 0.0);
+            let (taken, pressed) = widened.fold((0.0, 0.0), |(taken, pressed), k| {
+                let (i, j) = joined[k].bodies;
+                let load = constraint(k).load_speed / (inverse_mass[i] + inverse_mass[j]);
+                (taken + target[k] * given[k], pressed + target[k] * load)
+            });
+            taken <= 4.0 * pressed
+        };
         let mut given = alloc::vec![0.0; count];
         // Gaps are widened where there is room for it.
         loop {
@@ -263,7 +273,8 @@ impl World {
                 };
                 given = project_with(joined, inverse_mass, &mut velocity, &closing, known);
             }
-            if is_met(&velocity, &target) || target.iter().all(|&target| target <= 0.0) {
+            let needs_no_more = is_met(&velocity, &target) && is_light(&given, &target);
+            if needs_no_more || target.iter().all(|&target| target <= 0.0) {
                 break;
             }
             velocity.copy_from_slice(&before);

@@ -197,13 +197,13 @@ impl World {
     }
 
     /// Speed along its normal with which a gap becomes the one of contacts, m/s: a wider one within a
-    /// time, a narrower one within a step if forces close it, none where it is about that.
+    /// time, a narrower one within some steps if forces close it, none where it is about that.
     pub(super) fn speed_to_hover(&self, gap: f64, hover: f64, time: f64, load_speed: f64) -> f64 {
         if gap > 4.0 * hover {
             -(gap - hover) / time
         } else if gap < 0.5 * hover && load_speed > 0.0 {
             // What looks deeper is stopped by something else.
-            (hover - gap.max(0.0)) / self.settings.dt
+            (hover - gap.max(0.0)) / (4.0 * self.settings.dt)
         } else {
             0.0
         }

@@ -15,7 +15,7 @@ use glam::DVec3;
 
 use super::super::World;
 use super::constraint_solve::{Island, Places, Solution};
-use crate::impulse::{Joined, Known, apply, drag, project_with};
+use crate::impulse::{Joined, Known, drag, project_with};
 
 /// Turns of normal forces and friction at most.
 const MAX_TURNS: usize = 64;
@@ -56,22 +56,27 @@ impl Friction {
             && self.force[k].length() >= NEARLY_ALL * coefficient * force
     }
 
-    /// The force on a contact that slides, pressed with a force, while its bodies are accelerated against
-    /// each other (m/s²); `None` where it sticks.
-    fn against_sliding(&self, k: usize, pressed: f64, acceleration: DVec3) -> Option<DVec3> {
-        let direction = self.sliding[k].try_normalize()?;
-        let sliding = self.sliding[k] + self.stagger * acceleration;
-        let speed = direction.dot(sliding);
-        if self.is_bundled || speed <= 0.0 {
-            return None;
-        }
-        let slowing = -direction.dot(acceleration);
-        let time = match slowing * self.left > speed {
-            true => speed / slowing,
-            false => self.left,
+    /// What acceleration against a contact's sliding, m/s², friction makes up for as far as it can: one that
+    /// brings it to rest in the middle of its sliding, so that friction that cannot is against the
+    /// motion's middle. Of a contact with an inverse mass, pressed with a force, while its bodies are
+    /// accelerated against each other.
+    fn wanted(&self, k: usize, inverse_mass: f64, pressed: f64, acceleration: DVec3) -> DVec3 {
+        let sliding = self.sliding[k];
+        let Some(direction) = sliding.try_normalize() else {
+            return DVec3::ZERO;
         };
-        let middle = (sliding + 0.5 * time * acceleration).normalize_or(direction);
-        Some(-self.coefficient[k] * pressed * middle)
+        // By all friction that there is, against the sliding at the start.
+        let without = acceleration - inverse_mass * self.force[k];
+        let slowing = self.coefficient[k] * pressed * inverse_mass - direction.dot(without);
+        let stop = match slowing > 0.0 {
+            true => sliding.length() / slowing - self.stagger,
+            false => f64::INFINITY,
+        };
+        if self.is_bundled || stop <= 0.0 {
+            return sliding / self.left;
+        }
+        let middle = 0.5 * stop.min(self.left) + self.stagger;
+        sliding / middle.max(f64::EPSILON * self.left)
     }
 
     /// When a contact stops sliding, s.
@@ -230,35 +235,18 @@ impl World {
             let mut acceleration = solution.acceleration.clone();
             let mut force = friction.force.clone();
             let count = force.len();
-            let (mut limit, mut stopping) = (vec![0.0; count], vec![DVec3::ZERO; count]);
-            let mut holding = vec![DVec3::ZERO; count];
+            let (mut limit, mut wanted) = (vec![0.0; count], vec![DVec3::ZERO; count]);
             for k in 0..count {
-                let pressed = if solution.open[k] {
-                    0.0
-                } else {
-                    solution.force[k].max(0.0)
+                let pressed = match solution.open[k] {
+                    true => 0.0,
+                    false => solution.force[k].max(0.0),
                 };
-                let pushed = joined[k].sliding(&solution.acceleration);
-                match friction.against_sliding(k, pressed, pushed) {
-                    Some(against) => {
-                        apply(
-                            &joined[k],
-                            inverse_mass,
-                            &mut acceleration,
-                            against - force[k],
-                        );
-                        force[k] = against;
-                    }
-                    None => {
-                        // Infinity times nothing is nothing.
-                        limit[k] = if pressed > 0.0 {
-                            friction.coefficient[k] * pressed
-                        } else {
-                            0.0
-                        };
-                        stopping[k] = friction.sliding[k] / friction.left;
-                        holding[k] = force[k];
-                    }
+                if pressed > 0.0 {
+                    let (i, j) = joined[k].bodies;
+                    let both = inverse_mass[i] + inverse_mass[j];
+                    let pushed = joined[k].sliding(&solution.acceleration);
+                    limit[k] = friction.coefficient[k] * pressed;
+                    wanted[k] = friction.wanted(k, both, pressed, pushed);
                 }
             }
             drag(
@@ -266,16 +254,10 @@ impl World {
                 inverse_mass,
                 &mut acceleration,
                 &limit,
-                &stopping,
-                &mut holding,
+                &wanted,
+                &mut force,
                 enough,
             );
-            let sticks = |k: usize| limit[k] > 0.0 || holding[k] != DVec3::ZERO;
-            for k in 0..count {
-                if sticks(k) || friction.sliding[k] == DVec3::ZERO {
-                    force[k] = holding[k];
-                }
-            }
             let change = |k: usize| {
                 let (i, j) = joined[k].bodies;
                 (force[k] - friction.force[k]).length() * (inverse_mass[i] + inverse_mass[j])
