@@ -56,7 +56,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     mass_and_restitution(ui, session, mass, restitution);
     let meaning = "Coefficient of friction µ from 0, smooth, to inf, which never slips: the force \
                    along a contact is at most µ times that across it, |F_t| ≤ µ F_n; of two bodies \
-                   √(µ₁ µ₂) counts, 0 where one is smooth. No contact uses it yet";
+                   √(µ₁ µ₂) counts, 0 where one is smooth";
     if let Some(value) = field::scalar(ui, "Friction", "", meaning, friction) {
         session.set_friction(value);
     }
