@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-use sim_core::{Mesh, Shape, Vec3};
+use sim_core::{DQuat, DVec3, Mesh, Shape, Vec3};
 
 pub(crate) fn mesh(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Shape {
     Shape::Mesh(Arc::new(Mesh::new(vertices, triangles).expect("a mesh")))
@@ -15,22 +15,10 @@ pub(crate) fn sheet(p: Vec3, q: Vec3) -> Shape {
 }
 
 pub(crate) fn cube(half: f32) -> Shape {
-    let corner = |i: u32| {
-        let side = |axis: u32| if i >> axis & 1 == 0 { -half } else { half };
-        Vec3::new(side(0), side(1), side(2))
-    };
-    let quads = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
-    let triangles = quads
-        .iter()
-        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
-    mesh((0..8).map(corner).collect(), triangles.collect())
+    let cube = scene::mesh_file::builtin("cube.obj").expect("built in");
+    let scale = DVec3::splat(2.0 * f64::from(half));
+    let cube = cube.transformed(DQuat::IDENTITY, scale);
+    Shape::Mesh(Arc::new(cube.expect("a cube")))
 }
 
 pub(crate) fn tetrahedron(size: f32) -> Shape {

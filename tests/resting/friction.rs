@@ -268,3 +268,112 @@ fn what_is_smooth_or_free_is_not_rubbed() {
         assert_eq!(world.velocity(1), body.velocity);
     }
 }
+
+/// Pushed, at any scale and rate: it stands up to its friction, and beyond moves by what is left.
+#[test]
+fn what_is_pushed_moves_by_what_friction_leaves() {
+    let mut pushes = 0;
+    for scale in [1e-6, 1.0, 1e6] {
+        for rate in [10.0, 60.0, 1000.0] {
+            for (excess, seconds) in [(-1e-6, 2.0), (1e-3, 2.0), (1.0, 2.0)] {
+                let friction = 0.25;
+                let force = friction * GRAVITY * (1.0 + excess) * DVec3::X;
+                let pushed = Body {
+                    shape: Some(ball(0.5 * scale)),
+                    position: 0.5 * scale * DVec3::Y,
+                    force,
+                    restitution: 0.0,
+                    ..Body::default()
+                };
+                let mut world = on_floor(rk4(), friction, pushed);
+                let settings = sim_core::Settings {
+                    dt: 1.0 / rate,
+                    ..*world.settings()
+                };
+                world.set_settings(settings).expect("settings");
+                step(&mut world, (seconds * rate) as u32);
+                let way = 0.5 * friction * GRAVITY * excess.max(0.0) * seconds * seconds;
+                let error = (world.position(1).x - way).abs();
+                assert!(
+                    error <= 1e-12 * scale.max(1.0),
+                    "{scale} {rate} {excess}: {error:e}"
+                );
+                if excess < 0.0 {
+                    assert_eq!(world.velocity(1), DVec3::ZERO);
+                }
+                pushes += 1;
+            }
+        }
+    }
+    assert_eq!(pushes, 27);
+}
+
+/// Off the edge of a table: as fast as friction has left it, and down from where its rear edge leaves.
+#[test]
+fn what_slides_off_an_edge_falls_from_there() {
+    let (friction, speed, way): (f64, f64, f64) = (0.3, 3.0, 1.2);
+    for method in METHODS.into_iter().filter(|method| method.order > 1) {
+        let mut world = world(method);
+        let brick = Body {
+            shape: Some(cube()),
+            friction,
+            restitution: 0.0,
+            ..Body::default()
+        };
+        // Two cubes are a table that is long enough.
+        for x in [-1.0, 0.0] {
+            let table = Body {
+                position: x * DVec3::X,
+                mass: f64::INFINITY,
+                ..brick.clone()
+            };
+            world.add(table).expect("a table");
+        }
+        let slider = Body {
+            position: DVec3::new(1.0 - way, 1.0, 0.0),
+            velocity: speed * DVec3::X,
+            ..brick
+        };
+        world.add(slider).expect("a slider");
+        step(&mut world, 60);
+        let slowing = friction * GRAVITY;
+        let leaving = (speed * speed - 2.0 * slowing * way).sqrt();
+        let falling = 1.0 - (speed - leaving) / slowing;
+        let fallen = 0.5 * GRAVITY * falling * falling;
+        let at = DVec3::new(1.0 + leaving * falling, 1.0 - fallen, 0.0);
+        let error = (world.position(2) - at).length();
+        assert!(error < 1e-9, "{}: {error:e}", method.name);
+    }
+}
+
+/// The contacts that a world lists carry what lies on them, also while it sleeps.
+#[test]
+fn contacts_carry_what_lies_on_them() {
+    let slope: f64 = 0.3;
+    let cos = 1.0 / (1.0 + slope * slope).sqrt();
+    let mut world = world(rk4());
+    let ramp = Body {
+        friction: 0.5,
+        ..ground(DVec3::new(-slope * cos, cos, 0.0), DVec3::ZERO)
+    };
+    world.add(ramp).expect("a slope");
+    let stone = Body {
+        shape: Some(ball(0.5)),
+        mass: 3.0,
+        position: 0.5 * DVec3::new(-slope * cos, cos, 0.0),
+        friction: 0.5,
+        restitution: 0.0,
+        ..Body::default()
+    };
+    world.add(stone).expect("a stone");
+    assert_eq!((world.contacts().count(), world.contact_steps()), (0, 0));
+    for steps in 1..50 {
+        step(&mut world, 1);
+        let contacts: Vec<_> = world.contacts().collect();
+        assert_eq!((contacts.len(), world.contact_steps()), (1, steps));
+        let weight = 3.0 * GRAVITY * DVec3::Y;
+        let error = (contacts[0].force - weight).length();
+        assert!(error < 1e-9, "{steps}: {error:e}");
+        assert_eq!(contacts[0].bodies, (0, 1));
+    }
+}

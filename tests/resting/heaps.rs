@@ -4,7 +4,7 @@ use sim_core::{Body, DVec3, Method, World};
 
 use crate::scenes::{GRAVITY, ball, cube, ground, step, world};
 
-fn midpoint() -> &'static Method {
+fn rk4() -> &'static Method {
     Method::named("rk4").expect("a method")
 }
 
@@ -19,7 +19,7 @@ fn energy(world: &World) -> f64 {
 
 /// Balls of radius 0.25 m, above each other in a bin that is a little wider than two of them.
 fn bin(balls: usize, restitution: f64, friction: f64, seed: u64) -> World {
-    let mut world = world(midpoint());
+    let mut world = world(rk4());
     let half = 0.6;
     let walls = [
         (DVec3::Y, DVec3::ZERO),
@@ -128,7 +128,7 @@ fn heaps_settle_without_overlap_or_gain() {
 #[test]
 fn thirty_cubes_stand_for_a_thousand_seconds() {
     for heavy in [1.0, 1e3, 1e-3] {
-        let mut world = world(midpoint());
+        let mut world = world(rk4());
         world.add(ground(DVec3::Y, DVec3::ZERO)).expect("a floor");
         for level in 0..30 {
             let brick = Body {
@@ -147,4 +147,27 @@ fn thirty_cubes_stand_for_a_thousand_seconds() {
             assert_eq!(world.velocity(1 + level as usize), DVec3::ZERO);
         }
     }
+}
+
+#[test]
+fn what_bundling_costs_is_told() {
+    let mut world = bin(12, 0.0, 0.0, 7);
+    let mut most = world.bundled();
+    while most.bodies < 12 {
+        step(&mut world, 1);
+        let bundled = world.bundled();
+        assert!(bundled.energy >= 0.0 && bundled.distance >= 0.0);
+        most.bodies = most.bodies.max(bundled.bodies);
+        most.energy = most.energy.max(bundled.energy);
+        most.distance = most.distance.max(bundled.distance);
+        assert!(world.steps() < 1200, "{most:?}");
+    }
+    assert!(most.energy > 0.0 && most.distance > 0.0, "{most:?}");
+    // Nothing that flies or rests is bundled.
+    while (5..world.len()).any(|body| world.velocity(body) != DVec3::ZERO) {
+        step(&mut world, 1);
+    }
+    step(&mut world, 2);
+    let after = world.bundled();
+    assert_eq!((after.bodies, after.energy, after.distance), (0, 0.0, 0.0));
 }

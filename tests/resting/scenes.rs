@@ -1,8 +1,6 @@
 //! Floors, and what lies on them.
 
-use std::sync::Arc;
-
-use sim_core::{Body, DVec3, Force, Mesh, Method, Settings, Shape, Vec3, World};
+use sim_core::{Body, DVec3, Force, Method, Settings, Shape, World};
 
 pub(crate) const GRAVITY: f64 = 9.81;
 
@@ -37,21 +35,7 @@ pub(crate) fn ball(radius: f64) -> Shape {
 
 /// A cube of side 1 m about its origin.
 pub(crate) fn cube() -> Shape {
-    let corner = |i: i32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) - 0.5;
-    let quads: [[u32; 4]; 6] = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
-    let triangles = quads
-        .into_iter()
-        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
-        .collect();
-    let mesh = Mesh::new((0..8).map(corner).collect(), triangles);
-    Shape::Mesh(Arc::new(mesh.expect("a cube")))
+    Shape::Mesh(scene::mesh_file::builtin("cube.obj").expect("built in"))
 }
 
 pub(crate) fn step(world: &mut World, steps: u32) {

@@ -68,6 +68,15 @@ pub fn drag(
     }
 }
 
+/// The greatest friction of a contact that is pressed: by the coefficient, which may be infinite, times what
+/// presses it, if that is more than nothing.
+pub fn limit(coefficient: f64, pressed: f64) -> f64 {
+    match coefficient > 0.0 && pressed > 0.0 {
+        true => coefficient * pressed,
+        false => 0.0,
+    }
+}
+
 /// The velocities (m/s) of two bodies, one of which may have infinite mass (kg), after an impact with an
 /// impulse along a unit normal (N s) has rubbed: by at most the coefficient of friction times that impulse,
 /// or until they do not slide.
@@ -83,12 +92,10 @@ pub fn rub(
         bodies: (0, 1),
         normal,
     };
-    if friction > 0.0 && impulse > 0.0 {
-        let inverse_mass = [1.0 / m1, 1.0 / m2];
-        let best = -contact.sliding(&both) / (inverse_mass[0] + inverse_mass[1]);
-        let dragged = within(best, friction * impulse);
-        apply(&contact, &inverse_mass, &mut both, dragged);
-    }
+    let inverse_mass = [1.0 / m1, 1.0 / m2];
+    let best = -contact.sliding(&both) / (inverse_mass[0] + inverse_mass[1]);
+    let dragged = within(best, limit(friction, impulse));
+    apply(&contact, &inverse_mass, &mut both, dragged);
     (both[0], both[1])
 }
 

@@ -17,8 +17,8 @@ mod together;
 use glam::DVec3;
 
 use crate::expansion::two_sum;
-pub use friction::{apply, drag, rub};
-pub use together::{Joined, Known, project, project_with, reflect};
+pub use friction::{apply, drag, limit, rub};
+pub use together::{Joined, Known, greatest, project, project_with, reflect};
 
 /// What two bodies exchange.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -66,9 +66,7 @@ pub fn reflect(
     restitution: f64,
 ) -> Vec<f64> {
     let mut impulse = vec![0.0; contacts.len()];
-    let fastest = velocity
-        .iter()
-        .fold(0.0_f64, |most, v| most.max(v.length()));
+    let fastest = greatest(velocity);
     let rounding = 16.0 * f64::EPSILON * fastest;
     for round in 0..ROUNDS {
         let closing: Vec<usize> = (0..contacts.len())
@@ -108,6 +106,11 @@ pub fn reflect(
         }
     }
     impulse
+}
+
+/// The greatest length of some vectors.
+pub fn greatest(vectors: &[DVec3]) -> f64 {
+    vectors.iter().fold(0.0, |most, v| v.length().max(most))
 }
 
 /// The nearest velocities, or accelerations, with which contacts open by at least as much more as is

@@ -14,7 +14,7 @@ use super::super::{World, stepping::Cause};
 use super::contact_motion::{Course, LEAST_GAP};
 use super::friction::Friction;
 use super::{Event, EventKind, Outcome};
-use crate::impulse::{Joined, Known, apply, project_with};
+use crate::impulse::{Joined, Known, apply, greatest, project_with};
 
 /// Part of the speed that forces give in a step below which bodies that come to rest on each other
 /// have rested before, and it is no impact.
@@ -69,6 +69,11 @@ impl Visited {
             self.body.fill(0);
             self.round = 1;
         }
+    }
+
+    /// Whether a body has been visited.
+    pub(super) fn has(&self, body: usize) -> bool {
+        self.body[body] == self.round
     }
 
     /// Visits a body, and tells whether it is new.
@@ -169,7 +174,10 @@ impl World {
             let constraint = self.contacts.all()[index];
             if constraint.is_turning || constraint.ends_at <= time {
                 match self.measured(constraint, self.settings.dt - time) {
-                    Some(measured) => *self.contacts.get_mut(index) = measured,
+                    Some(mut measured) => {
+                        measured.sticks |= constraint.ends_at <= time;
+                        *self.contacts.get_mut(index) = measured;
+                    }
                     None => gone.push(index),
                 }
             }
@@ -186,9 +194,9 @@ impl World {
         let is_bundled = self.spread_bundle(island);
         let places = Places::of(self, &island.constraints);
         let mut solution = self.solve_velocities(island, &places, is_bundled, time)?;
-        self.solve_accelerations(island, &places, &mut solution, time);
+        self.solve_accelerations(island, &places, &mut solution, is_bundled, time);
         let mut gone: Vec<usize> = (0..island.constraints.len())
-            .filter(|&k| solution.open[k] && !is_bundled)
+            .filter(|&k| solution.open[k])
             .map(|k| island.constraints[k])
             .collect();
         gone.sort_unstable_by(|a, b| b.cmp(a));
@@ -214,12 +222,10 @@ impl World {
         }
         let free = places.each(|body| self.acceleration_there(body));
         let mut velocity = places.each(|body| self.continuous.start.velocity[body]);
-        let length = |v: &DVec3| v.length();
-        let fastest = velocity.iter().map(length).fold(0.0, f64::max);
+        let fastest = greatest(&velocity);
         let rounding = 4.0 * f64::EPSILON * fastest;
         let count = island.constraints.len();
         let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
-        let enough = self.unseen_speed(island);
         let hop: Vec<f64> = (0..count)
             .map(|k| 0.5 * self.shortest_flight(is_bundled) * constraint(k).load_speed)
             .collect();
@@ -232,57 +238,12 @@ impl World {
         let still: Vec<f64> = (0..count).map(still).collect();
         // In a heap, what forces press does not part. That takes energy and gives none, as standing still is
         // among what is allowed.
-        let mut target: Vec<f64> = (0..count).map(|k| constraint(k).target).collect();
-        let is_loaded = |k: usize| is_bundled && target[k] >= 0.0 && constraint(k).load_speed > 0.0;
-        let held: Vec<bool> = (0..count).map(is_loaded).collect();
+        let is_held =
+            |k: usize| is_bundled && constraint(k).target >= 0.0 && constraint(k).load_speed > 0.0;
+        let held: Vec<bool> = (0..count).map(is_held).collect();
         let before = velocity.clone();
-        let (joined, inverse_mass) = (&places.joined, &places.inverse_mass);
-        let short = |velocity: &[DVec3], target: &[f64]| -> Vec<f64> {
-            let contacts = joined.iter().zip(target);
-            contacts
-                .map(|(joined, target)| target - joined.opening(velocity))
-                .collect()
-        };
-        let is_met = |velocity: &[DVec3], target: &[f64]| {
-            let enough = (4.0 * enough).max(4.0 * rounding);
-            short(velocity, target)
-                .iter()
-                .all(|&missing| missing <= enough)
-        };
-        // Whether widening gaps takes no more than forces give back who press them together.
-        let is_light = |given: &[f64], target: &[f64]| {
-            let widened = (0..count).filter(|&k| target[k] > 0.0);
-            let (taken, pressed) = widened.fold((0.0, 0.0), |(taken, pressed), k| {
-                let (i, j) = joined[k].bodies;
-                let load = constraint(k).load_speed / (inverse_mass[i] + inverse_mass[j]);
-                (taken + target[k] * given[k], pressed + target[k] * load)
-            });
-            taken <= 4.0 * pressed
-        };
-        let mut given = alloc::vec![0.0; count];
-        // Gaps are widened where there is room for it.
-        loop {
-            let closing = short(&velocity, &target);
-            let is_due =
-                (0..count).any(|k| closing[k] > rounding || held[k] && closing[k] < -still[k]);
-            if is_due {
-                let known = Known {
-                    held: &held,
-                    warm: &[],
-                    enough,
-                };
-                given = project_with(joined, inverse_mass, &mut velocity, &closing, known);
-            }
-            let needs_no_more = is_met(&velocity, &target) && is_light(&given, &target);
-            if needs_no_more || target.iter().all(|&target| target <= 0.0) {
-                break;
-            }
-            velocity.copy_from_slice(&before);
-            for target in &mut target {
-                *target = target.min(0.0);
-            }
-        }
-        let missing = |velocity: &[DVec3]| short(velocity, &target);
+        let (mut given, target) =
+            self.stop_closing(island, places, &mut velocity, (&held, &still, rounding));
         if self.is_rough() {
             self.rub(
                 island,
@@ -292,7 +253,9 @@ impl World {
                 (rounding, &target),
             );
         }
-        let parting: Vec<f64> = missing(&velocity).iter().map(|missing| -missing).collect();
+        let parting: Vec<f64> = (0..count)
+            .map(|k| places.joined[k].opening(&velocity) - target[k])
+            .collect();
         let open: Vec<bool> = (0..count)
             .map(|k| !is_bundled && parting[k] > still[k].max(hop[k]))
             .collect();
@@ -314,8 +277,7 @@ impl World {
             solution.friction = self.friction_of(island, places, &velocity, is_bundled, time);
         }
         self.constrain(island, places, &mut solution);
-        let closing = missing(&velocity);
-        if let Some(k) = (0..count).find(|&k| closing[k] > still[k] + UNSOLVED * fastest)
+        if let Some(k) = (0..count).find(|&k| parting[k] < -(still[k] + UNSOLVED * fastest))
             && let Some(crushed) = self.crushed(island, constraint(k).bodies)
         {
             return Err(crushed);
@@ -334,7 +296,6 @@ impl World {
             let constraint = self.contacts.get_mut(index);
             constraint.impulse = given[k];
             constraint.target = target[k];
-            constraint.recession = solution.recession[k];
             constraint.is_turning = solution.recession[k] > 0.0;
             constraint.ends_at = f64::INFINITY;
         }
@@ -346,6 +307,53 @@ impl World {
             self.contacts.keep_bundled(&island.bodies);
         }
         Ok(solution)
+    }
+
+    /// Stops contacts from closing faster than their targets, and those that are held from parting. Returns
+    /// the impulse of each, N s, and its target, which is lowered to none where gaps cannot be widened.
+    fn stop_closing(
+        &self,
+        island: &Island,
+        places: &Places,
+        velocity: &mut [DVec3],
+        (held, still, rounding): (&[bool], &[f64], f64),
+    ) -> (Vec<f64>, Vec<f64>) {
+        let (joined, inverse_mass) = (&places.joined, &places.inverse_mass);
+        let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
+        let count = joined.len();
+        let enough = self.unseen_speed(island);
+        let before = velocity.to_vec();
+        let mut target: Vec<f64> = (0..count).map(|k| constraint(k).target).collect();
+        loop {
+            let missing = |velocity: &[DVec3], k: usize| target[k] - joined[k].opening(velocity);
+            let closing: Vec<f64> = (0..count).map(|k| missing(velocity, k)).collect();
+            let mut given = alloc::vec![0.0; count];
+            let is_due = |k: usize| closing[k] > rounding || held[k] && closing[k] < -still[k];
+            if (0..count).any(is_due) {
+                let known = Known {
+                    held,
+                    warm: &[],
+                    enough,
+                };
+                given = project_with(joined, inverse_mass, velocity, &closing, known);
+            }
+            // A gap is widened where there is room for it, and where it takes no more than forces give back
+            // that press it together.
+            let widened: Vec<usize> = (0..count).filter(|&k| target[k] > 0.0).collect();
+            let most = (4.0 * enough).max(4.0 * rounding);
+            let is_met = (0..count).all(|k| missing(velocity, k) <= most);
+            let taken = |&k: &usize| target[k] * given[k];
+            let pressed = |&k: &usize| target[k] * constraint(k).load_speed / places.yielding(k);
+            let is_light = widened.iter().map(taken).sum::<f64>()
+                <= 4.0 * widened.iter().map(pressed).sum::<f64>();
+            if widened.is_empty() || is_met && is_light {
+                return (given, target);
+            }
+            velocity.copy_from_slice(&before);
+            for k in widened {
+                target[k] = 0.0;
+            }
+        }
     }
 
     /// The kinetic energy that contacts have taken from bundled bodies, J, and how far ahead of their time
@@ -399,6 +407,7 @@ impl World {
         island: &Island,
         places: &Places,
         solution: &mut Solution,
+        is_bundled: bool,
         time: f64,
     ) {
         let Solution {
@@ -409,20 +418,15 @@ impl World {
             ..
         } = &*solution;
         if self.balance(island, places, free, acceleration, (force, friction), time) {
-            self.note_loads(island, places, &solution.force);
+            self.note_forces(island, places, solution, time);
             return;
         }
         // Where events come thick, surfaces count as flat for the rest of the step: nothing meets, and what
         // opens closes in the next one.
-        let is_bundled = island
-            .bodies
-            .first()
-            .is_some_and(|&body| self.is_bundled(body));
         if !is_bundled && self.follow_surfaces(island, places, solution, time) {
             self.constrain(island, places, solution);
         }
-        self.note_loads(island, places, &solution.force);
-        self.note_friction(island, &solution.friction, time);
+        self.note_forces(island, places, solution, time);
         for (place, &body) in places.bodies.iter().enumerate() {
             if self.is_movable(body) {
                 let by = solution.acceleration[place] - solution.free[place];
@@ -463,7 +467,7 @@ impl World {
                 pushed,
             );
             // What would press them together without this contact.
-            let load = solution.force[k] * (places.inverse_mass[a] + places.inverse_mass[b]);
+            let load = solution.force[k] * places.yielding(k);
             if load <= 0.0 {
                 continue;
             }
@@ -471,9 +475,7 @@ impl World {
                 Course::Flat => {}
                 Course::Receding(recession) => {
                     solution.recession[k] += recession;
-                    let constraint = self.contacts.get_mut(index);
-                    constraint.recession += recession;
-                    constraint.is_turning = true;
+                    self.contacts.get_mut(index).is_turning = true;
                     turns = true;
                 }
                 Course::EndsAfter(after) => {
@@ -528,13 +530,12 @@ impl World {
         let missing = |&k: &usize| -recession[k] - places.joined[k].opening(&free);
         let missing: Vec<f64> = kept.iter().map(missing).collect();
         // What they did before is near.
-        let before = |(&k, joined): (&usize, &Joined)| {
-            let (i, j) = joined.bodies;
+        let before = |&k: &usize| {
             let load = self.contacts.all()[island.constraints[k]].load_speed / self.settings.dt;
             let known = solution.force.get(k).copied();
-            known.unwrap_or(load.max(0.0) / (places.inverse_mass[i] + places.inverse_mass[j]))
+            known.unwrap_or(load.max(0.0) / places.yielding(k))
         };
-        let warm: Vec<f64> = kept.iter().zip(&joined).map(before).collect();
+        let warm: Vec<f64> = kept.iter().map(before).collect();
         let inverse_mass = &places.inverse_mass;
         let known = Known {
             held: &[],
@@ -549,22 +550,19 @@ impl World {
         (solution.acceleration, solution.force) = (acceleration, force);
     }
 
-    /// Notes the friction of each contact, and when it stops sliding.
-    fn note_friction(&mut self, island: &Island, friction: &Friction, time: f64) {
-        for (k, (&force, &after)) in friction.force.iter().zip(&friction.ends_after).enumerate() {
-            let constraint = self.contacts.get_mut(island.constraints[k]);
-            constraint.friction = force;
-            constraint.ends_at = constraint.ends_at.min(time + after);
-        }
-    }
-
-    /// Notes by what speed each contact would close in a step if it were not there.
-    fn note_loads(&mut self, island: &Island, places: &Places, force: &[f64]) {
+    /// Notes by what speed each contact would close in a step if it were not there, its friction, and when
+    /// it stops sliding.
+    fn note_forces(&mut self, island: &Island, places: &Places, solution: &Solution, time: f64) {
         let dt = self.settings.dt;
+        let friction = &solution.friction;
         for (k, &index) in island.constraints.iter().enumerate() {
-            let (i, j) = places.joined[k].bodies;
-            let both = places.inverse_mass[i] + places.inverse_mass[j];
-            self.contacts.get_mut(index).load_speed = dt * force[k] * both;
+            let constraint = self.contacts.get_mut(index);
+            constraint.load_speed = dt * solution.force[k] * places.yielding(k);
+            if !friction.is_empty() {
+                constraint.friction = friction.force[k];
+                constraint.sticks = !friction.slides(k, solution.force[k]);
+                constraint.ends_at = constraint.ends_at.min(time + friction.ends_after[k]);
+            }
         }
     }
 
@@ -578,7 +576,7 @@ impl World {
         (force, friction): (&[f64], &Friction),
         time: f64,
     ) -> bool {
-        let push = free.iter().fold(0.0_f64, |most, a| most.max(a.length()));
+        let push = greatest(free);
         let is_still = |v: DVec3| v.length() <= AT_REST * push * self.settings.dt;
         let at_rest =
             time == 0.0
@@ -651,33 +649,23 @@ impl World {
         }
     }
 
-    /// The events at which contacts of some bodies end.
-    pub(super) fn contact_ends(&self, bodies: &[usize], events: &mut Vec<Event>) {
+    /// Queues the events at which contacts of some bodies end.
+    pub(super) fn queue_contact_ends(&mut self, bodies: &[usize]) {
+        let mut events = mem::take(&mut self.continuous.events);
         for &body in bodies {
             for &index in self.contacts.of_body(body) {
                 let constraint = &self.contacts.all()[index as usize];
-                let (i, j) = constraint.bodies;
+                let i = constraint.bodies.0;
                 if constraint.ends_at < self.settings.dt && (body == i || !self.is_movable(i)) {
-                    let version = &self.continuous.version;
                     events.push(Event {
-                        time: constraint.ends_at,
-                        bodies: (i, j),
-                        versions: (version[i], version[j]),
                         kind: EventKind::ContactEnd,
                         outcome: Outcome::Rest,
-                        load_speed: 0.0,
-                        gap: 0.0,
-                        contact: crate::collide::Contact {
-                            time: 0.0,
-                            point: constraint.point,
-                            normal: constraint.normal,
-                            feature: None,
-                            face: None,
-                        },
+                        ..self.event_of(constraint, constraint.ends_at)
                     });
                 }
             }
         }
+        self.continuous.events = events;
     }
 }
 
@@ -716,6 +704,12 @@ impl Places {
             joined,
             inverse_mass,
         }
+    }
+
+    /// What an impulse on a contact opens it by, 1/kg.
+    pub(super) fn yielding(&self, k: usize) -> f64 {
+        let (i, j) = self.joined[k].bodies;
+        self.inverse_mass[i] + self.inverse_mass[j]
     }
 
     pub(super) fn each(&self, of: impl Fn(usize) -> DVec3) -> Vec<DVec3> {

@@ -188,7 +188,6 @@ impl World {
             normal: surface.normal,
             point: surface.point,
             gap,
-            recession: 0.0,
             ends_at: f64::INFINITY,
             target: self.speed_to_hover(gap, hover, left, load_speed),
             load_speed,

@@ -5,7 +5,7 @@ use core::mem;
 use glam::DVec3;
 
 /// A plane that keeps two bodies apart: the second one may not move against the normal faster than
-/// the target, nor be accelerated against it by more than the recession.
+/// the target, nor be accelerated against it by more than the surface recedes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::world) struct ContactConstraint {
     /// The lower body first.
@@ -16,8 +16,6 @@ pub(in crate::world) struct ContactConstraint {
     pub(in crate::world) gap: f64,
     /// Least speed along the normal for the rest of the step, m/s; negative where a gap may close.
     pub(super) target: f64,
-    /// Acceleration by which the surface falls away below what slides over it, m/s².
-    pub(super) recession: f64,
     /// Whether its normal turns below what slides over it.
     pub(super) is_turning: bool,
     /// Speed at which forces would close it in a step, m/s.
@@ -31,6 +29,8 @@ pub(in crate::world) struct ContactConstraint {
     pub(super) impulse: f64,
     /// Friction on the second body in its last solution, N.
     pub(in crate::world) friction: DVec3,
+    /// Whether friction has held it in its last solution, or sliding has just ended; so it is at first.
+    pub(super) sticks: bool,
     /// Whether the bodies overlap: they are kept from moving farther into each other, and nothing
     /// else is known of their surfaces.
     pub(in crate::world) is_overlap: bool,
@@ -78,29 +78,29 @@ impl ContactSet {
         constraints.filter(move |known| known.bodies == pair)
     }
 
+    /// Those that keep the same bodies apart along the same normal as another one.
+    fn like<'a>(&'a self, other: &'a ContactConstraint) -> impl Iterator<Item = usize> + 'a {
+        let (i, j) = other.bodies;
+        let few = if self.of_body(i).is_empty() { j } else { i };
+        let indices = self.of_body(few).iter().map(|&index| index as usize);
+        indices.filter(|&index| {
+            let known = &self.all[index];
+            known.bodies == other.bodies && known.normal.dot(other.normal) >= SAME_NORMAL
+        })
+    }
+
     /// Whether another constraint than that of an index keeps the same bodies apart along the same normal.
     pub(super) fn is_known(&self, index: usize, new: &ContactConstraint) -> bool {
-        let (i, j) = new.bodies;
-        let few = if self.of_body(i).is_empty() { j } else { i };
-        self.of_body(few).iter().any(|&other| {
-            let known = &self.all[other as usize];
-            other as usize != index
-                && known.bodies == new.bodies
-                && known.normal.dot(new.normal) >= SAME_NORMAL
-        })
+        self.like(new).any(|other| other != index)
     }
 
     /// Adds a constraint, in the place of one of the same bodies along the same normal. Says which of its
     /// bodies may move.
     pub(super) fn insert(&mut self, new: ContactConstraint, is_movable: impl Fn(usize) -> bool) {
         let (i, j) = new.bodies;
-        let few = if is_movable(i) { i } else { j };
-        let is_same = |&&index: &&u32| {
-            let known = &self.all[index as usize];
-            known.bodies == new.bodies && known.normal.dot(new.normal) >= SAME_NORMAL
-        };
-        if let Some(&known) = self.of_body(few).iter().find(is_same) {
-            self.all[known as usize] = new;
+        let known = self.like(&new).next();
+        if let Some(known) = known {
+            self.all[known] = new;
             return;
         }
         let index = self.all.len() as u32;

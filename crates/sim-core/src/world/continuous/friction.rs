@@ -15,7 +15,8 @@ use glam::DVec3;
 
 use super::super::World;
 use super::constraint_solve::{Island, Places, Solution};
-use crate::impulse::{Joined, Known, drag, project_with};
+use super::contact_set::ContactConstraint;
+use crate::impulse::{Joined, Known, drag, greatest, limit, project_with};
 
 /// Turns of normal forces and friction at most.
 const MAX_TURNS: usize = 64;
@@ -51,23 +52,22 @@ impl Friction {
         let Some(&coefficient) = self.coefficient.get(k) else {
             return false;
         };
-        coefficient > 0.0
-            && force > 0.0
-            && self.force[k].length() >= NEARLY_ALL * coefficient * force
+        let most = limit(coefficient, force);
+        most > 0.0 && self.force[k].length() >= NEARLY_ALL * most
     }
 
     /// What acceleration against a contact's sliding, m/s², friction makes up for as far as it can: one that
     /// brings it to rest in the middle of its sliding, so that friction that cannot is against the
-    /// motion's middle. Of a contact with an inverse mass, pressed with a force, while its bodies are
-    /// accelerated against each other.
-    fn wanted(&self, k: usize, inverse_mass: f64, pressed: f64, acceleration: DVec3) -> DVec3 {
+    /// motion's middle. Of a contact that yields to forces by an inverse mass, with a greatest friction, whose
+    /// bodies are accelerated against each other.
+    fn wanted(&self, k: usize, yielding: f64, most: f64, acceleration: DVec3) -> DVec3 {
         let sliding = self.sliding[k];
         let Some(direction) = sliding.try_normalize() else {
             return DVec3::ZERO;
         };
         // By all friction that there is, against the sliding at the start.
-        let without = acceleration - inverse_mass * self.force[k];
-        let slowing = self.coefficient[k] * pressed * inverse_mass - direction.dot(without);
+        let without = acceleration - yielding * self.force[k];
+        let slowing = most * yielding - direction.dot(without);
         let stop = match slowing > 0.0 {
             true => sliding.length() / slowing - self.stagger,
             false => f64::INFINITY,
@@ -111,9 +111,11 @@ impl World {
             .then_some(coefficients)
     }
 
-    /// Whether a contact hardly slides: by no more in a step than a small part of its gap.
-    fn sticks(&self, (i, j): (usize, usize), sliding: DVec3) -> bool {
-        sliding.length() <= 0.0625 * self.hover_gap(i, j) / self.settings.dt
+    /// Whether a contact that has stuck still does: it slides by no more in a step than a small part of its
+    /// gap.
+    fn sticks(&self, contact: &ContactConstraint, sliding: DVec3) -> bool {
+        let (i, j) = contact.bodies;
+        contact.sticks && sliding.length() <= 0.0625 * self.hover_gap(i, j) / self.settings.dt
     }
 
     /// Lets the impulses of an island's contacts (`given`, N s) rub, and contacts press that close by it:
@@ -139,16 +141,13 @@ impl World {
         } = places;
         let sticks = |k: usize, velocity: &[DVec3]| {
             let constraint = constraint(k);
-            constraint.load_speed > 0.0
-                && self.sticks(constraint.bodies, joined[k].sliding(velocity))
+            constraint.load_speed > 0.0 && self.sticks(constraint, joined[k].sliding(velocity))
         };
         let mut dragged = vec![DVec3::ZERO; count];
         for _ in 0..MAX_TURNS {
-            let limit = |k: usize| match coefficient[k] {
-                0.0 => 0.0,
-                _ if sticks(k, velocity) => f64::INFINITY,
-                c if given[k] > 0.0 => c * given[k],
-                _ => 0.0,
+            let limit = |k: usize| match coefficient[k] > 0.0 && sticks(k, velocity) {
+                true => f64::INFINITY,
+                false => limit(coefficient[k], given[k]),
             };
             let limit: Vec<f64> = (0..count).map(limit).collect();
             if limit.iter().all(|&limit| limit == 0.0) {
@@ -191,7 +190,7 @@ impl World {
         let all = self.contacts.all();
         let sliding = |(joined, &index): (&Joined, &usize)| {
             let sliding = joined.sliding(velocity);
-            match self.sticks(all[index].bodies, sliding) {
+            match self.sticks(&all[index], sliding) {
                 true => DVec3::ZERO,
                 false => sliding,
             }
@@ -224,44 +223,37 @@ impl World {
             inverse_mass,
             ..
         } = places;
-        let most = solution
-            .free
-            .iter()
-            .fold(0.0_f64, |most, a| most.max(a.length()));
-        let enough = 4.0 * f64::EPSILON * most;
+        let enough = 4.0 * f64::EPSILON * greatest(&solution.free);
         for turn in 0..=MAX_TURNS {
             self.press(island, places, solution);
             let friction = &solution.friction;
             let mut acceleration = solution.acceleration.clone();
             let mut force = friction.force.clone();
             let count = force.len();
-            let (mut limit, mut wanted) = (vec![0.0; count], vec![DVec3::ZERO; count]);
-            for k in 0..count {
-                let pressed = match solution.open[k] {
-                    true => 0.0,
-                    false => solution.force[k].max(0.0),
-                };
-                if pressed > 0.0 {
-                    let (i, j) = joined[k].bodies;
-                    let both = inverse_mass[i] + inverse_mass[j];
+            let pressed = |k: usize| match solution.open[k] {
+                true => 0.0,
+                false => solution.force[k],
+            };
+            let most = |k: usize| limit(friction.coefficient[k], pressed(k));
+            let most: Vec<f64> = (0..count).map(most).collect();
+            let wanted = |k: usize| match most[k] > 0.0 {
+                true => {
                     let pushed = joined[k].sliding(&solution.acceleration);
-                    limit[k] = friction.coefficient[k] * pressed;
-                    wanted[k] = friction.wanted(k, both, pressed, pushed);
+                    friction.wanted(k, places.yielding(k), most[k], pushed)
                 }
-            }
+                false => DVec3::ZERO,
+            };
+            let wanted: Vec<DVec3> = (0..count).map(wanted).collect();
             drag(
                 joined,
                 inverse_mass,
                 &mut acceleration,
-                &limit,
+                &most,
                 &wanted,
                 &mut force,
                 enough,
             );
-            let change = |k: usize| {
-                let (i, j) = joined[k].bodies;
-                (force[k] - friction.force[k]).length() * (inverse_mass[i] + inverse_mass[j])
-            };
+            let change = |k: usize| (force[k] - friction.force[k]).length() * places.yielding(k);
             let change = (0..count).map(change).fold(0.0, f64::max);
             if change <= enough || turn == MAX_TURNS {
                 break;

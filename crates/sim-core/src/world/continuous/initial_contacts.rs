@@ -64,16 +64,14 @@ impl World {
             }
             self.previous.position = moved;
             for plane in planes {
-                self.insert_contact(plane.bodies, plane.normal, plane.point);
+                self.insert_contact(plane.bodies, plane.normal, plane.point, false);
             }
         }
         let at = self.previous.position.clone();
         pairs.retain(|&(i, j)| self.meet_at(i, j, at[j] - at[i]));
         for &(i, j) in &pairs {
             let (normal, _) = self.penetration(i, j, at[j] - at[i]);
-            self.insert_contact((i, j), normal, DVec3::ZERO);
-            let last = self.contacts.all().len() - 1;
-            self.contacts.get_mut(last).is_overlap = true;
+            self.insert_contact((i, j), normal, DVec3::ZERO, true);
         }
         self.overlapping = pairs;
     }
@@ -270,7 +268,7 @@ impl World {
                 }
             }
             for contact in found {
-                self.insert_contact((i, j), contact.normal, contact.point);
+                self.insert_contact((i, j), contact.normal, contact.point, false);
             }
         }
     }
@@ -307,21 +305,27 @@ impl World {
         pairs
     }
 
-    fn insert_contact(&mut self, (i, j): (usize, usize), normal: DVec3, point: DVec3) {
+    fn insert_contact(
+        &mut self,
+        (i, j): (usize, usize),
+        normal: DVec3,
+        point: DVec3,
+        is_overlap: bool,
+    ) {
         let movable = (self.is_movable(i), self.is_movable(j));
         let constraint = ContactConstraint {
             bodies: (i, j),
             normal,
             gap: self.hover_gap(i, j),
             target: 0.0,
-            recession: 0.0,
             is_turning: false,
             load_speed: 0.0,
             ends_at: f64::INFINITY,
             point,
             impulse: 0.0,
             friction: DVec3::ZERO,
-            is_overlap: false,
+            sticks: true,
+            is_overlap,
         };
         self.contacts.insert(
             constraint,

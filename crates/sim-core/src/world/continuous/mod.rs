@@ -82,9 +82,8 @@ pub(super) struct Continuous {
     partners: Vec<usize>,
     crush: CrushDetector,
     pub(super) progress: Progress,
-    /// What happens at one instant, and what is found after it.
+    /// What happens at one instant.
     group: Vec<Event>,
-    found: Vec<Event>,
     /// Whether every trajectory is a parabola.
     is_free: bool,
     /// Whether bodies have been placed since it was found out who touches.
@@ -208,9 +207,9 @@ impl World {
             return Err(self.failed(body, cause));
         }
         self.forget_parted_overlaps();
+        self.bundled.bodies = self.contacts.bundled_bodies();
         self.contacts.end_step();
         self.contact_steps += u64::from(!self.contacts.is_empty());
-        self.bundled.bodies = self.contacts.bundled_bodies();
         Ok(())
     }
 
@@ -228,17 +227,15 @@ impl World {
         self.release_bouncing();
         let mut restarted = mem::take(&mut self.continuous.restarted);
         restarted.clear();
-        let awake = |body: &usize| !self.is_asleep(*body);
-        let seeds: Vec<usize> = self.solid.iter().copied().filter(awake).collect();
+        let all = self.contacts.all().iter();
+        let both = all.flat_map(|contact| [contact.bodies.0, contact.bodies.1]);
+        let seeds: Vec<usize> = both.filter(|&body| !self.is_asleep(body)).collect();
         self.solve_islands_of(&seeds, 0.0, &mut restarted)?;
         restarted.sort_unstable();
         restarted.dedup();
         self.stagger_velocities(&restarted);
         self.finish_restarted(&restarted)?;
-        let mut events = mem::take(&mut self.continuous.found);
-        self.contact_ends(&restarted, &mut events);
-        self.continuous.events.extend(events.drain(..));
-        self.continuous.found = events;
+        self.queue_contact_ends(&restarted);
         self.continuous.restarted = restarted;
         Ok(())
     }

@@ -22,7 +22,7 @@ use super::contact_set::ContactConstraint;
 use super::{Bounces, Event, EventKind, Outcome};
 use crate::{
     collide::Contact,
-    impulse::{Joined, drag, reflect},
+    impulse::{Joined, drag, greatest, limit, reflect},
     pieces::Pieces,
 };
 
@@ -92,10 +92,7 @@ impl World {
         for &body in &restarted {
             self.find_impacts_of(body, &restarted)?;
         }
-        let mut events = mem::take(&mut self.continuous.found);
-        self.contact_ends(&restarted, &mut events);
-        self.continuous.events.extend(events.drain(..));
-        self.continuous.found = events;
+        self.queue_contact_ends(&restarted);
         self.continuous.restarted = restarted;
         Ok(())
     }
@@ -132,29 +129,25 @@ impl World {
         loop {
             let mut visited = mem::take(&mut self.continuous.visited);
             visited.begin(self.len());
-            let mut tied = vec![false; self.len()];
             let mut is_bundled = false;
             for body in group
                 .iter()
                 .flat_map(|event| [event.bodies.0, event.bodies.1])
             {
                 if let Some(island) = self.island_of(body, &mut visited) {
-                    for body in island.bodies {
-                        tied[body] = true;
-                        is_bundled |= self.is_bundled(body);
-                    }
+                    is_bundled |= island.bodies.iter().any(|&body| self.is_bundled(body));
                 }
             }
-            self.continuous.visited = visited;
             let is_tied = |event: &&Event| {
                 let (i, j) = event.bodies;
                 event.kind == EventKind::Impact
                     && self.is_current(event)
-                    && (tied[i] || tied[j])
+                    && (visited.has(i) || visited.has(j))
                     && group.iter().all(|known| known.bodies != event.bodies)
             };
             let soon = self.continuous.events.iter().filter(is_tied);
             let mut soon: Vec<Event> = soon.cloned().collect();
+            self.continuous.visited = visited;
             soon.sort_unstable_by(|a, b| b.cmp(a));
             let before = group.len();
             for mut event in soon {
@@ -354,13 +347,13 @@ impl World {
             normal: event.contact.normal,
             gap,
             target,
-            recession: 0.0,
             is_turning: false,
             load_speed: event.load_speed,
             ends_at: f64::INFINITY,
             point: event.contact.point - position[i],
             impulse: 0.0,
             friction: DVec3::ZERO,
+            sticks: true,
             is_overlap: false,
         };
         let movable = (self.is_movable(i), self.is_movable(j));
@@ -510,15 +503,10 @@ impl World {
             restitution,
         );
         if self.is_rough() {
-            let bodies = events.clone().map(|event| event.bodies);
-            let limit = bodies
-                .zip(&given)
-                .map(|((i, j), given)| match self.pair_friction(i, j) {
-                    0.0 => 0.0,
-                    friction => friction * given.max(f64::MIN_POSITIVE),
-                });
-            let limit: Vec<f64> = limit.collect();
-            let fastest = before.iter().fold(0.0_f64, |most, v| most.max(v.length()));
+            let bodies = events.clone().map(|event| event.bodies).zip(&given);
+            let most = bodies.map(|((i, j), &given)| limit(self.pair_friction(i, j), given));
+            let most: Vec<f64> = most.collect();
+            let fastest = greatest(&before);
             let none = vec![DVec3::ZERO; given.len()];
             let mut dragged = none.clone();
             let enough = f64::EPSILON * fastest;
@@ -531,7 +519,7 @@ impl World {
                 joined,
                 inverse_mass,
                 &mut velocity,
-                &limit,
+                &most,
                 &none,
                 &mut dragged,
                 enough,
