@@ -5,15 +5,15 @@ use glam::DVec3;
 
 use super::Joined;
 
-/// Sweeps at most. One or two are enough for a body on others; a row of them takes about the square of
-/// its length.
-const MAX_SWEEPS: usize = 2000;
+/// Sweeps that bring any contacts to the answer, at most. One or two are enough for a body on others; a row of
+/// them takes about the square of its length.
+pub const ALL_SWEEPS: usize = 2000;
 
 /// Brings what slides across the normals of contacts as near to rest as friction can: of the impulses
 /// `given` (N s, changed in place) that are no longer than the contact's `limit` (N s) those that leave
 /// the least energy (Moreau 1988, "Unilateral contact and dry friction in finite freedom dynamics": the
 /// principle of most dissipation). Velocities (m/s) hold what has been given already, and end within
-/// `enough` of the answer; each contact slides by `more` than they say (m/s). Likewise for accelerations
+/// `enough` of the answer, or after so many sweeps; each contact slides by `more` than they say (m/s). Likewise for accelerations
 /// and forces.
 ///
 /// Impulses go round the contacts one by one (Gauss, Seidel), each to its best within its disc, sped up by
@@ -26,14 +26,14 @@ pub fn drag(
     limit: &[f64],
     more: &[DVec3],
     given: &mut [DVec3],
-    enough: f64,
+    (enough, sweeps): (f64, usize),
 ) {
     let rubs = |k: &usize| limit[*k] > 0.0 || given[*k] != DVec3::ZERO;
     let rubbing: Vec<usize> = (0..contacts.len()).filter(rubs).collect();
     let mut direction = vec![DVec3::ZERO; rubbing.len()];
     let mut before: Vec<DVec3> = rubbing.iter().map(|&k| given[k]).collect();
     let mut last = f64::INFINITY;
-    for _ in 0..MAX_SWEEPS {
+    for _ in 0..sweeps {
         let mut worst = 0.0_f64;
         for &k in &rubbing {
             let contact = &contacts[k];
@@ -142,7 +142,7 @@ mod tests {
             &[f64::INFINITY; 12],
             &[DVec3::ZERO; 12],
             &mut given,
-            1e-14,
+            (1e-14, ALL_SWEEPS),
         );
         for (k, v) in velocity.iter().enumerate() {
             assert!(v.length() < 1e-12, "{k}: {v}");
@@ -166,7 +166,7 @@ mod tests {
                 &[0.5],
                 &[DVec3::ZERO],
                 &mut given,
-                0.0,
+                (0.0, ALL_SWEEPS),
             );
             let wanted = 2.5 * along + DVec3::Y;
             assert!((velocity[1] - wanted).length() < 1e-15);
@@ -198,7 +198,7 @@ mod tests {
             &limit,
             &[DVec3::ZERO; 6],
             &mut given,
-            1e-15,
+            (1e-15, ALL_SWEEPS),
         );
         assert!(energy(&velocity) < before);
         for ((contact, given), limit) in contacts.iter().zip(&given).zip(limit) {

@@ -17,7 +17,7 @@ mod together;
 use glam::DVec3;
 
 use crate::expansion::two_sum;
-pub use friction::{apply, drag, limit, rub};
+pub use friction::{ALL_SWEEPS, apply, drag, limit, rub};
 pub use together::{Joined, Known, greatest, project, project_with, reflect};
 
 /// What two bodies exchange.

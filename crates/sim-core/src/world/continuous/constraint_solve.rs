@@ -244,14 +244,12 @@ impl World {
         let before = velocity.clone();
         let (mut given, target) =
             self.stop_closing(island, places, &mut velocity, (&held, &still, rounding));
+        let mut spent = None;
         if self.is_rough() {
-            self.rub(
-                island,
-                places,
-                &mut velocity,
-                &mut given,
-                (rounding, &target),
-            );
+            let bundled = is_bundled.then_some(left);
+            let checks = (rounding, &target[..]);
+            let rubbed = self.rub(island, places, &mut velocity, &mut given, checks, bundled);
+            spent = bundled.map(|left| rubbed.into_iter().map(|rubbed| rubbed / left).collect());
         }
         let parting: Vec<f64> = (0..count)
             .map(|k| places.joined[k].opening(&velocity) - target[k])
@@ -274,7 +272,7 @@ impl World {
             friction: Friction::default(),
         };
         if self.is_rough() {
-            solution.friction = self.friction_of(island, places, &velocity, is_bundled, time);
+            solution.friction = self.friction_of(island, places, &velocity, spent, time);
         }
         self.constrain(island, places, &mut solution);
         if let Some(k) = (0..count).find(|&k| parting[k] < -(still[k] + UNSOLVED * fastest))

@@ -8,7 +8,9 @@
 //!
 //! The direction of sliding is taken in the middle of the motion, which makes it right to second order.
 //! Sliding that ends within the step ends the contact's force there (an event), and what has come to rest
-//! is held. In a heap, whose contacts are solved once a step, sliding is stopped by the step's end instead.
+//! is held. In a heap, whose contacts are solved once a step, friction stops sliding where the step starts,
+//! by as much as it can in the step, and what is left of it holds. Neither adds energy, wherever the
+//! step is cut.
 
 use alloc::{vec, vec::Vec};
 use glam::DVec3;
@@ -16,10 +18,13 @@ use glam::DVec3;
 use super::super::World;
 use super::constraint_solve::{Island, Places, Solution};
 use super::contact_set::ContactConstraint;
-use crate::impulse::{Joined, Known, drag, greatest, limit, project_with};
+use crate::impulse::{ALL_SWEEPS, Joined, Known, drag, greatest, limit, project_with};
 
-/// Turns of normal forces and friction at most.
-const MAX_TURNS: usize = 64;
+/// Turns of normal forces and friction at most, and sweeps of friction in each; and in a heap, where each
+/// step goes on from the answer of the last one.
+const ALL: Effort = (64, ALL_SWEEPS);
+const OF_A_STEP: Effort = (3, 32);
+type Effort = (usize, usize);
 
 /// Part of the greatest friction from which on a contact does not hold.
 const NEARLY_ALL: f64 = 1.0 - 1e-12;
@@ -38,8 +43,8 @@ pub(super) struct Friction {
     left: f64,
     /// How long before the trajectory's velocity the one is that the method keeps, s.
     stagger: f64,
-    /// Whether sliding is stopped by the end of the step.
-    is_bundled: bool,
+    /// In a heap the part of each contact's friction that has gone into stopping, N; else nothing.
+    spent: Vec<f64>,
 }
 
 impl Friction {
@@ -53,7 +58,16 @@ impl Friction {
             return false;
         };
         let most = limit(coefficient, force);
-        most > 0.0 && self.force[k].length() >= NEARLY_ALL * most
+        most > 0.0 && self.force[k].length() + self.spent(k) >= NEARLY_ALL * most
+    }
+
+    fn spent(&self, k: usize) -> f64 {
+        self.spent.get(k).copied().unwrap_or(0.0)
+    }
+
+    /// The greatest friction of a contact that is pressed with a force, N.
+    fn most(&self, k: usize, pressed: f64) -> f64 {
+        (limit(self.coefficient[k], pressed) - self.spent(k)).max(0.0)
     }
 
     /// What acceleration against a contact's sliding, m/s², friction makes up for as far as it can: one that
@@ -72,7 +86,8 @@ impl Friction {
             true => sliding.length() / slowing - self.stagger,
             false => f64::INFINITY,
         };
-        if self.is_bundled || stop <= 0.0 {
+        // What a method of first order has already turned round.
+        if stop <= 0.0 {
             return sliding / self.left;
         }
         let middle = 0.5 * stop.min(self.left) + self.stagger;
@@ -120,7 +135,8 @@ impl World {
 
     /// Lets the impulses of an island's contacts (`given`, N s) rub, and contacts press that close by it:
     /// speeds below `rounding` are none. Contacts that hardly slide and that forces press are brought to a
-    /// stand.
+    /// stand; in a heap all that forces press, by what those can give in what is `left` of the step (s).
+    /// Returns how much of this each has taken, N s.
     pub(super) fn rub(
         &self,
         island: &Island,
@@ -128,9 +144,10 @@ impl World {
         velocity: &mut [DVec3],
         given: &mut [f64],
         (rounding, target): (f64, &[f64]),
-    ) {
+        left: Option<f64>,
+    ) -> Vec<f64> {
         let Some(coefficient) = self.coefficients(island) else {
-            return;
+            return Vec::new();
         };
         let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
         let count = given.len();
@@ -143,36 +160,50 @@ impl World {
             let constraint = constraint(k);
             constraint.load_speed > 0.0 && self.sticks(constraint, joined[k].sliding(velocity))
         };
+        let of_load = |k: usize| match left {
+            Some(left) => {
+                let load = constraint(k).load_speed / self.settings.dt / places.yielding(k);
+                limit(coefficient[k], left * load)
+            }
+            None => 0.0,
+        };
+        let of_load: Vec<f64> = (0..count).map(of_load).collect();
         let mut dragged = vec![DVec3::ZERO; count];
-        for _ in 0..MAX_TURNS {
-            let limit = |k: usize| match coefficient[k] > 0.0 && sticks(k, velocity) {
-                true => f64::INFINITY,
-                false => limit(coefficient[k], given[k]),
-            };
-            let limit: Vec<f64> = (0..count).map(limit).collect();
-            if limit.iter().all(|&limit| limit == 0.0) {
-                return;
+        let (turns, sweeps) = if left.is_none() { ALL } else { OF_A_STEP };
+        for _ in 0..turns {
+            let most =
+                |k: usize| match left.is_none() && coefficient[k] > 0.0 && sticks(k, velocity) {
+                    true => f64::INFINITY,
+                    false => limit(coefficient[k], given[k]) + of_load[k],
+                };
+            let most: Vec<f64> = (0..count).map(most).collect();
+            if most.iter().all(|&most| most == 0.0) {
+                break;
             }
             let none = vec![DVec3::ZERO; count];
             drag(
                 joined,
                 inverse_mass,
                 velocity,
-                &limit,
+                &most,
                 &none,
                 &mut dragged,
-                0.25 * rounding,
+                (0.25 * rounding, sweeps),
             );
             let missing = |k: usize| target[k] - joined[k].opening(velocity);
             let missing: Vec<f64> = (0..count).map(missing).collect();
             if missing.iter().all(|&missing| missing <= rounding) {
-                return;
+                break;
             }
             let more = project_with(joined, inverse_mass, velocity, &missing, Known::default());
             for (given, more) in given.iter_mut().zip(more) {
                 *given += more;
             }
         }
+        let beyond = |k: usize| dragged[k].length() - limit(coefficient[k], given[k]);
+        (0..count)
+            .map(|k| beyond(k).clamp(0.0, of_load[k]))
+            .collect()
     }
 
     /// What is known of an island's friction before its forces are.
@@ -181,7 +212,7 @@ impl World {
         island: &Island,
         places: &Places,
         velocity: &[DVec3],
-        is_bundled: bool,
+        spent: Option<Vec<f64>>,
         time: f64,
     ) -> Friction {
         let Some(coefficient) = self.coefficients(island) else {
@@ -190,7 +221,7 @@ impl World {
         let all = self.contacts.all();
         let sliding = |(joined, &index): (&Joined, &usize)| {
             let sliding = joined.sliding(velocity);
-            match self.sticks(&all[index], sliding) {
+            match spent.is_some() || self.sticks(&all[index], sliding) {
                 true => DVec3::ZERO,
                 false => sliding,
             }
@@ -211,7 +242,7 @@ impl World {
                 0.0
             },
             coefficient,
-            is_bundled,
+            spent: spent.unwrap_or_default(),
         }
     }
 
@@ -224,7 +255,11 @@ impl World {
             ..
         } = places;
         let enough = 4.0 * f64::EPSILON * greatest(&solution.free);
-        for turn in 0..=MAX_TURNS {
+        let (turns, sweeps) = match solution.friction.spent.is_empty() {
+            true => ALL,
+            false => OF_A_STEP,
+        };
+        for turn in 0..=turns {
             self.press(island, places, solution);
             let friction = &solution.friction;
             let mut acceleration = solution.acceleration.clone();
@@ -234,7 +269,7 @@ impl World {
                 true => 0.0,
                 false => solution.force[k],
             };
-            let most = |k: usize| limit(friction.coefficient[k], pressed(k));
+            let most = |k: usize| friction.most(k, pressed(k));
             let most: Vec<f64> = (0..count).map(most).collect();
             let wanted = |k: usize| match most[k] > 0.0 {
                 true => {
@@ -251,17 +286,17 @@ impl World {
                 &most,
                 &wanted,
                 &mut force,
-                enough,
+                (enough, sweeps),
             );
             let change = |k: usize| (force[k] - friction.force[k]).length() * places.yielding(k);
             let change = (0..count).map(change).fold(0.0, f64::max);
-            if change <= enough || turn == MAX_TURNS {
+            if change <= enough || turn == turns {
                 break;
             }
             solution.friction.force = force;
         }
         let friction = &solution.friction;
-        if !friction.is_bundled {
+        if friction.spent.is_empty() {
             let ends = |k: usize| match friction.sliding[k] == DVec3::ZERO {
                 true => f64::INFINITY,
                 false => friction.stops_after(k, joined[k].sliding(&solution.acceleration)),

@@ -22,7 +22,7 @@ use super::contact_set::ContactConstraint;
 use super::{Bounces, Event, EventKind, Outcome};
 use crate::{
     collide::Contact,
-    impulse::{Joined, drag, greatest, limit, reflect},
+    impulse::{ALL_SWEEPS, Joined, drag, greatest, limit, reflect},
     pieces::Pieces,
 };
 
@@ -509,7 +509,7 @@ impl World {
             let fastest = greatest(&before);
             let none = vec![DVec3::ZERO; given.len()];
             let mut dragged = none.clone();
-            let enough = f64::EPSILON * fastest;
+            let enough = (f64::EPSILON * fastest, ALL_SWEEPS);
             let Places {
                 joined,
                 inverse_mass,
