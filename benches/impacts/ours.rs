@@ -40,6 +40,7 @@ pub(crate) fn world(scene: &Scene, collision: Collision, method: &str) -> World 
             velocity: item.velocity,
             mass: if is_wall { f64::INFINITY } else { 1.0 },
             restitution: scene.restitution,
+            friction: scene.friction,
             ..Body::default()
         };
         world.add(body).expect("a body");

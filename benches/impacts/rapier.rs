@@ -70,7 +70,7 @@ impl Rapier {
                 .ccd_enabled(item.is_bullet && !is_wall);
             match collider {
                 Some(collider) => {
-                    let collider = collider.mass(1.0).friction(0.0);
+                    let collider = collider.mass(1.0).friction(scene.friction);
                     let collider = collider.restitution(scene.restitution);
                     world.insert(body, collider).0
                 }

@@ -25,13 +25,14 @@ pub(crate) struct Item {
     pub(crate) is_bullet: bool,
 }
 
-/// Bodies of 1 kg without friction that do not turn, elastic unless said, and immovable walls.
+/// Bodies of 1 kg that do not turn, elastic and without friction unless said, and immovable walls.
 #[derive(Clone)]
 pub(crate) struct Scene {
     pub(crate) items: Vec<Item>,
     pub(crate) dt: f64,
     pub(crate) gravity: DVec3,
     pub(crate) restitution: f64,
+    pub(crate) friction: f64,
 }
 
 impl Scene {
@@ -41,6 +42,7 @@ impl Scene {
             dt: 1.0 / 60.0,
             gravity: DVec3::ZERO,
             restitution: 1.0,
+            friction: 0.0,
         }
     }
 }

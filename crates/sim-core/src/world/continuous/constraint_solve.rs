@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
 use super::contact_motion::{Course, LEAST_GAP};
-use super::friction::Friction;
+use super::friction::{FEW, Friction};
 use super::{Event, EventKind, Outcome};
 use crate::impulse::{Joined, Known, apply, greatest, project_with};
 
@@ -41,6 +41,8 @@ pub(super) struct Island {
 
 /// What an island does, by its constraints and the places of its bodies.
 pub(super) struct Solution {
+    /// Whether it is that of a heap.
+    pub(super) is_bundled: bool,
     /// Which contacts part, and keep nothing.
     pub(super) open: Vec<bool>,
     /// Acceleration by which each may close, m/s².
@@ -194,7 +196,7 @@ impl World {
         let is_bundled = self.spread_bundle(island);
         let places = Places::of(self, &island.constraints);
         let mut solution = self.solve_velocities(island, &places, is_bundled, time)?;
-        self.solve_accelerations(island, &places, &mut solution, is_bundled, time);
+        self.solve_accelerations(island, &places, &mut solution, time);
         let mut gone: Vec<usize> = (0..island.constraints.len())
             .filter(|&k| solution.open[k])
             .map(|k| island.constraints[k])
@@ -264,6 +266,7 @@ impl World {
         };
         let recession: Vec<f64> = (0..count).map(recession).collect();
         let mut solution = Solution {
+            is_bundled,
             open,
             recession,
             free,
@@ -274,7 +277,12 @@ impl World {
         if self.is_rough() {
             solution.friction = self.friction_of(island, places, &velocity, spent, time);
         }
-        self.constrain(island, places, &mut solution);
+        // So many contacts that their friction is not found now are a heap.
+        if !self.constrain(island, places, &mut solution) && !is_bundled && count > FEW {
+            self.contacts.bundle(&island.bodies);
+            self.contacts.keep_bundled(&island.bodies);
+            return self.solve_velocities(island, places, true, time);
+        }
         if let Some(k) = (0..count).find(|&k| parting[k] < -(still[k] + UNSOLVED * fastest))
             && let Some(crushed) = self.crushed(island, constraint(k).bodies)
         {
@@ -405,7 +413,6 @@ impl World {
         island: &Island,
         places: &Places,
         solution: &mut Solution,
-        is_bundled: bool,
         time: f64,
     ) {
         let Solution {
@@ -421,7 +428,7 @@ impl World {
         }
         // Where events come thick, surfaces count as flat for the rest of the step: nothing meets, and what
         // opens closes in the next one.
-        if !is_bundled && self.follow_surfaces(island, places, solution, time) {
+        if !solution.is_bundled && self.follow_surfaces(island, places, solution, time) {
             self.constrain(island, places, solution);
         }
         self.note_forces(island, places, solution, time);
@@ -501,12 +508,13 @@ impl World {
     }
 
     /// The accelerations nearest to free ones with which no contact that is not open closes more than
-    /// its surface recedes, and the force of each contact.
-    fn constrain(&self, island: &Island, places: &Places, solution: &mut Solution) {
-        match solution.friction.is_empty() {
-            true => self.press(island, places, solution),
-            false => self.press_and_drag(island, places, solution),
+    /// its surface recedes, and the force of each contact; and whether they have been found.
+    fn constrain(&self, island: &Island, places: &Places, solution: &mut Solution) -> bool {
+        if !solution.friction.is_empty() {
+            return self.press_and_drag(island, places, solution);
         }
+        self.press(island, places, solution);
+        true
     }
 
     /// The same where friction does what it does.

@@ -20,11 +20,18 @@ use super::constraint_solve::{Island, Places, Solution};
 use super::contact_set::ContactConstraint;
 use crate::impulse::{ALL_SWEEPS, Joined, Known, drag, greatest, limit, project_with};
 
-/// Turns of normal forces and friction at most, and sweeps of friction in each; and in a heap, where each
-/// step goes on from the answer of the last one.
-const ALL: Effort = (64, ALL_SWEEPS);
-const OF_A_STEP: Effort = (3, 32);
-type Effort = (usize, usize);
+/// Contacts that turns bring to the answer, wherever it is; more are bundled where a few turns do not.
+pub(super) const FEW: usize = 16;
+
+/// Turns of normal forces and friction at most, and sweeps of friction in each: for few contacts, for more,
+/// and in a heap, where each step goes on from the answer of the last one.
+fn effort(contacts: usize, is_bundled: bool) -> (usize, usize) {
+    match is_bundled {
+        true => (3, 32),
+        false if contacts <= FEW => (64, ALL_SWEEPS),
+        false => (8, 200),
+    }
+}
 
 /// Part of the greatest friction from which on a contact does not hold.
 const NEARLY_ALL: f64 = 1.0 - 1e-12;
@@ -169,7 +176,7 @@ impl World {
         };
         let of_load: Vec<f64> = (0..count).map(of_load).collect();
         let mut dragged = vec![DVec3::ZERO; count];
-        let (turns, sweeps) = if left.is_none() { ALL } else { OF_A_STEP };
+        let (turns, sweeps) = effort(count, left.is_some());
         for _ in 0..turns {
             let most =
                 |k: usize| match left.is_none() && coefficient[k] > 0.0 && sticks(k, velocity) {
@@ -247,18 +254,21 @@ impl World {
     }
 
     /// The forces along the normals of an island's contacts and across them, and the accelerations that
-    /// they leave.
-    pub(super) fn press_and_drag(&self, island: &Island, places: &Places, solution: &mut Solution) {
+    /// they leave. Tells whether these are the answer, and not only near it.
+    pub(super) fn press_and_drag(
+        &self,
+        island: &Island,
+        places: &Places,
+        solution: &mut Solution,
+    ) -> bool {
         let Places {
             joined,
             inverse_mass,
             ..
         } = places;
         let enough = 4.0 * f64::EPSILON * greatest(&solution.free);
-        let (turns, sweeps) = match solution.friction.spent.is_empty() {
-            true => ALL,
-            false => OF_A_STEP,
-        };
+        let (turns, sweeps) = effort(joined.len(), solution.is_bundled);
+        let mut is_answer = false;
         for turn in 0..=turns {
             self.press(island, places, solution);
             let friction = &solution.friction;
@@ -290,18 +300,20 @@ impl World {
             );
             let change = |k: usize| (force[k] - friction.force[k]).length() * places.yielding(k);
             let change = (0..count).map(change).fold(0.0, f64::max);
-            if change <= enough || turn == turns {
+            is_answer = change <= enough;
+            if is_answer || turn == turns {
                 break;
             }
             solution.friction.force = force;
         }
         let friction = &solution.friction;
-        if friction.spent.is_empty() {
+        if !solution.is_bundled {
             let ends = |k: usize| match friction.sliding[k] == DVec3::ZERO {
                 true => f64::INFINITY,
                 false => friction.stops_after(k, joined[k].sliding(&solution.acceleration)),
             };
             solution.friction.ends_after = (0..joined.len()).map(ends).collect();
         }
+        is_answer
     }
 }
