@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
 use super::contact_motion::{Course, LEAST_GAP};
-use super::friction::{FEW, Friction};
+use super::friction::Friction;
 use super::{Event, EventKind, Outcome};
 use crate::impulse::{Joined, Known, apply, greatest, project_with};
 
@@ -277,8 +277,8 @@ impl World {
         if self.is_rough() {
             solution.friction = self.friction_of(island, places, &velocity, spent, time);
         }
-        // So many contacts that their friction is not found now are a heap.
-        if !self.constrain(island, places, &mut solution) && !is_bundled && count > FEW {
+        // Contacts whose friction is not found now are a heap.
+        if !self.constrain(island, places, &mut solution) && !is_bundled {
             self.contacts.bundle(&island.bodies);
             self.contacts.keep_bundled(&island.bodies);
             return self.solve_velocities(island, places, true, time);
@@ -496,7 +496,7 @@ impl World {
     }
 
     /// A speed that changes no gap of an island in a step by more than a small part of the least one, m/s.
-    fn unseen_speed(&self, island: &Island) -> f64 {
+    pub(super) fn unseen_speed(&self, island: &Island) -> f64 {
         let all = self.contacts.all();
         let hover = |&index: &usize| self.hover_gap(all[index].bodies.0, all[index].bodies.1);
         let least = island

@@ -20,11 +20,12 @@ use super::constraint_solve::{Island, Places, Solution};
 use super::contact_set::ContactConstraint;
 use crate::impulse::{ALL_SWEEPS, Joined, Known, drag, greatest, limit, project_with};
 
-/// Contacts that turns bring to the answer, wherever it is; more are bundled where a few turns do not.
-pub(super) const FEW: usize = 16;
+/// Contacts for which an answer far away is sought as well.
+const FEW: usize = 4;
 
-/// Turns of normal forces and friction at most, and sweeps of friction in each: for few contacts, for more,
-/// and in a heap, where each step goes on from the answer of the last one.
+/// Turns of normal forces and friction at most, and sweeps of friction in each: for few contacts; for more,
+/// which are a heap where that does not do; and in a heap, where each step goes on from the answer of the
+/// last one.
 fn effort(contacts: usize, is_bundled: bool) -> (usize, usize) {
     match is_bundled {
         true => (3, 32),
@@ -177,6 +178,7 @@ impl World {
         let of_load: Vec<f64> = (0..count).map(of_load).collect();
         let mut dragged = vec![DVec3::ZERO; count];
         let (turns, sweeps) = effort(count, left.is_some());
+        let enough = (4.0 * rounding).max(self.unseen_speed(island) / 64.0);
         for _ in 0..turns {
             let most =
                 |k: usize| match left.is_none() && coefficient[k] > 0.0 && sticks(k, velocity) {
@@ -195,7 +197,7 @@ impl World {
                 &most,
                 &none,
                 &mut dragged,
-                (0.25 * rounding, sweeps),
+                (enough, sweeps),
             );
             let missing = |k: usize| target[k] - joined[k].opening(velocity);
             let missing: Vec<f64> = (0..count).map(missing).collect();
@@ -266,7 +268,6 @@ impl World {
             inverse_mass,
             ..
         } = places;
-        let enough = 4.0 * f64::EPSILON * greatest(&solution.free);
         let (turns, sweeps) = effort(joined.len(), solution.is_bundled);
         let mut is_answer = false;
         for turn in 0..=turns {
@@ -281,6 +282,11 @@ impl World {
             };
             let most = |k: usize| friction.most(k, pressed(k));
             let most: Vec<f64> = (0..count).map(most).collect();
+            let given = |k: usize| pressed(k) * places.yielding(k);
+            let largest = (0..count)
+                .map(given)
+                .fold(greatest(&solution.free), f64::max);
+            let enough = 8.0 * f64::EPSILON * largest;
             let wanted = |k: usize| match most[k] > 0.0 {
                 true => {
                     let pushed = joined[k].sliding(&solution.acceleration);

@@ -509,7 +509,7 @@ impl World {
             let fastest = greatest(&before);
             let none = vec![DVec3::ZERO; given.len()];
             let mut dragged = none.clone();
-            let enough = (f64::EPSILON * fastest, ALL_SWEEPS);
+            let enough = (16.0 * f64::EPSILON * fastest, ALL_SWEEPS);
             let Places {
                 joined,
                 inverse_mass,
