@@ -290,7 +290,7 @@ impl<'a> RunReport<'a> {
             (
                 "Path error",
                 drift.position.map_or_else(
-                    || "unknown after an impact, or under forces that are not constant".to_owned(),
+                    || "unknown once bodies have met, or under forces that are not constant".to_owned(),
                     |away| format!("{} m", number::figure(away)),
                 ),
             ),
