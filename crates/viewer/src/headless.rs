@@ -290,7 +290,10 @@ impl<'a> RunReport<'a> {
             (
                 "Path error",
                 drift.position.map_or_else(
-                    || "unknown once bodies have met, or under forces that are not constant".to_owned(),
+                    || {
+                        "unknown once bodies have met, or under forces that are not constant"
+                            .to_owned()
+                    },
                     |away| format!("{} m", number::figure(away)),
                 ),
             ),
