@@ -10,12 +10,12 @@
 //!
 //! The projection is `v + M⁻¹ Nᵀ λ` with `0 <= λ`, `0 <= N (v + M⁻¹ Nᵀ λ)`, each `λ` times its
 //! speed zero. Sums are taken in an order that depends on their terms alone, so that bodies in
-//! another order, and mirror images, give the same bits; but for heaps of more than 32 contacts.
+//! another order, and mirror images, give the same bits; but for heaps of more than 8 contacts.
 
 use alloc::{vec, vec::Vec};
 use glam::DVec3;
 
-use super::complementarity::{Matrix, sum};
+use super::complementarity::{self, sum};
 
 /// Two bodies in contact, and the unit normal from the first to the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -185,7 +185,7 @@ fn multipliers(
             let shared = contacts[0].shared(&contacts[1], inverse_mass);
             two(wanted, [own(0), own(1)], shared)
         }
-        _ => Matrix::of(contacts, inverse_mass).multipliers(wanted, known),
+        _ => complementarity::multipliers(contacts, inverse_mass, wanted, known),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Impulses of contacts that push or do not: a linear complementarity problem.
 
-mod descent;
+mod cholesky;
 mod guess;
+mod proximal;
 
 use alloc::{vec, vec::Vec};
 
@@ -13,9 +14,23 @@ const FEW: usize = 8;
 /// Part of the largest speed that is lost in solving.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// The least impulses after which no contact closes as far as it is wanted to open, and those that are held
+/// open just as far: none negative but of contacts that are held.
+pub(super) fn multipliers(
+    contacts: &[Joined],
+    inverse_mass: &[f64],
+    wanted: &[f64],
+    known: Known,
+) -> Vec<f64> {
+    let is_few = contacts.len() <= FEW;
+    let guess = || Matrix::of(contacts, inverse_mass).multipliers(wanted, known.held);
+    let guess = is_few.then(guess).flatten();
+    guess.unwrap_or_else(|| proximal::multipliers(contacts, inverse_mass, wanted, known))
+}
+
 /// The matrix `N M⁻¹ Nᵀ` by rows, of which most is zero; rows and columns scaled, so that heavy bodies
 /// count like light ones.
-pub(super) struct Matrix {
+struct Matrix {
     /// Where each begins, and where the last one ends.
     begin: Vec<usize>,
     entries: Vec<(u32, f64)>,
@@ -24,7 +39,7 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    pub(super) fn of(contacts: &[Joined], inverse_mass: &[f64]) -> Matrix {
+    fn of(contacts: &[Joined], inverse_mass: &[f64]) -> Matrix {
         let mut at: Vec<Vec<usize>> = vec![Vec::new(); inverse_mass.len()];
         for (k, contact) in contacts.iter().enumerate() {
             for body in [contact.bodies.0, contact.bodies.1] {
@@ -64,30 +79,19 @@ impl Matrix {
         }
     }
 
-    fn row(&self, k: usize) -> &[(u32, f64)] {
-        &self.entries[self.begin[k]..self.begin[k + 1]]
-    }
-
     fn rows(&self) -> impl Iterator<Item = &[(u32, f64)]> {
-        (1..self.begin.len()).map(|k| self.row(k - 1))
+        let bounds = self.begin.windows(2);
+        bounds.map(|bounds| &self.entries[bounds[0]..bounds[1]])
     }
 
-    /// The least impulses after which no contact closes as far as it is wanted to open, and those that
-    /// are held open just as far: none negative but of contacts that are held.
-    pub(super) fn multipliers(&self, wanted: &[f64], known: Known) -> Vec<f64> {
+    /// The multipliers, if they are found.
+    fn multipliers(&self, wanted: &[f64], held: &[bool]) -> Option<Vec<f64>> {
         let scaled = |values: &[f64]| -> Vec<f64> {
             let pairs = values.iter().zip(&self.scale);
             pairs.map(|(value, scale)| value * scale).collect()
         };
-        let wanted = scaled(wanted);
-        let is_few = wanted.len() <= FEW;
-        let guess = is_few.then(|| self.guess(&wanted, known.held)).flatten();
-        scaled(&guess.unwrap_or_else(|| {
-            let pairs = known.warm.iter().zip(&self.scale);
-            let warm = pairs.map(|(value, scale)| value / scale).collect();
-            let least_scale = self.scale.iter().fold(f64::INFINITY, |a, &b| a.min(b));
-            self.descend(&wanted, known.held, warm, known.enough * least_scale)
-        }))
+        self.guess(&scaled(wanted), held)
+            .map(|given| scaled(&given))
     }
 
     /// What is left of the wanted change after some impulses.

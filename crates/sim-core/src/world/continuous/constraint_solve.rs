@@ -330,18 +330,20 @@ impl World {
         let enough = self.unseen_speed(island);
         let before = velocity.to_vec();
         let mut target: Vec<f64> = (0..count).map(|k| constraint(k).target).collect();
+        let mut given = alloc::vec![0.0; count];
         loop {
             let missing = |velocity: &[DVec3], k: usize| target[k] - joined[k].opening(velocity);
             let closing: Vec<f64> = (0..count).map(|k| missing(velocity, k)).collect();
-            let mut given = alloc::vec![0.0; count];
             let is_due = |k: usize| closing[k] > rounding || held[k] && closing[k] < -still[k];
             if (0..count).any(is_due) {
                 let known = Known {
                     held,
-                    warm: &[],
+                    warm: &given,
                     enough,
                 };
                 given = project_with(joined, inverse_mass, velocity, &closing, known);
+            } else {
+                given.fill(0.0);
             }
             // A gap is widened where there is room for it, and where it takes no more than forces give back
             // that press it together.

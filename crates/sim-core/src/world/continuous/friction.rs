@@ -204,7 +204,11 @@ impl World {
             if missing.iter().all(|&missing| missing <= rounding) {
                 break;
             }
-            let more = project_with(joined, inverse_mass, velocity, &missing, Known::default());
+            let known = Known {
+                enough,
+                ..Known::default()
+            };
+            let more = project_with(joined, inverse_mass, velocity, &missing, known);
             for (given, more) in given.iter_mut().zip(more) {
                 *given += more;
             }

@@ -1,0 +1,249 @@
+//! `L Lᵀ` of a symmetric matrix of 3 × 3 blocks, one row of them a body, most of them zero.
+//!
+//! Rows are eliminated in the order of least degree (Tinney, Walker 1967, "Direct solutions of sparse
+//! network equations by optimally ordered triangular factorization", scheme 2), so that little of
+//! `L` fills up; columns are made one after the other from those to their left (George, Liu 1981,
+//! "Computer solution of large sparse positive definite systems", sec. 5).
+
+use alloc::{vec, vec::Vec};
+use glam::{DMat3, DVec3};
+
+/// No place in a list.
+const NONE: u32 = u32::MAX;
+
+/// The factor, and where it may be other than zero.
+pub(super) struct Cholesky {
+    /// The place of each row in the order of elimination.
+    place: Vec<u32>,
+    /// Where the blocks below the diagonal of each column begin, by places, and where the last end.
+    begin: Vec<usize>,
+    /// The row of each block, by place, ascending in each column.
+    rows: Vec<u32>,
+    blocks: Vec<DMat3>,
+    /// Of the diagonal blocks of `L`.
+    inverse: Vec<DMat3>,
+}
+
+impl Cholesky {
+    /// Of matrices of so many rows of blocks that are zero but on the diagonal and where two rows are
+    /// tied.
+    pub(super) fn of_graph(count: usize, ties: impl Iterator<Item = (usize, usize)>) -> Cholesky {
+        let mut near: Vec<Vec<u32>> = vec![Vec::new(); count];
+        for (i, j) in ties {
+            near[i].push(j as u32);
+            near[j].push(i as u32);
+        }
+        for list in &mut near {
+            list.sort_unstable();
+            list.dedup();
+        }
+        let (mut place, mut below) = (vec![NONE; count], Vec::with_capacity(count));
+        let mut merged = Vec::new();
+        for step in 0..count {
+            let left = (0..count).filter(|&row| place[row] == NONE);
+            let Some(row) = left.min_by_key(|&row| near[row].len()) else {
+                break;
+            };
+            place[row] = step as u32;
+            let own = core::mem::take(&mut near[row]);
+            // Whatever is tied to it is tied together from now on.
+            for &other in &own {
+                let list = &mut near[other as usize];
+                merged.clear();
+                merge(list, &own, &mut merged);
+                merged.retain(|&third| third != other && third != row as u32);
+                core::mem::swap(list, &mut merged);
+            }
+            below.push(own);
+        }
+        let (mut begin, mut rows) = (vec![0], Vec::new());
+        for list in below {
+            let first = rows.len();
+            rows.extend(list.iter().map(|&row| place[row as usize]));
+            rows[first..].sort_unstable();
+            begin.push(rows.len());
+        }
+        Cholesky {
+            blocks: vec![DMat3::ZERO; rows.len()],
+            inverse: vec![DMat3::ZERO; count],
+            place,
+            begin,
+            rows,
+        }
+    }
+
+    /// Begins with a matrix that is a multiple of one in each row.
+    pub(super) fn begin(&mut self, diagonal: impl Iterator<Item = f64>) {
+        self.blocks.fill(DMat3::ZERO);
+        for (row, value) in diagonal.enumerate() {
+            self.inverse[self.place[row] as usize] = DMat3::from_diagonal(DVec3::splat(value));
+        }
+    }
+
+    /// Adds a block to the diagonal.
+    pub(super) fn add(&mut self, row: usize, block: DMat3) {
+        self.inverse[self.place[row] as usize] += block;
+    }
+
+    /// Adds a symmetric block where two rows are tied.
+    pub(super) fn add_between(&mut self, i: usize, j: usize, block: DMat3) {
+        let (i, j) = (self.place[i], self.place[j]);
+        let (column, row) = (i.min(j) as usize, i.max(j));
+        let first = self.begin[column];
+        let below = &self.rows[first..self.begin[column + 1]];
+        self.blocks[first + below.partition_point(|&other| other < row)] += block;
+    }
+
+    /// Factors what has been added, which has to be positive.
+    pub(super) fn factor(&mut self) {
+        let count = self.inverse.len();
+        // The columns whose next block lies in a row, as lists: of each row the first, of each column the
+        // next in its list, and of each column that block.
+        let (mut first, mut next, mut at) = (vec![NONE; count], vec![NONE; count], vec![0; count]);
+        let mut sums = vec![DMat3::ZERO; count];
+        for column in 0..count {
+            let (begin, end) = (self.begin[column], self.begin[column + 1]);
+            let mut diagonal = self.inverse[column];
+            for place in begin..end {
+                sums[self.rows[place] as usize] = self.blocks[place];
+            }
+            let mut left = first[column];
+            while left != NONE {
+                let (own, next_left) = (left as usize, next[left as usize]);
+                let here = at[own];
+                let across = self.blocks[here].transpose();
+                diagonal -= self.blocks[here] * across;
+                for place in here + 1..self.begin[own + 1] {
+                    sums[self.rows[place] as usize] -= self.blocks[place] * across;
+                }
+                self.pass_on(own, here + 1, (&mut first, &mut next, &mut at));
+                left = next_left;
+            }
+            let inverse = inverse_of_root(diagonal);
+            self.inverse[column] = inverse;
+            let across = inverse.transpose();
+            for place in begin..end {
+                self.blocks[place] = sums[self.rows[place] as usize] * across;
+            }
+            self.pass_on(column, begin, (&mut first, &mut next, &mut at));
+        }
+    }
+
+    /// Puts a column into the list of the row in which its next block lies.
+    fn pass_on(
+        &self,
+        column: usize,
+        place: usize,
+        (first, next, at): (&mut [u32], &mut [u32], &mut [usize]),
+    ) {
+        if place < self.begin[column + 1] {
+            let row = self.rows[place] as usize;
+            at[column] = place;
+            next[column] = first[row];
+            first[row] = column as u32;
+        }
+    }
+
+    /// Solves for a right-hand side, in its place, with some memory of the same length.
+    pub(super) fn solve(&self, values: &mut [DVec3], memory: &mut [DVec3]) {
+        for (row, &place) in self.place.iter().enumerate() {
+            memory[place as usize] = values[row];
+        }
+        for column in 0..self.inverse.len() {
+            let value = self.inverse[column] * memory[column];
+            memory[column] = value;
+            for place in self.begin[column]..self.begin[column + 1] {
+                memory[self.rows[place] as usize] -= self.blocks[place] * value;
+            }
+        }
+        for column in (0..self.inverse.len()).rev() {
+            let mut value = memory[column];
+            for place in self.begin[column]..self.begin[column + 1] {
+                value -= self.blocks[place].transpose() * memory[self.rows[place] as usize];
+            }
+            memory[column] = self.inverse[column].transpose() * value;
+        }
+        for (row, &place) in self.place.iter().enumerate() {
+            values[row] = memory[place as usize];
+        }
+    }
+}
+
+/// Two ascending lists as one.
+fn merge(a: &[u32], b: &[u32], merged: &mut Vec<u32>) {
+    let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
+    while let (Some(&&x), Some(&&y)) = (a.peek(), b.peek()) {
+        merged.push(x.min(y));
+        if x <= y {
+            a.next();
+        }
+        if y <= x {
+            b.next();
+        }
+    }
+    merged.extend(a.chain(b));
+}
+
+/// The inverse of the lower triangle `l` with `l lᵀ` a positive matrix.
+fn inverse_of_root(matrix: DMat3) -> DMat3 {
+    let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
+    // What rounding leaves of nothing would be no number.
+    let root = |value: f64| libm::sqrt(value.max(f64::MIN_POSITIVE));
+    let a = 1.0 / root(x.x);
+    let (b, c) = (x.y * a, x.z * a);
+    let d = 1.0 / root(y.y - b * b);
+    let e = (y.z - b * c) * d;
+    let f = 1.0 / root(z.z - c * c - e * e);
+    DMat3::from_cols(
+        DVec3::new(a, -b * a * d, (b * d * e - c) * a * f),
+        DVec3::new(0.0, d, -e * d * f),
+        DVec3::new(0.0, 0.0, f),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn what_is_solved_for_comes_back(
+            count in 1_usize..14,
+            ties in proptest::collection::vec(
+                ((0_usize..14, 0_usize..14), prop::array::uniform3(-1.0..1.0)), 0..40),
+            wanted in proptest::collection::vec(prop::array::uniform3(-1.0..1.0), 14),
+        ) {
+            let ties: Vec<((usize, usize), DVec3)> = ties
+                .into_iter()
+                .map(|((i, j), along)| ((i % count, j % count), DVec3::from_array(along)))
+                .filter(|((i, j), _)| i != j)
+                .collect();
+            let mut matrix = Cholesky::of_graph(count, ties.iter().map(|tie| tie.0));
+            matrix.begin((0..count).map(|row| 0.5 + row as f64));
+            for &((i, j), along) in &ties {
+                let block = outer(along);
+                matrix.add(i, block);
+                matrix.add(j, block);
+                matrix.add_between(i, j, -block);
+            }
+            matrix.factor();
+            let wanted: Vec<DVec3> = wanted[..count].iter().map(|&v| DVec3::from_array(v)).collect();
+            let mut values: Vec<DVec3> =
+                wanted.iter().enumerate().map(|(row, v)| (0.5 + row as f64) * *v).collect();
+            for &((i, j), along) in &ties {
+                let pull = along.dot(wanted[i] - wanted[j]) * along;
+                values[i] += pull;
+                values[j] -= pull;
+            }
+            matrix.solve(&mut values, &mut vec![DVec3::ZERO; count]);
+            for (value, wanted) in values.iter().zip(&wanted) {
+                prop_assert!((*value - *wanted).length() < 1e-11, "{value} for {wanted}");
+            }
+        }
+    }
+
+    fn outer(along: DVec3) -> DMat3 {
+        DMat3::from_cols(along.x * along, along.y * along, along.z * along)
+    }
+}
