@@ -292,7 +292,7 @@ mod tests {
             if is_uneven {
                 inverse.iter_mut().for_each(|w| *w = libm::pow(*w, 7.0));
             }
-            let rounding = if is_uneven { 1e-9 } else { 1e-12 };
+            let rounding = if is_uneven { 1e-10 } else { 1e-13 };
             let mut velocity = start.clone();
             let missing = missing_speeds(&contacts, &velocity);
             let given = project(&contacts, &inverse, &mut velocity, &missing);
