@@ -103,5 +103,6 @@ pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
 pub(crate) use shape::Extent;
 pub use shape::Shape;
 pub use world::{
-    Bundled, Collision, Impact, RestingContact, Settings, StepError, World, WorldError,
+    Bundled, Collision, ContactFeature, Impact, Overlap, RestingContact, SeparateError, Settings,
+    StepError, Touching, World, WorldError,
 };
