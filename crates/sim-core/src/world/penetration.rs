@@ -1,8 +1,8 @@
 //! How deep bodies are in each other, and which way is out.
 //!
 //! Of spheres and of half-spaces the least translation that parts a pair has a closed form. Of other
-//! pairs it is sought: lengths are doubled until one of many directions parts the pair, by the exact
-//! test; the directions that do are bisected; and from where the best of them parts the pair, the
+//! pairs it is sought: lengths are doubled, or halved, until one of many directions parts the pair at one
+//! and none at half of it, by the exact test; the directions that do are bisected; and from where the best of them parts the pair, the
 //! surface that it then touches gives the next direction, as long as that is a shorter way.
 
 use alloc::vec::Vec;
@@ -57,29 +57,37 @@ impl World {
     /// The pairs of bodies that are in each other, one of which may move, in order: those that were put
     /// into the world so, and have not parted since.
     ///
+    /// No start is refused: bodies in overlap are held as they are, get no deeper and gain no energy, two
+    /// that are immovable touch nothing of each other, and what is wholly inside a closed mesh does not
+    /// overlap it, as a mesh is a surface and its inside a room. [`World::separate`] moves overlaps apart.
+    ///
     /// What is less deep than [`World::flush`] allows for is no overlap but a contact. Depths are
     /// measured where the bodies are now, which takes some hundred exact tests for a pair of meshes.
     pub fn overlaps(&self) -> Vec<Overlap> {
-        let measured = self.overlapping().iter().map(|&(i, j)| {
-            let found = self.penetration(i, j, self.current.position[j] - self.current.position[i]);
-            Overlap {
-                bodies: (i, j),
-                normal: found.normal,
-                depth: found.depth,
-                is_least: found.is_least,
-            }
-        });
-        measured
-            .filter(|overlap| {
-                let (i, j) = overlap.bodies;
-                overlap.depth > self.flush(i, j) || self.is_held_in_overlap(i, j)
-            })
-            .collect()
+        let pairs = self.overlapping().iter();
+        pairs.filter_map(|&(i, j)| self.overlap(i, j)).collect()
     }
 
-    /// How deep two bodies may be in each other, m, and still be meant to touch: four times what the
-    /// `f32` of their vertices, radii and distances from their origins are rounded by together, and 16 of
-    /// the gaps at which bodies in contact are kept, 1024 units in the last place of their coordinates.
+    /// The overlap of two bodies, the lower index first, if it is one of [`World::overlaps`].
+    pub fn overlap(&self, i: usize, j: usize) -> Option<Overlap> {
+        self.overlapping().binary_search(&(i, j)).ok()?;
+        let offset = self.current.position[j] - self.current.position[i];
+        if !self.is_held_in_overlap(i, j) && self.place_apart((i, j), offset).is_some() {
+            return None;
+        }
+        let found = self.penetration(i, j, offset);
+        Some(Overlap {
+            bodies: (i, j),
+            normal: found.normal,
+            depth: found.depth,
+            is_least: found.is_least,
+        })
+    }
+
+    /// How deep two bodies may be in each other along a normal, or along up to three at once, m, and still
+    /// be meant to touch: four times what the `f32` of their vertices, radii and distances from their
+    /// origins are rounded by together, and 16 of the gaps at which bodies in contact are kept, 1024
+    /// units in the last place of their coordinates.
     ///
     /// Positions that are computed for bodies to lie flush, on a slope or by turned meshes, are wrong by
     /// as much. Such bodies are moved apart when the next step begins, and then touch.
@@ -144,7 +152,8 @@ impl World {
         ways
     }
 
-    /// The shortest way out along one of some directions.
+    /// The shortest way out along one of some directions: at a length none of them parts the pair, and at
+    /// twice that some do.
     fn shortest_out(
         &self,
         (i, j): (usize, usize),
@@ -152,25 +161,34 @@ impl World {
         directions: &[DVec3],
     ) -> Option<(DVec3, f64)> {
         let is_apart = |by: DVec3| !self.meet_built(i, j, offset + by);
-        let most = self.farthest_out(i, j);
-        let mut far = self.hover_gap(i, j);
-        while far <= most {
-            let mut best: Option<(DVec3, f64)> = None;
-            for &way in directions {
-                let reach = best.map_or(far, |(_, depth)| depth);
-                if is_apart(reach * way) {
-                    let depth = halved(0.5 * far, reach, |length| is_apart(length * way));
-                    if best.is_none_or(|(_, least)| depth < least) {
-                        best = Some((way, depth));
-                    }
+        let some_part = |far: f64| directions.iter().any(|&way| is_apart(far * way));
+        let (least, most) = (self.hover_gap(i, j), self.farthest_out(i, j));
+        // What is held is about as deep as it was.
+        let known = self
+            .continuous
+            .depth_at_start(i, j)
+            .map(|depth| 0.125 * depth);
+        let mut far = known.unwrap_or_else(|| self.flush(i, j)).max(least);
+        if some_part(far) {
+            while far > least && some_part(0.5 * far) {
+                far *= 0.5;
+            }
+        } else {
+            while far <= most && !some_part(far) {
+                far *= 2.0;
+            }
+        }
+        let mut best: Option<(DVec3, f64)> = None;
+        for &way in directions {
+            let reach = best.map_or(far, |(_, depth)| depth);
+            if is_apart(reach * way) {
+                let depth = halved(0.5 * far, reach, |length| is_apart(length * way));
+                if best.is_none_or(|(_, least)| depth < least) {
+                    best = Some((way, depth));
                 }
             }
-            if best.is_some() {
-                return best;
-            }
-            far *= 2.0;
         }
-        None
+        best
     }
 
     /// A way out that no turn to the surface that is touched at its end makes shorter.

@@ -34,8 +34,8 @@ pub(in crate::world) struct ContactConstraint {
     /// Whether the bodies overlap: they are kept from moving farther into each other, and nothing
     /// else is known of their surfaces.
     pub(in crate::world) is_overlap: bool,
-    /// Whether it keeps such bodies from moving across their way out, in this step.
-    pub(super) is_held_across: bool,
+    /// Whether it is one of those that let such bodies move as one in this step.
+    pub(super) is_hold: bool,
 }
 
 /// Cosine of the angle to which the normals of two contacts of the same bodies are one: 0.8 degrees.

@@ -2,15 +2,19 @@
 //!
 //! Bodies in overlap are kept from closing along their shortest way out, as bodies in contact are along
 //! a normal. That is all there is to it in flat surfaces; but across that way they may slide to where
-//! they are deeper in each other. A step in which an overlap gets deeper than it was where the bodies
-//! were placed is taken again, with the two *held*: they may part along the way out, and move as one
-//! across it. That takes energy, as an impact without restitution does, and gives none.
+//! they are deeper in each other, and what begins to part may fall back within a step, where nobody
+//! looks for an impact of the two. A step in which an overlap gets deeper than it was where the bodies
+//! were placed is taken again, with the two *held*: they move as one. That takes energy, as an impact
+//! without restitution does, and gives none.
 
 use alloc::vec::Vec;
 use glam::DVec3;
 
 use super::super::{Bundled, Impact, World, state::State, stepping::Cause};
-use super::contact_set::{ContactConstraint, ContactSet};
+use super::{
+    Continuous,
+    contact_set::{ContactConstraint, ContactSet},
+};
 
 /// Gaps of bodies in contact by which an overlap may get deeper: more than rounding and an iterative
 /// solver move what is held.
@@ -23,6 +27,13 @@ struct Start {
     placed: bool,
     impacts: (u64, Option<Impact>),
     reported: Option<usize>,
+}
+
+impl Continuous {
+    /// How deep two bodies in overlap were in each other where they were placed, m.
+    pub(in crate::world) fn depth_at_start(&self, i: usize, j: usize) -> Option<f64> {
+        self.depth_at_start.get(&(i, j)).copied()
+    }
 }
 
 impl World {
@@ -44,8 +55,7 @@ impl World {
             done = self.collide_once();
         }
         self.continuous.held.clear();
-        self.contacts
-            .retain(|constraint| !constraint.is_held_across);
+        self.contacts.retain(|constraint| !constraint.is_hold);
         done
     }
 
@@ -64,7 +74,7 @@ impl World {
     /// Notes the pairs to be held that have got deeper, and tells whether there are new ones.
     fn hold_deepened(&mut self) -> bool {
         let deepened = |&&(i, j): &&(usize, usize)| {
-            let Some(&start) = self.continuous.depth_at_start.get(&(i, j)) else {
+            let Some(start) = self.continuous.depth_at_start(i, j) else {
                 return false;
             };
             let most = start + SLACK * self.hover_gap(i, j);
@@ -79,7 +89,7 @@ impl World {
         !new.is_empty()
     }
 
-    /// Whether two bodies in overlap move as one, but for parting.
+    /// Whether two bodies in overlap move as one in this step.
     pub(super) fn is_held(&self, i: usize, j: usize) -> bool {
         self.continuous.held.binary_search(&(i, j)).is_ok()
     }
@@ -99,19 +109,19 @@ impl World {
         }
     }
 
-    /// Keeps bodies that are held from moving across their way out.
-    pub(super) fn hold_across(&mut self) {
+    /// Keeps bodies that are held from moving against each other in any way.
+    pub(super) fn hold_still(&mut self) {
         for place in 0..self.continuous.held.len() {
             let (i, j) = self.continuous.held[place];
             let known = self.contacts.of_pair(i, j).find(|known| known.is_overlap);
             let Some(&known) = known else { continue };
             let (one, other) = known.normal.any_orthonormal_pair();
-            for normal in [one, -one, other, -other] {
+            for normal in [-known.normal, one, -one, other, -other] {
                 self.insert_contact((i, j), normal, DVec3::ZERO, true);
             }
             for constraint in self.contacts.all_mut() {
                 if constraint.bodies == (i, j) && constraint.normal != known.normal {
-                    constraint.is_held_across = true;
+                    constraint.is_hold = true;
                 }
             }
         }

@@ -26,7 +26,7 @@ const MAX_ROUNDS: usize = 64;
 const MAX_DIRECTIONS: usize = 12;
 
 /// Two bodies that meet where they have been placed.
-struct Meeting {
+pub(in crate::world) struct Meeting {
     bodies: (usize, usize),
     /// An offset of the second from the first at which they are apart.
     apart: DVec3,
@@ -77,14 +77,26 @@ impl World {
     }
 
     /// Where a pair is apart that meets at an offset, if there is such a place within a rounding.
-    fn place_apart(&self, bodies: (usize, usize), offset: DVec3) -> Option<Meeting> {
+    pub(in crate::world) fn place_apart(
+        &self,
+        bodies: (usize, usize),
+        offset: DVec3,
+    ) -> Option<Meeting> {
         let (i, j) = bodies;
+        self.need_bvh(i);
+        self.need_bvh(j);
         let forms = self.form(i).zip(self.form(j))?;
         let reach = self.flush(i, j);
         let is_apart = |to: DVec3| !self.meet_built(i, j, offset + to);
-        let mut directions = parting_normals(forms.0, forms.1, offset);
-        directions.truncate(MAX_DIRECTIONS);
-        directions.push(self.apart_along(i, j));
+        let mut directions: Vec<DVec3> = Vec::new();
+        let surfaces = parting_normals(forms.0, forms.1, offset);
+        let surfaces = surfaces.into_iter().take(MAX_DIRECTIONS);
+        for normal in surfaces.chain([self.apart_along(i, j)]) {
+            // Each counts once in the sums below.
+            if !directions.contains(&normal) {
+                directions.push(normal);
+            }
+        }
         let found = |by: DVec3| {
             is_apart(by).then_some(Meeting {
                 bodies,
@@ -294,7 +306,7 @@ impl World {
             friction: DVec3::ZERO,
             sticks: true,
             is_overlap,
-            is_held_across: false,
+            is_hold: false,
         };
         self.contacts.insert(
             constraint,

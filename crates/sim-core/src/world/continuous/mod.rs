@@ -99,7 +99,7 @@ pub(super) struct Continuous {
     contacts_before: ContactSet,
     /// How deep pairs in overlap were where they were placed, m.
     depth_at_start: BTreeMap<(usize, usize), f64>,
-    /// Pairs in overlap that move as one in this step, but for parting.
+    /// Pairs in overlap that move as one in this step.
     held: Vec<(usize, usize)>,
 }
 
@@ -240,7 +240,7 @@ impl World {
         self.measure_contacts();
         self.unstagger_velocities();
         self.release_bouncing();
-        self.hold_across();
+        self.hold_still();
         let mut restarted = mem::take(&mut self.continuous.restarted);
         restarted.clear();
         let all = self.contacts.all().iter();

@@ -355,7 +355,7 @@ impl World {
             friction: DVec3::ZERO,
             sticks: true,
             is_overlap: false,
-            is_held_across: false,
+            is_hold: false,
         };
         let movable = (self.is_movable(i), self.is_movable(j));
         self.contacts.insert(
