@@ -144,7 +144,9 @@ impl World {
                 let (i, j) = plane.bodies;
                 let missing = plane.level - plane.normal.dot(place[j] - place[i]);
                 worst = worst.max(missing);
-                is_done &= missing <= 0.25 * self.hover_gap(i, j);
+                // What has been pushed touches.
+                let slack = 0.25 * self.hover_gap(i, j);
+                is_done &= missing <= slack && (plane.pushed == 0.0 || missing >= -slack);
                 let push = RELAXATION * missing / (inverse(i) + inverse(j));
                 let pushed = (plane.pushed + push).max(0.0);
                 let push = pushed - plane.pushed;

@@ -137,6 +137,9 @@ impl World {
                 continue;
             }
             if constraint.is_overlap {
+                if self.stood_still(i) && self.stood_still(j) {
+                    continue;
+                }
                 let start = &self.continuous.start.position;
                 let out = self.penetration(i, j, start[j] - start[i]);
                 self.contacts.get_mut(index).normal = out.normal;

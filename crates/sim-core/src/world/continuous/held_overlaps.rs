@@ -71,12 +71,21 @@ impl World {
         self.continuous.wake_all();
     }
 
+    /// Whether the last step has left a body where it was.
+    pub(super) fn stood_still(&self, body: usize) -> bool {
+        self.earlier.position.get(body) == Some(&self.previous.position[body])
+    }
+
     /// Notes the pairs to be held that have got deeper, and tells whether there are new ones.
     fn hold_deepened(&mut self) -> bool {
         let deepened = |&&(i, j): &&(usize, usize)| {
             let Some(start) = self.continuous.depth_at_start(i, j) else {
                 return false;
             };
+            let stands = |body: usize| self.current.position[body] == self.previous.position[body];
+            if stands(i) && stands(j) {
+                return false;
+            }
             let most = start + SLACK * self.hover_gap(i, j);
             let offset = self.current.position[j] - self.current.position[i];
             !self.is_held(i, j)
@@ -103,8 +112,9 @@ impl World {
             if (self.is_movable(i) || self.is_movable(j))
                 && !self.contacts.of_pair(i, j).any(is_overlap)
             {
-                // It is measured with the others.
-                self.insert_contact((i, j), self.apart_along(i, j), DVec3::ZERO, true);
+                let at = &self.previous.position;
+                let out = self.penetration(i, j, at[j] - at[i]);
+                self.insert_contact((i, j), out.normal, DVec3::ZERO, true);
             }
         }
     }
