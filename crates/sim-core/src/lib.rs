@@ -19,7 +19,10 @@
 //! 4. Whether two meshes meet, [`collide::naive`] finds by every edge against every triangle,
 //!    [`collide::tree`] through a [`Bvh`] of each. Both rest on the exact [`collide::predicates`]
 //!    and always agree. No two surfaces are left crossing at the end of a step.
-//! 5. [`World::impacts`] counts impacts, [`World::step_reporting`] lists them, and
+//!    Bodies that are put into each other are no error: [`World::overlaps`] tells how deep they are,
+//!    they are kept from getting deeper, and [`World::separate`] moves them apart.
+//! 5. [`World::contacts`] lists what lies on what, and [`World::contact_features`] the vertices, edges and
+//!    faces that touch there. [`World::impacts`] counts impacts, [`World::step_reporting`] lists them, and
 //!    [`World::interpolated`] gives positions between the last two states to draw.
 //!
 //! ```
@@ -103,5 +106,6 @@ pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
 pub(crate) use shape::Extent;
 pub use shape::Shape;
 pub use world::{
-    Bundled, Collision, Impact, RestingContact, Settings, StepError, World, WorldError,
+    Bundled, Collision, ContactFeature, Impact, Overlap, RestingContact, SeparateError, Settings,
+    StepError, Touching, World, WorldError,
 };

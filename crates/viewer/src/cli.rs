@@ -35,6 +35,12 @@ Figures, by their names in --json; drifts and errors count from the start, and n
   momentum_error   the same in kg m/s
   path_error       largest distance of a body from its exact path, m; null after an impact, and
                    under forces that are not constant
+  overlaps         pairs of bodies in each other at the start, after --separate: depth, m, and the
+                   direction in which the second leaves the first; where is_least is false, the depth
+                   is an upper bound. They are kept from getting deeper
+  separated        bodies that --separate has moved
+  contacts         what lasts at the end: count, the vertices, edges and faces that touch; gap, m;
+                   normal, from the first body to the second
   state_hash       64 bits over motion, time and impacts, in hexadecimal digits: runs of a scene with
                    equal ones are equal to the last bit
   potential_energy, total_energy
@@ -73,6 +79,9 @@ enum Command {
         /// Print one JSON object instead of a table
         #[arg(long)]
         json: bool,
+        /// First move bodies that overlap out of each other, by the least that does it
+        #[arg(long)]
+        separate: bool,
         #[command(flatten)]
         settings: SettingArgs,
     },
@@ -195,8 +204,12 @@ fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
             scene,
             steps,
             json,
+            separate,
             settings,
-        }) => headless::run(&load(&scene, &settings)?, steps, json, interrupt),
+        }) => {
+            let scene = load(&scene, &settings)?;
+            headless::run(&scene, steps, (json, separate), interrupt)
+        }
         Some(Command::Check { file, json }) => headless::check(&file, json),
         Some(Command::Shot {
             scene,

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use scene::{MeshReport, Scene, mesh_file, shown};
 use serde::Serialize;
-use sim_core::{DVec3, StepError, World};
+use sim_core::{DVec3, Overlap, SeparateError, StepError, World};
 
 use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
@@ -36,6 +36,12 @@ struct RunReport<'a> {
     path_error: Option<f64>,
     momentum: [f64; 3],
     last_impact: Option<ImpactReport<'a>>,
+    /// At the start.
+    overlaps: Vec<OverlapReport<'a>>,
+    /// Names of the bodies that were moved out of each other before that.
+    separated: Vec<&'a str>,
+    /// At the end.
+    contacts: Vec<ContactReport<'a>>,
     /// [`World::state_hash`], in hexadecimal digits.
     state_hash: String,
     bodies: Vec<BodyReport<'a>>,
@@ -51,6 +57,33 @@ struct ImpactReport<'a> {
     impulse: f64,
     approaching: f64,
     parting: f64,
+}
+
+/// Two bodies in each other.
+#[derive(Serialize)]
+struct OverlapReport<'a> {
+    bodies: [&'a str; 2],
+    depth: f64,
+    /// Whether that is the least; an upper bound otherwise.
+    is_least: bool,
+    normal: [f64; 3],
+}
+
+/// Two bodies in contact along a normal.
+#[derive(Serialize)]
+struct ContactReport<'a> {
+    bodies: [&'a str; 2],
+    /// Features that touch.
+    count: usize,
+    normal: [f64; 3],
+    gap: f64,
+    is_overlap: bool,
+}
+
+/// What a run begins with.
+struct Start<'a> {
+    overlaps: Vec<OverlapReport<'a>>,
+    separated: Vec<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -87,14 +120,32 @@ struct RepairReport {
 }
 
 /// Takes `steps` steps of a scene, or as many as there are before an interrupt; the final state as
-/// JSON or as a table.
+/// JSON or as a table. If asked to `separate`, bodies in overlap are moved out of each other first.
 pub fn run(
     scene: &Scene,
     steps: u64,
-    json: bool,
+    (json, separate): (bool, bool),
     interrupt: &Interrupt,
 ) -> Result<String, Failure> {
     let mut world = scene.world().map_err(Failure::refused)?;
+    let separated = match separate {
+        true => world.separate().map_err(|error| {
+            let name = shown::name(&scene.name);
+            Failure::Refused(format!("scene `{name}`: {}", separate_error(scene, &error)))
+        })?,
+        false => Vec::new(),
+    };
+    let name = |body: usize| scene.bodies[body].name.as_str();
+    let overlap = |overlap: Overlap| OverlapReport {
+        bodies: [overlap.bodies.0, overlap.bodies.1].map(name),
+        depth: overlap.depth,
+        is_least: overlap.is_least,
+        normal: overlap.normal.to_array(),
+    };
+    let start = Start {
+        overlaps: world.overlaps().into_iter().map(overlap).collect(),
+        separated: separated.into_iter().map(name).collect(),
+    };
     let reference = Reference::of(&world);
     interrupt
         .listen()
@@ -120,7 +171,7 @@ pub fn run(
         );
     }
     let drift = reference.drift(&world);
-    let report = RunReport::of(scene, &world, &drift);
+    let report = RunReport::of(scene, &world, start, &drift);
     Ok(if json {
         to_json(&report)
     } else {
@@ -161,6 +212,29 @@ pub fn step_error(scene: &Scene, error: &StepError) -> String {
         shown::name(&scene.name),
         with_name(scene, error.body(), error)
     )
+}
+
+/// Why bodies cannot be moved out of each other, by their names.
+pub fn separate_error(scene: &Scene, error: &SeparateError) -> String {
+    let name = |&body: &usize| {
+        scene
+            .bodies
+            .get(body)
+            .map_or("?", |body| body.name.as_str())
+    };
+    let all = |bodies: &[usize]| names(&bodies.iter().map(name).collect::<Vec<_>>());
+    match error {
+        SeparateError::Caught { body, walls } => format!(
+            "`{}` does not fit between the half-spaces {}: make it smaller, or move one of them",
+            shown::name(name(body)),
+            all(walls)
+        ),
+        SeparateError::NoRoom { body, others } => format!(
+            "no place was found for `{}`, which overlaps {}: move it, or one of them",
+            shown::name(name(body)),
+            all(others)
+        ),
+    }
 }
 
 /// An error's message with a body's name in place of its index.
@@ -210,7 +284,8 @@ fn repairs(repairs: &MeshReport) -> Vec<RepairReport> {
 }
 
 impl<'a> RunReport<'a> {
-    fn of(scene: &'a Scene, world: &World, drift: &Drift) -> Self {
+    fn of(scene: &'a Scene, world: &World, start: Start<'a>, drift: &Drift) -> Self {
+        let name = |body: usize| scene.bodies[body].name.as_str();
         Self {
             time: world.time(),
             steps: world.steps(),
@@ -229,13 +304,25 @@ impl<'a> RunReport<'a> {
             momentum: world.momentum().to_array(),
             last_impact: world.last_impact().map(|impact| ImpactReport {
                 time: impact.time,
-                bodies: [impact.bodies.0, impact.bodies.1].map(|i| scene.bodies[i].name.as_str()),
+                bodies: [impact.bodies.0, impact.bodies.1].map(name),
                 point: impact.point.to_array(),
                 normal: impact.normal.to_array(),
                 impulse: impact.impulse,
                 approaching: impact.speeds.0,
                 parting: impact.speeds.1,
             }),
+            overlaps: start.overlaps,
+            separated: start.separated,
+            contacts: world
+                .contacts()
+                .map(|contact| ContactReport {
+                    bodies: [contact.bodies.0, contact.bodies.1].map(name),
+                    count: world.contact_features(&contact).len(),
+                    normal: contact.normal.to_array(),
+                    gap: contact.gap,
+                    is_overlap: contact.is_overlap,
+                })
+                .collect(),
             state_hash: format!("{:016x}", world.state_hash()),
             bodies: scene
                 .bodies
@@ -271,6 +358,7 @@ impl<'a> RunReport<'a> {
                     .as_ref()
                     .map_or_else(|| "none".to_owned(), ImpactReport::text),
             ),
+            ("Contacts", self.contacts_text()),
             ("Kinetic energy", format!("{} J", self.kinetic_energy)),
             ("Potential", joules(self.potential_energy)),
             ("Total energy", joules(self.total_energy)),
@@ -302,6 +390,7 @@ impl<'a> RunReport<'a> {
             // Writing to a String cannot fail.
             let _ = writeln!(text, "{what:<15} {value}");
         }
+        self.add_overlaps(&mut text);
         let width = self
             .bodies
             .iter()
@@ -326,6 +415,67 @@ impl<'a> RunReport<'a> {
             );
         }
         text
+    }
+}
+
+impl RunReport<'_> {
+    fn contacts_text(&self) -> String {
+        let mut pairs: Vec<_> = self.contacts.iter().map(|c| c.bodies).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        match pairs.len() {
+            0 => "none".to_owned(),
+            1 => "of one pair of bodies".to_owned(),
+            count => format!("of {count} pairs of bodies"),
+        }
+    }
+
+    /// What overlapped at the start, or was moved apart.
+    fn add_overlaps(&self, text: &mut String) {
+        if !self.separated.is_empty() {
+            let names = names(&self.separated);
+            let _ = writeln!(text, "{:<15} {names}, moved out of overlap", "Separated");
+        }
+        for overlap in self.overlaps.iter().take(NAMED) {
+            let _ = writeln!(text, "{:<15} {}", "Overlap", overlap.text());
+        }
+        if self.overlaps.len() > NAMED {
+            let more = self.overlaps.len() - NAMED;
+            let _ = writeln!(text, "{:<15} and {more} more pairs", "");
+        }
+        if !self.overlaps.is_empty() {
+            let _ = writeln!(
+                text,
+                "{:<15} they get no deeper and may part; --separate moves them apart first",
+                ""
+            );
+        }
+    }
+}
+
+/// Overlaps, and bodies, that are named one by one.
+const NAMED: usize = 8;
+
+/// The names of some bodies; of many the first ones, and how many there are.
+fn names(of: &[&str]) -> String {
+    let named: Vec<String> = of
+        .iter()
+        .take(NAMED)
+        .map(|name| shown::name(name))
+        .collect();
+    let more = of.len().saturating_sub(NAMED);
+    match more {
+        0 => named.join(", "),
+        _ => format!("{} and {more} more", named.join(", ")),
+    }
+}
+
+impl OverlapReport<'_> {
+    fn text(&self) -> String {
+        let [first, second] = self.bodies.map(shown::name);
+        let depth = number::figure(self.depth);
+        let bound = if self.is_least { "" } else { "up to " };
+        format!("{first} and {second} at the start, {bound}{depth} m deep")
     }
 }
 

@@ -62,6 +62,7 @@ fn run_prints_the_final_state() {
         keys(&state),
         [
             "bodies",
+            "contacts",
             "dissipates",
             "driven",
             "energy_drift",
@@ -72,8 +73,10 @@ fn run_prints_the_final_state() {
             "momentum",
             "momentum_drift",
             "momentum_error",
+            "overlaps",
             "path_error",
             "potential_energy",
+            "separated",
             "state_hash",
             "steps",
             "time",
@@ -241,6 +244,87 @@ fn help_explains_every_figure_that_its_name_does_not() {
     for key in keys(&state) {
         assert!(plain.contains(&key) || help.contains(key), "{key}");
     }
+}
+
+/// Two balls in each other, one of them in a floor.
+fn overlapping(name: &str) -> String {
+    format!(
+        "rate = 60\ntitle = 'Overlap'\n[[body]]\nname = 'floor'\nhalf-space = [0, 1, 0]\nimmovable = true\n\
+         [[body]]\nname = \"{name}\"\nsphere = 0.5\nposition = [0, 0.25, 0]\n\
+         [[body]]\nname = 'right'\nsphere = 0.5\nmass = 3\nposition = [0.75, 0.75, 0]\n"
+    )
+}
+
+#[test]
+fn overlaps_are_told_with_names_and_depth_and_can_be_separated() {
+    let path = file("overlap.toml", &overlapping("left"));
+    let path_text = path.to_string_lossy();
+    let run = ["run", &path_text, "--steps", "5"];
+    let state = json(&[&run[..], &["--json"]].concat());
+    let overlaps = state["overlaps"].as_array().expect("a list");
+    assert_eq!(overlaps.len(), 2);
+    assert_eq!(overlaps[0]["bodies"], serde_json::json!(["floor", "left"]));
+    assert_eq!(overlaps[0]["depth"].as_f64(), Some(0.25));
+    assert_eq!(overlaps[0]["normal"], serde_json::json!([0.0, 1.0, 0.0]));
+    assert_eq!(overlaps[1]["bodies"], serde_json::json!(["left", "right"]));
+    let depth = overlaps[1]["depth"].as_f64().expect("a number");
+    assert!((depth - (1.0 - 0.8125_f64.sqrt())).abs() < 1e-15, "{depth}");
+    assert_eq!(overlaps[1]["is_least"], true);
+    assert_eq!(state["separated"], serde_json::json!([]));
+    let held = state["contacts"].as_array().expect("a list");
+    assert!(
+        held.iter().all(|contact| contact["is_overlap"] == true),
+        "{held:?}"
+    );
+    let table = String::from_utf8(answer(&run).stdout).expect("text");
+    for words in ["floor and left at the start, 0.25 m deep", "--separate"] {
+        assert!(table.contains(words), "{words} is not in\n{table}");
+    }
+    let run = [&run[..], &["--separate"]].concat();
+    let state = json(&[&run[..], &["--json"]].concat());
+    assert_eq!(state["overlaps"], serde_json::json!([]));
+    assert_eq!(state["separated"], serde_json::json!(["left", "right"]));
+    let contacts = state["contacts"].as_array().expect("a list");
+    assert_eq!(contacts.len(), 2, "{contacts:?}");
+    for contact in contacts {
+        assert_eq!(
+            (&contact["count"], &contact["is_overlap"]),
+            (&1.into(), &false.into())
+        );
+        assert!(
+            contact["gap"]
+                .as_f64()
+                .is_some_and(|gap| (0.0..1e-11).contains(&gap))
+        );
+        assert_eq!(contact["normal"].as_array().map(Vec::len), Some(3));
+    }
+    let table = String::from_utf8(answer(&run).stdout).expect("text");
+    assert!(
+        table.contains("left, right, moved out of overlap"),
+        "{table}"
+    );
+    assert!(!table.contains("at the start"), "{table}");
+    fs::remove_file(path).expect("the file is removed");
+}
+
+#[test]
+fn what_cannot_be_separated_is_refused_by_its_name() {
+    let name = ACTING
+        .replace('\u{1b}', "\\u001b")
+        .replace('\u{7}', "\\u0007");
+    let wall = "[[body]]\nname = 'ceiling'\nhalf-space = [0, -1, 0]\nimmovable = true\nposition = [0, 0.9, 0]\n";
+    let path = file("caught.toml", &(overlapping(&name) + wall));
+    let path_text = path.to_string_lossy();
+    let run = ["run", &path_text, "--steps", "5"];
+    nothing_acts(&answer(&run));
+    let run = [&run[..], &["--separate"]].concat();
+    let text = refusal(cowbell(&run), 2);
+    assert!(
+        text.contains("does not fit between the half-spaces floor, ceiling"),
+        "{text}"
+    );
+    nothing_acts(&answer(&run));
+    fs::remove_file(path).expect("the file is removed");
 }
 
 #[test]

@@ -221,7 +221,7 @@ impl Ball {
 /// its plane if it is there (Ericson 2005, "Real-Time Collision Detection", sec. 5.1.5), else on an
 /// edge. To the bit the same whichever of `b` and `c` is the first, so that mirrored triangles, which
 /// turn the other way round, have mirrored points.
-fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
+pub(crate) fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac);
     let area = |x: DVec3, y: DVec3| normal.dot((x - p).cross(y - p));

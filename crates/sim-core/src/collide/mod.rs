@@ -23,9 +23,10 @@ pub mod touch;
 pub mod tree;
 mod triple;
 
+pub(crate) use ball::nearest;
 pub use ball::{BallTouch, ball_meets, ball_touch};
 pub(crate) use broad::{Broad, Front, Swept};
-pub(crate) use form::{Contact, Form, first_contact, is_turned, meet, parting_normals};
+pub(crate) use form::{Contact, Form, first_contact, is_turned, meet, parting_normals, reach};
 pub use hit::{Hit, Side};
 pub use pairs::Level;
 pub(crate) use parabola::{Parabola, first_on_parabola, has_roots};

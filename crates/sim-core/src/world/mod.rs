@@ -1,6 +1,7 @@
 //! The running state of a scene.
 
 mod collision;
+mod contact_features;
 mod contacts;
 mod continuous;
 mod discrete;
@@ -10,7 +11,9 @@ mod hash;
 mod marks;
 mod order;
 mod overlap;
+mod penetration;
 mod plan;
+mod separate;
 mod state;
 mod stepping;
 mod system;
@@ -28,13 +31,16 @@ use crate::{
     integrate::{Method, Scratch},
 };
 pub use collision::Impact;
+pub use contact_features::{ContactFeature, Touching};
 pub use contacts::{Bundled, RestingContact};
 use continuous::{ContactSet, Continuous};
 use discrete::Discrete;
 pub use error::{StepError, WorldError};
 use marks::Marks;
 use overlap::Placed;
+pub use penetration::Overlap;
 use plan::Plan;
+pub use separate::SeparateError;
 use state::State;
 
 /// Bodies, their motion, and how it goes on.

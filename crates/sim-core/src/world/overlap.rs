@@ -29,8 +29,12 @@ pub(super) struct Placed {
 }
 
 impl World {
-    /// Pairs of bodies that were put into the world in overlap and have not parted since, in order.
-    /// They may move apart, and an elastic impulse along their centres keeps them from moving closer.
+    /// Pairs of bodies that meet where they have been put into the world, and have not parted since, in
+    /// order; to touch is to meet. [`World::overlaps`] tells those that are in each other by more than
+    /// rounding, and how deep.
+    ///
+    /// Such pairs may part, and get no deeper; in the discrete modes an elastic impulse along their
+    /// centres keeps them from moving closer. [`World::separate`] moves them apart.
     pub fn overlapping(&self) -> &[(usize, usize)] {
         if self.placed.bodies.is_empty() {
             return &self.overlapping;
@@ -60,6 +64,7 @@ impl World {
     pub(super) fn forget_contacts_of(&mut self, body: usize) {
         self.keep_found_overlaps();
         self.overlapping.retain(|&(i, j)| i != body && j != body);
+        self.forget_depths();
         self.contacts
             .retain(|contact| contact.bodies.0 != body && contact.bodies.1 != body);
         self.continuous.wake_all();
@@ -180,6 +185,7 @@ impl World {
             !constraint.is_overlap || pairs.binary_search(&constraint.bodies).is_ok()
         });
         self.overlapping = pairs;
+        self.forget_depths();
     }
     /// Forgets pairs that have parted since they began in overlap, and keeps the others from
     /// moving closer: an elastic impulse along the line of their centres, nothing put back.

@@ -20,6 +20,7 @@ mod impacts;
 mod job;
 mod notice;
 mod opening;
+mod overlaps;
 mod pick;
 mod picture;
 mod playback;
@@ -42,6 +43,7 @@ pub use job::{Done, Job, STEP_BUDGET};
 pub use notice::{Notice, Notices, Remedy};
 use opening::Opening;
 pub use opening::Outlook;
+use overlaps::Overlaps;
 pub use picture::{BvhView, Display};
 pub use playback::Playback;
 use trails::Trails;
@@ -87,6 +89,7 @@ pub struct Session {
     impacts: Impacts,
     balls: Balls,
     opening: Opening,
+    overlaps: Overlaps,
     playback: Playback,
     /// Simulated seconds in a real one.
     speed: f64,
@@ -126,6 +129,7 @@ impl Session {
             impacts: Impacts::default(),
             balls: Balls::default(),
             opening: Opening::default(),
+            overlaps: Overlaps::default(),
             playback: Playback::default(),
             speed: 1.0,
             masses: std::collections::BTreeMap::new(),
@@ -338,6 +342,7 @@ impl Session {
         self.figures = Figures::default();
         self.compare.forget();
         self.impacts = Impacts::default();
+        self.overlaps = Overlaps::default();
         self.playback.begin(&self.world);
         self.notices.dismiss("step");
         if self.display.trails {

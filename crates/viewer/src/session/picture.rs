@@ -1,9 +1,10 @@
 //! What the person sees: the world as a [`Picture`].
 
-use sim_core::{Aabb, DVec3, Shape};
+use sim_core::{DVec3, Shape};
 
 use super::Session;
 use super::framing::Bounds;
+use super::overlaps::edges;
 use crate::picture::{Arrow, Line, Model, PALETTE, Picture};
 
 /// Velocity arrows.
@@ -111,6 +112,7 @@ impl Session {
         if self.display.impacts {
             self.add_impacts(&mut picture.marks);
         }
+        self.add_overlaps(&mut picture.marks);
         picture
     }
 
@@ -195,9 +197,10 @@ impl Session {
         for (depth, aabb) in bvh.boxes() {
             if view.every_depth || depth == chosen {
                 let colour = depth_colour(depth, levels);
-                lines.extend(edges(aabb).map(|(from, to)| Line {
-                    from: origin + from,
-                    to: origin + to,
+                let middle = origin + aabb.centre();
+                lines.extend(edges(middle, aabb.half_extent()).map(|(from, to)| Line {
+                    from,
+                    to,
                     colour,
                     width: 1.5,
                 }));
@@ -217,22 +220,4 @@ fn depth_colour(depth: usize, levels: usize) -> [f32; 4] {
         0.8 * (2.0 - away.abs()).clamp(0.0, 1.0)
     };
     [channel(0.0), channel(2.0), channel(4.0), 1.0 - 0.5 * t]
-}
-
-/// The twelve edges of a box.
-fn edges(aabb: Aabb) -> impl Iterator<Item = (DVec3, DVec3)> {
-    let (min, max) = (aabb.min.as_dvec3(), aabb.max.as_dvec3());
-    let corner = move |bits: usize| {
-        DVec3::new(
-            if bits & 1 == 0 { min.x } else { max.x },
-            if bits & 2 == 0 { min.y } else { max.y },
-            if bits & 4 == 0 { min.z } else { max.z },
-        )
-    };
-    (0..8).flat_map(move |from| {
-        [1, 2, 4]
-            .into_iter()
-            .filter(move |axis| from & axis == 0)
-            .map(move |axis| (corner(from), corner(from | axis)))
-    })
 }

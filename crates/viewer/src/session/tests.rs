@@ -9,6 +9,7 @@ use super::{STEP_BUDGET, Session, State};
 
 mod forces;
 mod opening;
+mod overlaps;
 mod playback;
 mod shapes;
 

@@ -1,6 +1,8 @@
 //! Figures of the running world, over the picture.
 
 use egui::{Align2, Area, Color32, Frame, RichText};
+use scene::shown;
+use sim_core::Overlap;
 
 use super::{field, style};
 use crate::number;
@@ -10,7 +12,7 @@ use crate::session::Session;
 const OVERLAPS: usize = 4;
 
 /// Shows the figures in the lower left corner of the picture.
-pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &Session) {
+pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session) {
     Area::new(egui::Id::unique("live"))
         .pivot(Align2::LEFT_BOTTOM)
         .fixed_pos(over.left_bottom() + egui::vec2(10.0, -10.0))
@@ -26,6 +28,7 @@ pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &Session) {
                     ui.spacing_mut().interact_size.y = 17.0;
                     figures(ui, session);
                     impacts(ui, session);
+                    overlaps(ui, session);
                 });
         });
 }
@@ -162,10 +165,31 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
             ),
         );
     }
-    for &(a, b) in world.overlapping().iter().take(OVERLAPS) {
-        let text = format!("{} and {} began inside each other", name(a), name(b));
-        ui.label(RichText::new(text).color(style::AMBER)).on_hover_text(
-            "They move freely until they have parted. Reset and move them apart to let them collide.",
-        );
+}
+
+fn overlaps(ui: &mut egui::Ui, session: &mut Session) {
+    let found: Vec<Overlap> = session.overlaps().to_vec();
+    if found.is_empty() {
+        return;
+    }
+    let name = |i: usize| {
+        let body = session.scene().bodies.get(i);
+        shown::name(body.map_or("?", |body| body.name.as_str()))
+    };
+    for overlap in found.iter().take(OVERLAPS) {
+        let (a, b) = overlap.bodies;
+        let bound = if overlap.is_least { "" } else { "up to " };
+        let depth = number::figure(overlap.depth);
+        let text = format!("{} and {} overlap, {bound}{depth} m deep", name(a), name(b));
+        ui.label(RichText::new(text).color(style::AMBER))
+            .on_hover_text("They began inside each other. They get no deeper, and may part.");
+    }
+    if let Some(more) = found.len().checked_sub(OVERLAPS).filter(|&more| more > 0) {
+        ui.label(RichText::new(format!("and {more} more pairs")).color(style::AMBER));
+    }
+    let hint = "Move all that overlap out of each other, by the least that does it, heavy bodies less. \
+                In the layout that changes the set-up.";
+    if ui.button("Separate").on_hover_text(hint).clicked() {
+        session.separate();
     }
 }

@@ -81,7 +81,7 @@ pub(super) enum Course {
 
 impl World {
     /// The gap at which two bodies in contact are kept, m.
-    pub(super) fn hover_gap(&self, i: usize, j: usize) -> f64 {
+    pub(in crate::world) fn hover_gap(&self, i: usize, j: usize) -> f64 {
         let at = &self.current.position;
         let far = |body: usize| at[body].abs().max_element() + self.extent(body).farthest;
         HOVER_ULPS * f64::EPSILON * (far(i) + far(j))
@@ -137,9 +137,12 @@ impl World {
                 continue;
             }
             if constraint.is_overlap {
+                if self.stood_still(i) && self.stood_still(j) {
+                    continue;
+                }
                 let start = &self.continuous.start.position;
-                let (normal, _) = self.penetration(i, j, start[j] - start[i]);
-                self.contacts.get_mut(index).normal = normal;
+                let out = self.penetration(i, j, start[j] - start[i]);
+                self.contacts.get_mut(index).normal = out.normal;
                 continue;
             }
             match self.measured(constraint, self.settings.dt) {

@@ -34,6 +34,8 @@ pub(in crate::world) struct ContactConstraint {
     /// Whether the bodies overlap: they are kept from moving farther into each other, and nothing
     /// else is known of their surfaces.
     pub(in crate::world) is_overlap: bool,
+    /// Whether it is one of those that let such bodies move as one in this step.
+    pub(super) is_hold: bool,
 }
 
 /// Cosine of the angle to which the normals of two contacts of the same bodies are one: 0.8 degrees.
@@ -64,13 +66,21 @@ impl ContactSet {
         &mut self.all[index]
     }
 
+    pub(super) fn all_mut(&mut self) -> &mut [ContactConstraint] {
+        &mut self.all
+    }
+
     /// The indices of the constraints of a movable body.
     pub(super) fn of_body(&self, body: usize) -> &[u32] {
         self.of_body.get(body).map_or(&[], Vec::as_slice)
     }
 
     /// The constraints between two bodies, of which one is movable.
-    pub(super) fn of_pair(&self, i: usize, j: usize) -> impl Iterator<Item = &ContactConstraint> {
+    pub(in crate::world) fn of_pair(
+        &self,
+        i: usize,
+        j: usize,
+    ) -> impl Iterator<Item = &ContactConstraint> {
         let few = if self.of_body(i).is_empty() { j } else { i };
         let pair = (i.min(j), i.max(j));
         let of_one = self.of_body(few).iter();

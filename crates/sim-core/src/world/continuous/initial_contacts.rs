@@ -26,7 +26,7 @@ const MAX_ROUNDS: usize = 64;
 const MAX_DIRECTIONS: usize = 12;
 
 /// Two bodies that meet where they have been placed.
-struct Meeting {
+pub(in crate::world) struct Meeting {
     bodies: (usize, usize),
     /// An offset of the second from the first at which they are apart.
     apart: DVec3,
@@ -70,59 +70,33 @@ impl World {
         let at = self.previous.position.clone();
         pairs.retain(|&(i, j)| self.meet_at(i, j, at[j] - at[i]));
         for &(i, j) in &pairs {
-            let (normal, _) = self.penetration(i, j, at[j] - at[i]);
-            self.insert_contact((i, j), normal, DVec3::ZERO, true);
+            let out = self.penetration(i, j, at[j] - at[i]);
+            self.note_depth((i, j), out.depth);
         }
         self.overlapping = pairs;
     }
 
-    /// The direction in which the second of two bodies in overlap is out of the first with the least motion,
-    /// of those that the surfaces that meet give and of the line of their centres; and how far that
-    /// is, m.
-    pub(in crate::world) fn penetration(&self, i: usize, j: usize, offset: DVec3) -> (DVec3, f64) {
-        let centres = self.apart_along(i, j);
-        let forms = self.form(i).zip(self.form(j));
-        let surfaces = forms.map_or_else(Vec::new, |(a, b)| parting_normals(a, b, offset));
-        let both = surfaces.iter().flat_map(|&normal| [normal, -normal]);
-        let is_apart = |by: DVec3| !self.meet_built(i, j, offset + by);
-        let size = |body: usize| self.extent(body).farthest;
-        let (least, most) = (self.hover_gap(i, j), 4.0 * (size(i) + size(j)));
-        let mut best = (centres, f64::INFINITY);
-        for normal in both.chain([centres]) {
-            let mut far = least;
-            while far <= most.min(best.1) && !is_apart(far * normal) {
-                far *= 2.0;
-            }
-            if far > most.min(best.1) {
-                continue;
-            }
-            let (mut low, mut high) = (0.5 * far, far);
-            for _ in 0..40 {
-                let middle = 0.5 * (low + high);
-                match is_apart(middle * normal) {
-                    true => high = middle,
-                    false => low = middle,
-                }
-            }
-            if high < best.1 {
-                best = (normal, high);
+    /// Where a pair is apart that meets at an offset, if there is such a place within a rounding.
+    pub(in crate::world) fn place_apart(
+        &self,
+        bodies: (usize, usize),
+        offset: DVec3,
+    ) -> Option<Meeting> {
+        let (i, j) = bodies;
+        self.need_bvh(i);
+        self.need_bvh(j);
+        let forms = self.form(i).zip(self.form(j))?;
+        let reach = self.flush(i, j);
+        let is_apart = |to: DVec3| !self.meet_built(i, j, offset + to);
+        let mut directions: Vec<DVec3> = Vec::new();
+        let surfaces = parting_normals(forms.0, forms.1, offset);
+        let surfaces = surfaces.into_iter().take(MAX_DIRECTIONS);
+        for normal in surfaces.chain([self.apart_along(i, j)]) {
+            // Each counts once in the sums below.
+            if !directions.contains(&normal) {
+                directions.push(normal);
             }
         }
-        best
-    }
-
-    /// Where a pair is apart that meets at an offset, if there is such a place within a rounding.
-    fn place_apart(&self, bodies: (usize, usize), offset: DVec3) -> Option<Meeting> {
-        let (i, j) = bodies;
-        let forms = self.form(i).zip(self.form(j))?;
-        // Vertices are f32: what looks flush is so to their rounding.
-        let rounding =
-            f64::from(f32::EPSILON) * (self.extent(i).farthest + self.extent(j).farthest);
-        let reach = 4.0 * rounding + 16.0 * self.hover_gap(i, j);
-        let is_apart = |to: DVec3| !self.meet_built(i, j, offset + to);
-        let mut directions = parting_normals(forms.0, forms.1, offset);
-        directions.truncate(MAX_DIRECTIONS);
-        directions.push(self.apart_along(i, j));
         let found = |by: DVec3| {
             is_apart(by).then_some(Meeting {
                 bodies,
@@ -145,8 +119,14 @@ impl World {
             });
             pairs.flat_map(|(l, ab)| singles().skip(l + 1).map(move |c| ab + c))
         };
+        let shortest = || {
+            let out = self.penetration(i, j, offset);
+            (out.depth <= reach).then_some((out.depth + self.hover_gap(i, j)) * out.normal)
+        };
         let all = singles().chain(pairs()).chain(triples());
-        all.map(|direction| reach * direction).find_map(found)
+        let all = all.map(|direction| reach * direction);
+        all.chain(core::iter::once_with(shortest).flatten())
+            .find_map(found)
     }
 
     /// Places at which pairs that meet do not, nor any that they come to meet, and the planes that keep
@@ -274,7 +254,7 @@ impl World {
     }
 
     /// Pairs of which one may move whose boxes, widened by a length, meet.
-    fn near_pairs(
+    pub(in crate::world) fn near_pairs(
         &self,
         at: &[DVec3],
         margin: impl Fn(usize, usize) -> f64,
@@ -305,7 +285,7 @@ impl World {
         pairs
     }
 
-    fn insert_contact(
+    pub(super) fn insert_contact(
         &mut self,
         (i, j): (usize, usize),
         normal: DVec3,
@@ -326,6 +306,7 @@ impl World {
             friction: DVec3::ZERO,
             sticks: true,
             is_overlap,
+            is_hold: false,
         };
         self.contacts.insert(
             constraint,

@@ -14,6 +14,9 @@
 //!    are found. [`progress`] and [`crush`] stop a step that would have no end.
 //! 6. [`position_correction`]: an exact test makes sure that no two bodies meet.
 //!
+//! [`held_overlaps`]: where bodies that were placed in overlap would get deeper, all of it is done again
+//! with the two held.
+//!
 //! A step costs a box test for each pair that comes near, a search for each whose swept boxes meet, and
 //! two searches or so for each event.
 
@@ -22,6 +25,7 @@ mod contact_motion;
 mod contact_set;
 mod crush;
 mod friction;
+mod held_overlaps;
 mod impact_search;
 mod initial_contacts;
 mod position_correction;
@@ -32,7 +36,10 @@ mod sleep;
 mod tests;
 mod trajectory;
 
-use alloc::{collections::BinaryHeap, vec::Vec};
+use alloc::{
+    collections::{BTreeMap, BinaryHeap},
+    vec::Vec,
+};
 use core::{cmp::Ordering, mem};
 use glam::DVec3;
 
@@ -90,6 +97,10 @@ pub(super) struct Continuous {
     pub(super) placed: bool,
     /// The contacts before the step.
     contacts_before: ContactSet,
+    /// How deep pairs in overlap were where they were placed, m.
+    depth_at_start: BTreeMap<(usize, usize), f64>,
+    /// Pairs in overlap that move as one in this step.
+    held: Vec<(usize, usize)>,
 }
 
 /// Impacts of a body in a step.
@@ -188,13 +199,7 @@ impl World {
         });
         self.bundled = Bundled::default();
         self.separate_placed();
-        self.begin_trajectories();
-        let done = self
-            .keep_contacts()
-            .and_then(|()| self.find_all_impacts())
-            .and_then(|()| self.resolve_all())
-            .and_then(|()| self.separate_meeting());
-        if let Err((body, cause)) = done {
+        if let Err((body, cause)) = self.collide_without_deepening() {
             (self.impacts, self.last_impact) = before;
             mem::swap(&mut self.contacts, &mut self.continuous.contacts_before);
             if let Some((position, overlapping)) = placed {
@@ -213,11 +218,21 @@ impl World {
         Ok(())
     }
 
+    /// Goes through the phases once.
+    fn collide_once(&mut self) -> Result<(), (usize, Cause)> {
+        self.begin_trajectories();
+        self.keep_contacts()?;
+        self.find_all_impacts()?;
+        self.resolve_all()?;
+        self.separate_meeting()
+    }
+
     /// Solves the islands of contacts that the last step has left.
     fn keep_contacts(&mut self) -> Result<(), (usize, Cause)> {
         self.continuous.events.clear();
         self.continuous.resolved = 0;
         self.find_initial_contacts();
+        self.keep_overlap_contacts();
         if self.contacts.is_empty() {
             return Ok(());
         }
@@ -225,6 +240,7 @@ impl World {
         self.measure_contacts();
         self.unstagger_velocities();
         self.release_bouncing();
+        self.hold_still();
         let mut restarted = mem::take(&mut self.continuous.restarted);
         restarted.clear();
         let all = self.contacts.all().iter();

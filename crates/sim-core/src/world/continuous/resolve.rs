@@ -112,7 +112,7 @@ impl World {
     }
 
     /// Whether impacts change the trajectory of a body.
-    pub(super) fn is_movable(&self, body: usize) -> bool {
+    pub(in crate::world) fn is_movable(&self, body: usize) -> bool {
         self.mass[body].is_finite()
     }
 
@@ -261,7 +261,7 @@ impl World {
     /// Whether two bodies that close at a speed, while forces close them by another one in a step, part
     /// again.
     pub(super) fn bounces(&self, (i, j): (usize, usize), closing: f64, load_speed: f64) -> bool {
-        if closing <= 0.0 {
+        if closing <= 0.0 || self.is_held(i, j) {
             return false;
         }
         let restitution = self.pair_restitution(i, j);
@@ -355,6 +355,7 @@ impl World {
             friction: DVec3::ZERO,
             sticks: true,
             is_overlap: false,
+            is_hold: false,
         };
         let movable = (self.is_movable(i), self.is_movable(j));
         self.contacts.insert(

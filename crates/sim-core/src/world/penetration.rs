@@ -1,0 +1,297 @@
+//! How deep bodies are in each other, and which way is out.
+//!
+//! Of spheres and of half-spaces the least translation that parts a pair has a closed form. Of other
+//! pairs it is sought: lengths are doubled, or halved, until one of many directions parts the pair at one
+//! and none at half of it, by the exact test; the directions that do are bisected; and from where the best of them parts the pair, the
+//! surface that it then touches gives the next direction, as long as that is a shorter way.
+
+use alloc::vec::Vec;
+use glam::DVec3;
+
+use super::World;
+use crate::collide::{Form, ball_meets, first_contact, parting_normals, reach, snap};
+
+/// Halvings of the length at which a direction parts a pair: as good as 12 digits.
+const HALVINGS: usize = 40;
+/// Rounds in which the surface that is touched gives the next direction; of faces one is enough.
+const TURNS: usize = 16;
+/// Roundings of the f32 of vertices that what is meant to be flush may miss by.
+const FLUSH_ROUNDINGS: f64 = 4.0;
+/// Gaps of bodies in contact that it may miss by.
+const FLUSH_GAPS: f64 = 16.0;
+
+/// Two bodies that are in each other, deeper than by rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Overlap {
+    /// The bodies, the lower index first.
+    pub bodies: (usize, usize),
+    /// The shortest way out that is known for the second body, a unit vector; the first one's is against
+    /// it.
+    pub normal: DVec3,
+    /// How far that way is, m: moved by it against each other, the bodies touch.
+    ///
+    /// A mesh is a surface, open or closed, so the way out may lead into what it encloses.
+    pub depth: f64,
+    /// Whether no translation that parts them is shorter, but for rounding.
+    ///
+    /// It is known for spheres and half-spaces, for spheres that no edge or second face of a mesh is in
+    /// the way of, and for two boxes of which neither fits into the other. Otherwise `depth` is an upper
+    /// bound: that of the shortest of the ways out along the normals of up to 32 faces that are met, the
+    /// line of the centres, and the 26 directions to the faces, edges and corners of a cube, bettered
+    /// by the surfaces that are met on the way.
+    pub is_least: bool,
+}
+
+/// A way out of an overlap.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Penetration {
+    /// Where the second body goes.
+    pub(super) normal: DVec3,
+    /// How far, m.
+    pub(super) depth: f64,
+    pub(super) is_least: bool,
+}
+
+impl World {
+    /// The pairs of bodies that are in each other, one of which may move, in order: those that were put
+    /// into the world so, and have not parted since.
+    ///
+    /// No start is refused: bodies in overlap are held as they are, get no deeper and gain no energy, two
+    /// that are immovable touch nothing of each other, and what is wholly inside a closed mesh does not
+    /// overlap it, as a mesh is a surface and its inside a room. [`World::separate`] moves overlaps apart.
+    ///
+    /// What is less deep than [`World::flush`] allows for is no overlap but a contact. Depths are
+    /// measured where the bodies are now, which takes some hundred exact tests for a pair of meshes.
+    pub fn overlaps(&self) -> Vec<Overlap> {
+        let pairs = self.overlapping().iter();
+        pairs.filter_map(|&(i, j)| self.overlap(i, j)).collect()
+    }
+
+    /// The overlap of two bodies, the lower index first, if it is one of [`World::overlaps`].
+    pub fn overlap(&self, i: usize, j: usize) -> Option<Overlap> {
+        self.overlapping().binary_search(&(i, j)).ok()?;
+        let offset = self.current.position[j] - self.current.position[i];
+        if !self.is_held_in_overlap(i, j) && self.place_apart((i, j), offset).is_some() {
+            return None;
+        }
+        let found = self.penetration(i, j, offset);
+        Some(Overlap {
+            bodies: (i, j),
+            normal: found.normal,
+            depth: found.depth,
+            is_least: found.is_least,
+        })
+    }
+
+    /// How deep two bodies may be in each other along a normal, or along up to three at once, m, and still
+    /// be meant to touch: four times what the `f32` of their vertices, radii and distances from their
+    /// origins are rounded by together, and 16 of the gaps at which bodies in contact are kept, 1024
+    /// units in the last place of their coordinates.
+    ///
+    /// Positions that are computed for bodies to lie flush, on a slope or by turned meshes, are wrong by
+    /// as much. Such bodies are moved apart when the next step begins, and then touch.
+    pub fn flush(&self, i: usize, j: usize) -> f64 {
+        let sizes = self.extent(i).farthest + self.extent(j).farthest;
+        FLUSH_ROUNDINGS * f64::from(f32::EPSILON) * sizes + FLUSH_GAPS * self.hover_gap(i, j)
+    }
+
+    fn is_held_in_overlap(&self, i: usize, j: usize) -> bool {
+        let mut contacts = self.contacts.of_pair(i, j);
+        contacts.any(|contact| contact.is_overlap)
+    }
+
+    /// The shortest way out that is known of two bodies that meet, the second one at `offset` from the
+    /// first.
+    pub(super) fn penetration(&self, i: usize, j: usize, offset: DVec3) -> Penetration {
+        self.need_bvh(i);
+        self.need_bvh(j);
+        let Some((first, second)) = self.form(i).zip(self.form(j)) else {
+            return self.unknown_penetration(i, j);
+        };
+        if let Some(exact) = in_closed_form(first, second, offset) {
+            return exact;
+        }
+        let directions = self.ways_out(i, j, offset);
+        let Some((normal, depth)) = self.shortest_out((i, j), offset, &directions) else {
+            return self.unknown_penetration(i, j);
+        };
+        let (normal, depth) = self.turned_out((i, j), offset, (normal, depth));
+        Penetration {
+            normal,
+            depth,
+            is_least: is_least(first, second, offset, depth) || self.are_boxes_in_boxes(i, j),
+        }
+    }
+
+    fn unknown_penetration(&self, i: usize, j: usize) -> Penetration {
+        Penetration {
+            normal: self.apart_along(i, j),
+            depth: self.farthest_out(i, j),
+            is_least: false,
+        }
+    }
+
+    /// Farther than any pair that meets has to be moved, m.
+    fn farthest_out(&self, i: usize, j: usize) -> f64 {
+        4.0 * (self.extent(i).farthest + self.extent(j).farthest)
+    }
+
+    /// Unit vectors along which the second of two bodies may leave the first.
+    pub(super) fn ways_out(&self, i: usize, j: usize, offset: DVec3) -> Vec<DVec3> {
+        let forms = self.form(i).zip(self.form(j));
+        let surfaces = forms.map_or_else(Vec::new, |(a, b)| parting_normals(a, b, offset));
+        let mut ways: Vec<DVec3> = alloc::vec![self.apart_along(i, j)];
+        let both = surfaces.iter().flat_map(|&normal| [normal, -normal]);
+        let known = self.contacts.of_pair(i, j).filter(|known| known.is_overlap);
+        for way in known.map(|known| known.normal).chain(both).chain(compass()) {
+            if !ways.contains(&way) {
+                ways.push(way);
+            }
+        }
+        ways
+    }
+
+    /// The shortest way out along one of some directions: at a length none of them parts the pair, and at
+    /// twice that some do.
+    fn shortest_out(
+        &self,
+        (i, j): (usize, usize),
+        offset: DVec3,
+        directions: &[DVec3],
+    ) -> Option<(DVec3, f64)> {
+        let is_apart = |by: DVec3| !self.meet_built(i, j, offset + by);
+        let some_part = |far: f64| directions.iter().any(|&way| is_apart(far * way));
+        let (least, most) = (self.hover_gap(i, j), self.farthest_out(i, j));
+        // What is held is about as deep as it was.
+        let known = self
+            .continuous
+            .depth_at_start(i, j)
+            .map(|depth| 0.125 * depth);
+        let mut far = known.unwrap_or_else(|| self.flush(i, j)).max(least);
+        if some_part(far) {
+            while far > least && some_part(0.5 * far) {
+                far *= 0.5;
+            }
+        } else {
+            while far <= most && !some_part(far) {
+                far *= 2.0;
+            }
+        }
+        let mut best: Option<(DVec3, f64)> = None;
+        for &way in directions {
+            let reach = best.map_or(far, |(_, depth)| depth);
+            if is_apart(reach * way) {
+                let depth = halved(0.5 * far, reach, |length| is_apart(length * way));
+                if best.is_none_or(|(_, least)| depth < least) {
+                    best = Some((way, depth));
+                }
+            }
+        }
+        best
+    }
+
+    /// A way out that no turn to the surface that is touched at its end makes shorter.
+    fn turned_out(
+        &self,
+        (i, j): (usize, usize),
+        offset: DVec3,
+        mut best: (DVec3, f64),
+    ) -> (DVec3, f64) {
+        let Some((first, second)) = self.form(i).zip(self.form(j)) else {
+            return best;
+        };
+        let is_apart = |by: DVec3| !self.meet_built(i, j, offset + by);
+        let hover = self.hover_gap(i, j);
+        for _ in 0..TURNS {
+            let (normal, depth) = best;
+            let apart = offset + (depth + hover) * normal;
+            let back = -(2.0 * hover + depth) * normal;
+            let Some(touch) = first_contact(first, second, snap(apart), snap(back)) else {
+                break;
+            };
+            let along = normal.dot(touch.normal) * depth;
+            // Beyond the plane that it touches.
+            let reach = along * (1.0 + 1e-12) + hover;
+            if reach >= depth || !is_apart(reach * touch.normal) {
+                break;
+            }
+            let shortest = halved(0.5 * along, reach, |length| is_apart(length * touch.normal));
+            best = (touch.normal, shortest);
+        }
+        best
+    }
+
+    /// Whether two bodies are boxes along the axes of which neither fits into the other: the only way out
+    /// of each other is then past a face.
+    fn are_boxes_in_boxes(&self, i: usize, j: usize) -> bool {
+        let is_box = |body: usize| self.bvh(body).is_some_and(|bvh| bvh.cuboid().is_some());
+        let size = |body: usize| {
+            let extent = self.extent(body);
+            extent.high - extent.low
+        };
+        is_box(i) && is_box(j) && {
+            let (first, second) = (size(i), size(j));
+            first.cmpge(second).any() && second.cmpge(first).any()
+        }
+    }
+}
+
+/// The least length from `low` to `high` at which something is so, as it is at `high`.
+fn halved(mut low: f64, mut high: f64, is_so: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        match is_so(middle) {
+            true => high = middle,
+            false => low = middle,
+        }
+    }
+    high
+}
+
+/// Directions to the faces, edges and corners of a cube.
+pub(super) fn compass() -> impl Iterator<Item = DVec3> {
+    let ends = [0.0, 1.0, -1.0];
+    let all = ends.into_iter().flat_map(move |x| {
+        let plane = ends.into_iter().flat_map(move |y| ends.map(|z| (y, z)));
+        plane.map(move |(y, z)| DVec3::new(x, y, z))
+    });
+    all.filter_map(DVec3::try_normalize)
+}
+
+/// The way out of spheres and half-spaces.
+fn in_closed_form(first: Form<'_>, second: Form<'_>, offset: DVec3) -> Option<Penetration> {
+    let least = |normal: DVec3, depth: f64| {
+        Some(Penetration {
+            normal,
+            depth: depth.max(0.0),
+            is_least: true,
+        })
+    };
+    match (first, second) {
+        (Form::HalfSpace(normal), other) => {
+            least(normal, reach(other, normal).0 - normal.dot(offset))
+        }
+        (Form::Sphere(one), Form::Sphere(other)) => {
+            let normal = offset.try_normalize().unwrap_or(DVec3::X);
+            least(normal, one + other - offset.length())
+        }
+        (_, Form::HalfSpace(_)) => {
+            let turned = in_closed_form(second, first, -offset)?;
+            least(-turned.normal, turned.depth)
+        }
+        _ => None,
+    }
+}
+
+/// Whether no translation of a sphere out of a mesh is shorter: its middle is nearer to the surface than
+/// its radius by as much, and a translation takes it no farther away than its length.
+fn is_least(first: Form<'_>, second: Form<'_>, offset: DVec3, depth: f64) -> bool {
+    let (mesh, centre, radius) = match (first, second) {
+        (Form::Mesh(mesh), Form::Sphere(radius)) => (mesh, offset, radius),
+        (Form::Sphere(radius), Form::Mesh(mesh)) => (mesh, -offset, radius),
+        _ => return false,
+    };
+    let left = radius - depth + 1e-9 * radius;
+    left >= 0.0 && ball_meets(mesh, centre, left)
+}

@@ -1,0 +1,311 @@
+//! Moving bodies in overlap out of each other.
+//!
+//! First all together, by as little as can be: each pair that meets has a plane across its shortest way
+//! out, and bodies move to the nearest places, in the norm of their masses, on the far sides of all
+//! planes; who meets there gets a new plane, and so on until nobody meets. Where the planes have no
+//! such place, as those of a body between two immovable ones that face each other, bodies are placed
+//! one after the other, heavy ones first: each goes the shortest way along one of many directions to
+//! where it meets none that is there.
+
+use alloc::{collections::BTreeMap, vec::Vec};
+use glam::DVec3;
+
+use super::{World, penetration::compass};
+use crate::{Shape, collide::reach};
+
+/// Rounds in which planes are added, at most.
+const ROUNDS: usize = 64;
+/// Sweeps over planes in a round, at most, and fewer where there are many: what is left is for the next
+/// round.
+const SWEEPS: usize = 20_000;
+/// Planes looked at in a round, at most.
+const LOOKS: usize = 2_000_000;
+/// Part of what is missing that shows planes which have no common far side.
+const UNSOLVED: f64 = 1e-4;
+/// Factor by which a plane is done too much for in a sweep, as others undo some of it.
+const RELAXATION: f64 = 1.5;
+
+/// Why bodies cannot be moved out of each other.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SeparateError {
+    /// A body does not fit between half-spaces.
+    #[error(
+        "body {body} does not fit between the half-spaces {walls:?}: make it smaller, or move one of them"
+    )]
+    Caught {
+        /// Index of the body.
+        body: usize,
+        /// The half-spaces that leave it no place.
+        walls: Vec<usize>,
+    },
+    /// No place was found for a body, though there may be one.
+    #[error(
+        "no place was found for body {body}, which overlaps bodies {others:?}: move it, or one of them"
+    )]
+    NoRoom {
+        /// Index of the body.
+        body: usize,
+        /// Those that it overlaps, and cannot be moved out of.
+        others: Vec<usize>,
+    },
+}
+
+/// A plane that keeps two bodies apart: the least offset along its normal, m.
+struct Plane {
+    bodies: (usize, usize),
+    normal: DVec3,
+    level: f64,
+    /// What it has pushed so far, kg m.
+    pushed: f64,
+}
+
+impl World {
+    /// Moves bodies in overlap out of each other, so that none overlap, and tells which ones were moved,
+    /// in order. Velocities stay as they are; bodies that were not in overlap are moved only where others
+    /// are moved into them.
+    ///
+    /// Of two bodies the lighter one goes farther, by the ratio of their masses, and immovable ones stay:
+    /// the sum of mass times square of the way is the least that moves all of them along their shortest
+    /// ways out ([`World::overlaps`]). What is moved out touches afterwards, as if placed face to face.
+    ///
+    /// On an error the world stays as it was.
+    pub fn separate(&mut self) -> Result<Vec<usize>, SeparateError> {
+        if self.overlapping().is_empty() {
+            return Ok(Vec::new());
+        }
+        self.build_bvhs();
+        let at = &self.current.position;
+        let place = match self.places_together(at) {
+            Some(place) => place,
+            None => self.places_one_by_one(at)?,
+        };
+        let moved: Vec<usize> = (0..self.len()).filter(|&i| place[i] != at[i]).collect();
+        for &body in &moved {
+            self.current.position[body] = place[body];
+            self.previous.position[body] = place[body];
+            self.forget_contacts_of(body);
+            self.note_placed(body);
+        }
+        self.speed_scale = None;
+        Ok(moved)
+    }
+
+    /// Pairs that meet at some places, one of which may move.
+    fn meeting_at(&self, place: &[DVec3]) -> Vec<(usize, usize)> {
+        let mut pairs = self.near_pairs(place, |i, j| 8.0 * self.hover_gap(i, j));
+        pairs.retain(|&(i, j)| self.meet_built(i, j, place[j] - place[i]));
+        pairs
+    }
+
+    /// The nearest places at which nobody meets, in the norm of masses; `None` where none are found.
+    fn places_together(&self, at: &[DVec3]) -> Option<Vec<DVec3>> {
+        let mut place = at.to_vec();
+        let mut planes: BTreeMap<(usize, usize), Plane> = BTreeMap::new();
+        for _ in 0..ROUNDS {
+            let meeting = self.meeting_at(&place);
+            if meeting.is_empty() {
+                return Some(place);
+            }
+            for bodies in meeting {
+                let (i, j) = bodies;
+                let offset = place[j] - place[i];
+                let out = self.penetration(i, j, offset);
+                let level = out.normal.dot(offset) + out.depth + self.hover_gap(i, j);
+                let plane = Plane {
+                    bodies,
+                    normal: out.normal,
+                    level,
+                    pushed: 0.0,
+                };
+                planes.insert(bodies, plane);
+            }
+            let mut all: Vec<&mut Plane> = planes.values_mut().collect();
+            if !self.push_beyond(&mut all, &mut place) {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// Moves bodies to the far sides of planes, by the least in the norm of masses (Hildreth 1957, "A
+    /// quadratic programming procedure": plane after plane, over and over), and tells whether there
+    /// is hope that they have a common one.
+    fn push_beyond(&self, planes: &mut [&mut Plane], place: &mut [DVec3]) -> bool {
+        let inverse = |body: usize| 1.0 / self.mass[body];
+        let sweeps = SWEEPS.min(1 + LOOKS / planes.len());
+        let (mut first, mut worst) = (0.0_f64, 0.0_f64);
+        for plane in &mut *planes {
+            plane.pushed = 0.0;
+        }
+        for sweep in 0..sweeps {
+            worst = 0.0;
+            let mut is_done = true;
+            for plane in &mut *planes {
+                let (i, j) = plane.bodies;
+                let missing = plane.level - plane.normal.dot(place[j] - place[i]);
+                worst = worst.max(missing);
+                // What has been pushed touches.
+                let slack = 0.25 * self.hover_gap(i, j);
+                is_done &= missing <= slack && (plane.pushed == 0.0 || missing >= -slack);
+                let push = RELAXATION * missing / (inverse(i) + inverse(j));
+                let pushed = (plane.pushed + push).max(0.0);
+                let push = pushed - plane.pushed;
+                plane.pushed = pushed;
+                place[i] -= push * inverse(i) * plane.normal;
+                place[j] += push * inverse(j) * plane.normal;
+            }
+            if sweep == 0 {
+                first = worst;
+            }
+            if is_done {
+                return true;
+            }
+        }
+        // Of few planes all has been done that could be.
+        worst <= UNSOLVED * first || sweeps < SWEEPS
+    }
+
+    /// Places at which nobody meets, found for one body after the other.
+    fn places_one_by_one(&self, at: &[DVec3]) -> Result<Vec<DVec3>, SeparateError> {
+        let mut place = at.to_vec();
+        let (mut there, mut movable): (Vec<usize>, Vec<usize>) = self
+            .solid
+            .iter()
+            .partition(|&&body| !self.mass[body].is_finite());
+        movable.sort_by(|&i, &j| self.mass[j].total_cmp(&self.mass[i]).then(i.cmp(&j)));
+        for body in movable {
+            place[body] = self.free_place(body, &there, &place)?;
+            there.push(body);
+        }
+        Ok(place)
+    }
+
+    /// The nearest place for a body along one of many directions where it meets none of some others.
+    fn free_place(
+        &self,
+        body: usize,
+        there: &[usize],
+        place: &[DVec3],
+    ) -> Result<DVec3, SeparateError> {
+        let blockers = |at: DVec3| -> Vec<usize> {
+            let meets = |&&other: &&usize| {
+                let (i, j) = (body.min(other), body.max(other));
+                let offset = if body < other {
+                    place[other] - at
+                } else {
+                    at - place[other]
+                };
+                let is_wall = self.extent(i).half.max(self.extent(j).half) == f64::INFINITY;
+                let swept = |body: usize, at: DVec3| self.swept_box(body, at, at);
+                (is_wall || swept(body, at).meets(&swept(other, place[other])))
+                    && self.meet_built(i, j, offset)
+            };
+            there.iter().filter(meets).copied().collect()
+        };
+        let walls: Vec<usize> = there
+            .iter()
+            .copied()
+            .filter(|&other| matches!(self.shape(other), Some(Shape::HalfSpace { .. })))
+            .collect();
+        let inside = |at: DVec3| self.out_of_walls(body, at, &walls, place);
+        let first = inside(place[body]).ok_or_else(|| SeparateError::Caught {
+            body,
+            walls: self.walls_about(body, place[body], &walls, place),
+        })?;
+        let others = blockers(first);
+        if others.is_empty() {
+            return Ok(first);
+        }
+        let mut ways: Vec<DVec3> = compass().collect();
+        for &other in &others {
+            ways.extend(self.ways_out(other, body, first - place[other]));
+        }
+        let free = |length: f64, way: DVec3| {
+            let at = inside(first + length * way)?;
+            blockers(at).is_empty().then_some(at)
+        };
+        let size = |other: usize| self.extent(other).farthest;
+        let most = there.iter().fold(8.0 * size(body), |most, &other| {
+            most.max(4.0 * (size(body) + size(other) + (place[other] - first).length()))
+        });
+        let mut far = self.hover_gap(body, others[0]);
+        while far <= most {
+            let nearest = ways
+                .iter()
+                .filter_map(|&way| {
+                    let mut found = free(far, way)?;
+                    let (mut low, mut high) = (0.5 * far, far);
+                    for _ in 0..40 {
+                        let middle = 0.5 * (low + high);
+                        match free(middle, way) {
+                            Some(at) => (high, found) = (middle, at),
+                            None => low = middle,
+                        }
+                    }
+                    Some(found)
+                })
+                .min_by(|a, b| (a - first).length().total_cmp(&(b - first).length()));
+            if let Some(nearest) = nearest {
+                return Ok(nearest);
+            }
+            far *= 2.0;
+        }
+        Err(SeparateError::NoRoom { body, others })
+    }
+
+    /// The planes of half-spaces against a body, at which its position is kept.
+    fn wall_planes(&self, body: usize, walls: &[usize], place: &[DVec3]) -> Vec<(DVec3, f64)> {
+        let of = |&wall: &usize| {
+            let &Shape::HalfSpace { normal } = self.shape(wall)? else {
+                return None;
+            };
+            let (reach, _) = reach(self.form(body)?, normal);
+            let level = normal.dot(place[wall]) + reach + self.hover_gap(wall, body);
+            Some((normal, level))
+        };
+        walls.iter().filter_map(of).collect()
+    }
+
+    /// The place nearest to one at which a body is out of half-spaces, if there is one.
+    fn out_of_walls(
+        &self,
+        body: usize,
+        at: DVec3,
+        walls: &[usize],
+        place: &[DVec3],
+    ) -> Option<DVec3> {
+        if matches!(self.shape(body), Some(Shape::HalfSpace { .. })) {
+            return Some(at);
+        }
+        let planes = self.wall_planes(body, walls, place);
+        let mut pushed = alloc::vec![0.0_f64; planes.len()];
+        let mut at = at;
+        for _ in 0..SWEEPS {
+            let mut is_done = true;
+            for ((&(normal, level), pushed), &wall) in planes.iter().zip(&mut pushed).zip(walls) {
+                let missing = level - normal.dot(at);
+                is_done &= missing <= 0.25 * self.hover_gap(wall, body);
+                let sum = (*pushed + missing).max(0.0);
+                at += (sum - *pushed) * normal;
+                *pushed = sum;
+            }
+            if is_done {
+                return Some(at);
+            }
+        }
+        None
+    }
+
+    /// Half-spaces of a few that leave a body no place.
+    fn walls_about(&self, body: usize, at: DVec3, walls: &[usize], place: &[DVec3]) -> Vec<usize> {
+        // Without any one of them there is one.
+        let mut few = walls.to_vec();
+        for &wall in walls {
+            let others: Vec<usize> = few.iter().copied().filter(|&other| other != wall).collect();
+            if self.out_of_walls(body, at, &others, place).is_none() {
+                few = others;
+            }
+        }
+        few
+    }
+}

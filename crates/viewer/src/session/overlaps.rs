@@ -1,0 +1,100 @@
+//! Bodies in each other: told, marked, and moved apart.
+
+use scene::shown;
+use sim_core::{DVec3, Overlap, Shape};
+
+use super::framing::Bounds;
+use super::{Reference, Session, State};
+use crate::headless;
+use crate::picture::Line;
+
+/// Pairs that are measured at most, and marked.
+const MOST: usize = 64;
+/// Boxes around bodies in overlap.
+const AMBER: [f32; 4] = [0.95, 0.60, 0.05, 1.0];
+
+/// Overlaps of a state of the world, which take longer to measure than to keep.
+#[derive(Debug, Default)]
+pub(super) struct Overlaps {
+    /// Hash of the state.
+    state: Option<u64>,
+    found: Vec<Overlap>,
+}
+
+impl Session {
+    /// The pairs of bodies that are in each other now, with their depths; of many the first ones.
+    pub fn overlaps(&mut self) -> &[Overlap] {
+        let state = Some(self.world.state_hash());
+        if self.overlaps.state != state {
+            let pairs = self.world.overlapping().iter().take(MOST);
+            let found = pairs
+                .filter_map(|&(i, j)| self.world.overlap(i, j))
+                .collect();
+            self.overlaps = Overlaps { state, found };
+        }
+        &self.overlaps.found
+    }
+
+    /// Moves bodies in overlap out of each other, in the layout state in the set-up too.
+    pub fn separate(&mut self) {
+        let moved = match self.world.separate() {
+            Ok(moved) => moved,
+            Err(error) => {
+                let text = headless::separate_error(&self.scene, &error);
+                return self
+                    .notices
+                    .error("separate", format!("Nothing was moved: {text}."));
+            }
+        };
+        self.disown_jobs();
+        if self.state == State::Layout {
+            for &body in &moved {
+                self.scene.bodies[body].position = self.world.position(body);
+            }
+        }
+        self.reference = Reference::of(&self.world);
+        self.playback.begin(&self.world);
+        if self.display.trails {
+            self.trails.begin(&self.world);
+        }
+        let text = match moved[..] {
+            [] => "Nothing overlaps.".to_owned(),
+            [body] => format!("Moved {} out.", shown::name(&self.scene.bodies[body].name)),
+            _ => format!("Moved {} bodies out of each other.", moved.len()),
+        };
+        self.notices.info("separate", text);
+    }
+
+    /// Boxes around the bodies that are in each other.
+    pub(super) fn add_overlaps(&mut self, marks: &mut Vec<Line>) {
+        let both = |overlap: &Overlap| [overlap.bodies.0, overlap.bodies.1];
+        let mut bodies: Vec<usize> = self.overlaps().iter().flat_map(both).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        for body in bodies {
+            if matches!(self.world.shape(body), Some(Shape::HalfSpace { .. })) {
+                continue;
+            }
+            let Bounds { centre, half } = self.bounds(body);
+            let middle = self.shown_position(body) + centre;
+            marks.extend(edges(middle, half).map(|(from, to)| Line {
+                from,
+                to,
+                colour: AMBER,
+                width: 2.0,
+            }));
+        }
+    }
+}
+
+/// The twelve edges of a box about a point.
+pub(super) fn edges(middle: DVec3, half: DVec3) -> impl Iterator<Item = (DVec3, DVec3)> {
+    let corner = move |bits: usize| {
+        let sign = |axis: usize| if bits >> axis & 1 == 1 { 1.0 } else { -1.0 };
+        middle + DVec3::new(sign(0), sign(1), sign(2)) * half
+    };
+    (0..8).flat_map(move |from| {
+        let axes = [1, 2, 4].into_iter().filter(move |axis| from & axis == 0);
+        axes.map(move |axis| (corner(from), corner(from | axis)))
+    })
+}

@@ -1,0 +1,170 @@
+//! How deep bodies are in each other, against closed forms.
+
+use sim_core::{DVec3, World};
+
+use crate::shapes::{
+    Random, add_gravity, at, ball, cow, cube, cuboid, half_space, immovable, meet, touching, world,
+};
+
+/// The only overlap of a world of two.
+fn only(world: &World) -> sim_core::Overlap {
+    let overlaps = world.overlaps();
+    assert_eq!(overlaps.len(), 1, "{overlaps:?}");
+    assert_eq!(overlaps[0].bodies, (0, 1));
+    overlaps[0]
+}
+
+#[test]
+fn depths_of_spheres_and_half_spaces_are_exact() {
+    let mut random = Random(7);
+    for _ in 0..200 {
+        let way = random.direction();
+        let apart = 0.4 + 0.5 * random.signed().abs();
+        let overlap = only(&world([
+            at(&ball(0.5), way),
+            at(&ball(0.75), way * (1.0 + apart)),
+        ]));
+        assert!(
+            (overlap.depth - (1.25 - apart)).abs() < 1e-14,
+            "{overlap:?}"
+        );
+        assert!((overlap.normal - way).length() < 1e-14 && overlap.is_least);
+        for (shape, reach) in [(ball(0.5), 0.5), (cube(), 0.5 * way.abs().element_sum())] {
+            let floor = immovable(at(&half_space(way), way));
+            let body = at(
+                &shape,
+                way * (1.0 + reach - 0.25) + way.any_orthogonal_vector(),
+            );
+            for (turned, sign) in [(false, 1.0), (true, -1.0)] {
+                let mut pair = [floor.clone(), body.clone()];
+                if turned {
+                    pair.reverse();
+                }
+                let overlap = only(&world(pair));
+                assert!((overlap.depth - 0.25).abs() < 1e-6, "{overlap:?}");
+                assert!((overlap.normal - sign * way).length() < 1e-14 && overlap.is_least);
+            }
+        }
+    }
+}
+
+#[test]
+fn depths_of_boxes_are_those_of_the_axis_that_parts_them_first() {
+    let mut random = Random(11);
+    let (first, second) = ([0.5, 1.0, 0.25], [0.75, 0.5, 0.5]);
+    let shapes = (cuboid(first.into()), cuboid(second.into()));
+    let reach = DVec3::new(1.25, 1.5, 0.75);
+    let mut seen = 0;
+    for _ in 0..300 {
+        let offset = 0.99 * random.vector() * reach;
+        if !meet(&shapes.0, &shapes.1, offset) {
+            continue;
+        }
+        seen += 1;
+        let least = (reach - offset.abs()).min_element();
+        let overlap = only(&world([at(&shapes.0, DVec3::ZERO), at(&shapes.1, offset)]));
+        assert!(
+            (overlap.depth - least).abs() < 1e-10,
+            "{least}: {overlap:?}"
+        );
+        assert!(overlap.is_least);
+    }
+    assert!(seen > 200);
+}
+
+#[test]
+fn depths_of_balls_in_faces_edges_and_corners_of_a_mesh_are_those_of_the_distance() {
+    let cube = at(&cube(), DVec3::ZERO);
+    for out in [
+        DVec3::X,
+        DVec3::NEG_Y,
+        DVec3::new(1.0, -1.0, 0.0),
+        DVec3::new(-1.0, 1.0, 1.0),
+        DVec3::new(1.0, 2.0, 0.0),
+    ] {
+        let normal = out.normalize();
+        let corner = 0.5 * out.signum() * out.abs().cmpgt(DVec3::ZERO).select_one();
+        let at_ball = at(&ball(0.25), corner + 0.15 * normal + 0.1 * free_way(out));
+        let overlap = only(&world([cube.clone(), at_ball]));
+        assert!((overlap.depth - 0.1).abs() < 1e-7, "{out}: {overlap:?}");
+        assert!(
+            (overlap.normal - normal).length() < 1e-4,
+            "{out}: {overlap:?}"
+        );
+        assert!(overlap.is_least, "{out}");
+    }
+}
+
+/// Ones where a mask is set.
+trait SelectOne {
+    fn select_one(self) -> DVec3;
+}
+
+impl SelectOne for glam::BVec3 {
+    fn select_one(self) -> DVec3 {
+        DVec3::select(self, DVec3::ONE, DVec3::ZERO)
+    }
+}
+
+/// A way along the face or edge that is nearest in a direction.
+fn free_way(out: DVec3) -> DVec3 {
+    DVec3::select(out.cmpeq(DVec3::ZERO), DVec3::ONE, DVec3::ZERO)
+}
+
+#[test]
+fn a_depth_parts_and_less_does_not() {
+    let mut random = Random(5);
+    let shapes = [cow(), cube(), ball(0.5), cow()];
+    for _ in 0..40 {
+        let (first, second) = (&shapes[random.below(4)], &shapes[random.below(4)]);
+        let direction = random.direction();
+        let depth = [1e-3, 0.1, 0.5][random.below(3)];
+        let offset = (touching(first, second, direction) - depth) * direction;
+        let overlaps = world([at(first, DVec3::ZERO), at(second, offset)]).overlaps();
+        let Some(overlap) = overlaps.first() else {
+            // Between what is hollow it may be apart.
+            continue;
+        };
+        let by = |part: f64| offset + (part * overlap.depth) * overlap.normal;
+        assert!(
+            overlap.depth <= depth * (1.0 + 1e-9),
+            "{overlap:?} of {depth}"
+        );
+        assert!(!meet(first, second, by(1.0 + 1e-9)), "{overlap:?}");
+        assert!(meet(first, second, by(1.0 - 1e-9)), "{overlap:?}");
+    }
+}
+
+#[test]
+fn what_touches_by_rounding_is_no_overlap() {
+    let mut random = Random(3);
+    let (mut met, mut balls) = (0, 0);
+    for _ in 0..400 {
+        let normal = random.direction();
+        let place = 10.0 * random.vector();
+        // Meant to touch, by numbers that are rounded.
+        let bodies = [
+            immovable(at(&half_space(normal), place)),
+            at(
+                &ball(0.5),
+                place + 0.5 * normal + 3.0 * normal.any_orthogonal_vector(),
+            ),
+        ];
+        let mut world = world(bodies);
+        add_gravity(&mut world);
+        met += world.overlapping().len();
+        balls += 1;
+        assert_eq!(world.overlaps(), []);
+        for _ in 0..3 {
+            world.step().expect("a step");
+            assert_eq!((world.overlaps().len(), world.overlapping().len()), (0, 0));
+        }
+    }
+    assert!(met > 50 && met < balls, "{met} of {balls}");
+    // And what is deeper is one.
+    let body = at(&ball(0.5), DVec3::Y * (0.5 - 1e-6));
+    let world = world([immovable(at(&half_space(DVec3::Y), DVec3::ZERO)), body]);
+    let flush = world.flush(0, 1);
+    assert!((1e-9..1e-6).contains(&flush), "{flush}");
+    assert!((only(&world).depth - 1e-6).abs() < 1e-15);
+}
