@@ -30,40 +30,33 @@ pub fn drag(
 ) {
     let rubs = |k: &usize| limit[*k] > 0.0 || given[*k] != DVec3::ZERO;
     let rubbing: Vec<usize> = (0..contacts.len()).filter(rubs).collect();
+    let yielding = |&k: &usize| contacts[k].shared(&contacts[k], inverse_mass);
+    let yielding: Vec<f64> = rubbing.iter().map(yielding).collect();
     let mut direction = vec![DVec3::ZERO; rubbing.len()];
     let mut before: Vec<DVec3> = rubbing.iter().map(|&k| given[k]).collect();
     let mut last = f64::INFINITY;
     for _ in 0..sweeps {
-        let mut worst = 0.0_f64;
-        for &k in &rubbing {
+        let (mut worst, mut size) = (0.0_f64, 0.0);
+        for ((&k, &yielding), before) in rubbing.iter().zip(&yielding).zip(&before) {
             let contact = &contacts[k];
-            let yielding = contact.shared(contact, inverse_mass);
             let best = given[k] - (contact.sliding(velocity) + more[k]) / yielding;
             let next = within(best, limit[k]);
             worst = worst.max(yielding * (next - given[k]).length());
             apply(contact, inverse_mass, velocity, next - given[k]);
             given[k] = next;
+            size += (next - *before).length_squared();
         }
         if worst <= enough {
             break;
         }
-        let changes: Vec<DVec3> = rubbing
-            .iter()
-            .zip(&before)
-            .map(|(&k, &before)| given[k] - before)
-            .collect();
-        let size: f64 = changes.iter().map(|change| change.length_squared()).sum();
-        let turn = size / last;
+        let turn = if size < last { size / last } else { 0.0 };
         last = size;
-        for (place, (&k, change)) in rubbing.iter().zip(changes).enumerate() {
-            let along = match turn < 1.0 {
-                true => turn * direction[place],
-                false => DVec3::ZERO,
-            };
+        for ((&k, before), direction) in rubbing.iter().zip(&mut before).zip(&mut direction) {
+            let along = turn * *direction;
             let next = within(given[k] + along, limit[k]);
             apply(&contacts[k], inverse_mass, velocity, next - given[k]);
-            direction[place] = along + change;
-            (given[k], before[place]) = (next, next);
+            *direction = along + (given[k] - *before);
+            (given[k], *before) = (next, next);
         }
     }
 }

@@ -407,7 +407,7 @@ mod tests {
     #[test]
     fn a_column_of_unequal_masses_carries_its_weight() {
         for ratio in [1.0, 1e3, 1e-3, 1e6] {
-            let mass = |k: usize| if k % 2 == 0 { 1.0 } else { ratio };
+            let mass = |k: usize| if k.is_multiple_of(2) { 1.0 } else { ratio };
             let inverse_mass: Vec<f64> = (0..41)
                 .map(|k| if k == 0 { 0.0 } else { 1.0 / mass(k) })
                 .collect();
