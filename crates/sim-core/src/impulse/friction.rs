@@ -13,8 +13,8 @@ pub const ALL_SWEEPS: usize = 2000;
 /// `given` (N s, changed in place) that are no longer than the contact's `limit` (N s) those that leave
 /// the least energy (Moreau 1988, "Unilateral contact and dry friction in finite freedom dynamics": the
 /// principle of most dissipation). Velocities (m/s) hold what has been given already, and end within
-/// `enough` of the answer, or after so many sweeps; each contact slides by `more` than they say (m/s). Likewise for accelerations
-/// and forces.
+/// `enough` of the answer, which is told, or after so many sweeps; each contact slides by `more` than they say (m/s). Likewise
+/// for accelerations and forces.
 ///
 /// Impulses go round the contacts one by one (Gauss, Seidel), each to its best within its disc, sped up by
 /// conjugate directions (Silcowitz, Niebe, Erleben 2010, "A nonsmooth nonlinear conjugate gradient method
@@ -27,7 +27,7 @@ pub fn drag(
     more: &[DVec3],
     given: &mut [DVec3],
     (enough, sweeps): (f64, usize),
-) {
+) -> bool {
     let rubs = |k: &usize| limit[*k] > 0.0 || given[*k] != DVec3::ZERO;
     let rubbing: Vec<usize> = (0..contacts.len()).filter(rubs).collect();
     let yielding = |&k: &usize| contacts[k].shared(&contacts[k], inverse_mass);
@@ -47,7 +47,7 @@ pub fn drag(
             size += (next - *before).length_squared();
         }
         if worst <= enough {
-            break;
+            return true;
         }
         let turn = if size < last { size / last } else { 0.0 };
         last = size;
@@ -59,6 +59,7 @@ pub fn drag(
             (given[k], *before) = (next, next);
         }
     }
+    false
 }
 
 /// The greatest friction of a contact that is pressed: by the coefficient, which may be infinite, times what

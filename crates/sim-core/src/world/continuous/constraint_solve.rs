@@ -251,6 +251,9 @@ impl World {
             let bundled = is_bundled.then_some(left);
             let checks = (rounding, &target[..]);
             let rubbed = self.rub(island, places, &mut velocity, &mut given, checks, bundled);
+            let Some(rubbed) = rubbed else {
+                return self.bundle_and_solve(island, places, time);
+            };
             spent = bundled.map(|left| rubbed.into_iter().map(|rubbed| rubbed / left).collect());
         }
         let parting: Vec<f64> = (0..count)
@@ -277,11 +280,8 @@ impl World {
         if self.is_rough() {
             solution.friction = self.friction_of(island, places, &velocity, spent, time);
         }
-        // Contacts whose friction is not found now are a heap.
         if !self.constrain(island, places, &mut solution) && !is_bundled {
-            self.contacts.bundle(&island.bodies);
-            self.contacts.keep_bundled(&island.bodies);
-            return self.solve_velocities(island, places, true, time);
+            return self.bundle_and_solve(island, places, time);
         }
         if let Some(k) = (0..count).find(|&k| parting[k] < -(still[k] + UNSOLVED * fastest))
             && let Some(crushed) = self.crushed(island, constraint(k).bodies)
@@ -313,6 +313,18 @@ impl World {
             self.contacts.keep_bundled(&island.bodies);
         }
         Ok(solution)
+    }
+
+    /// Solves an island as a heap, as its friction is not found otherwise.
+    fn bundle_and_solve(
+        &mut self,
+        island: &Island,
+        places: &Places,
+        time: f64,
+    ) -> Result<Solution, (usize, Cause)> {
+        self.contacts.bundle(&island.bodies);
+        self.contacts.keep_bundled(&island.bodies);
+        self.solve_velocities(island, places, true, time)
     }
 
     /// Stops contacts from closing faster than their targets, and those that are held from parting. Returns

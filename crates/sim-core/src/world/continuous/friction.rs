@@ -144,7 +144,8 @@ impl World {
     /// Lets the impulses of an island's contacts (`given`, N s) rub, and contacts press that close by it:
     /// speeds below `rounding` are none. Contacts that hardly slide and that forces press are brought to a
     /// stand; in a heap all that forces press, by what those can give in what is `left` of the step (s).
-    /// Returns how much of this each has taken, N s.
+    /// Returns how much of this each has taken, N s; nothing if what is no heap takes more sweeps than there
+    /// are.
     pub(super) fn rub(
         &self,
         island: &Island,
@@ -153,9 +154,9 @@ impl World {
         given: &mut [f64],
         (rounding, target): (f64, &[f64]),
         left: Option<f64>,
-    ) -> Vec<f64> {
+    ) -> Option<Vec<f64>> {
         let Some(coefficient) = self.coefficients(island) else {
-            return Vec::new();
+            return Some(Vec::new());
         };
         let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
         let count = given.len();
@@ -190,7 +191,7 @@ impl World {
                 break;
             }
             let none = vec![DVec3::ZERO; count];
-            drag(
+            let is_found = drag(
                 joined,
                 inverse_mass,
                 velocity,
@@ -199,6 +200,9 @@ impl World {
                 &mut dragged,
                 (enough, sweeps),
             );
+            if !is_found && left.is_none() {
+                return None;
+            }
             let missing = |k: usize| target[k] - joined[k].opening(velocity);
             let missing: Vec<f64> = (0..count).map(missing).collect();
             if missing.iter().all(|&missing| missing <= rounding) {
@@ -214,9 +218,8 @@ impl World {
             }
         }
         let beyond = |k: usize| dragged[k].length() - limit(coefficient[k], given[k]);
-        (0..count)
-            .map(|k| beyond(k).clamp(0.0, of_load[k]))
-            .collect()
+        let beyond = (0..count).map(|k| beyond(k).clamp(0.0, of_load[k]));
+        Some(beyond.collect())
     }
 
     /// What is known of an island's friction before its forces are.
@@ -299,7 +302,7 @@ impl World {
                 false => DVec3::ZERO,
             };
             let wanted: Vec<DVec3> = (0..count).map(wanted).collect();
-            drag(
+            let is_found = drag(
                 joined,
                 inverse_mass,
                 &mut acceleration,
@@ -308,6 +311,9 @@ impl World {
                 &mut force,
                 (enough, sweeps),
             );
+            if !is_found && !solution.is_bundled {
+                return false;
+            }
             let change = |k: usize| (force[k] - friction.force[k]).length() * places.yielding(k);
             let change = (0..count).map(change).fold(0.0, f64::max);
             is_answer = change <= enough;
