@@ -19,6 +19,13 @@ pub(crate) fn is_timed() -> bool {
     std::env::args().any(|arg| arg == "--bench")
 }
 
+/// Whether a part that criterion does not time is asked for: as criterion has it, by a filter that is
+/// in its name.
+pub(crate) fn is_asked(part: &str) -> bool {
+    let filter = std::env::args().skip(1).find(|arg| !arg.starts_with("--"));
+    filter.is_none_or(|filter| part.contains(&filter))
+}
+
 /// Something that steps.
 pub(crate) trait Engine {
     fn step(&mut self);
