@@ -456,12 +456,7 @@ fn the_wall_stands_but_where_the_ball_went_through() {
     let start = scene.world().expect("a world");
     let mut pushed_out = 0;
     for at in 0..world.len() {
-        assert_eq!(
-            world.velocity(at),
-            DVec3::ZERO,
-            "{}",
-            scene.bodies[at].name
-        );
+        assert_eq!(world.velocity(at), DVec3::ZERO, "{}", scene.bodies[at].name);
         let way = world.position(at) - start.position(at);
         if way.z > 0.4 {
             pushed_out += 1;
