@@ -1,7 +1,6 @@
 //! Bodies that fall on a heap between walls, and one that lies on a mesh.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use sim_core::{DVec3, Mesh, Vec3};
 
@@ -20,7 +19,7 @@ const SETTLED: usize = 120;
 const WALLS: usize = 5;
 const G: f64 = 9.81;
 
-/// Real time after which no more steps of a run are begun, s.
+/// Time after which no more steps of a run are begun, s.
 const BUDGET: f64 = 12.0;
 
 /// Layers of so many by so many, a fifth of a body apart, above a floor.
@@ -103,9 +102,9 @@ fn run<E: Engine>(
     let mut times = Vec::new();
     let mut spent = 0.0;
     while times.len() < MOVING + SETTLED && spent < BUDGET {
-        let clock = Instant::now();
+        let clock = watch::now();
         engine.step();
-        let seconds = clock.elapsed().as_secs_f64();
+        let seconds = watch::now() - clock;
         times.push(seconds);
         spent += seconds;
         run.worst = run.worst.max(seconds);
@@ -290,7 +289,7 @@ fn on_a_mesh() -> Table {
 /// Mean time of a step of what has landed, s.
 fn lying<E: Engine>(mut engine: E) -> f64 {
     (0..LANDING).for_each(|_| engine.step());
-    let clock = Instant::now();
+    let clock = watch::now();
     (0..LYING).for_each(|_| engine.step());
-    clock.elapsed().as_secs_f64() / LYING as f64
+    (watch::now() - clock) / LYING as f64
 }
