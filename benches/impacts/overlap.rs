@@ -33,9 +33,9 @@ impl Depths<'_> {
     pub(crate) fn deepest(&self, position: impl Fn(usize) -> DVec3) -> f64 {
         let at: Vec<DVec3> = (0..self.items.len()).map(position).collect();
         let mut deepest: f64 = 0.0;
-        for j in self.fixed..at.len() {
-            for i in 0..self.fixed {
-                deepest = deepest.max(self.in_wall(i, at[j], self.half[j]));
+        for (&place, &half) in at.iter().zip(&self.half).skip(self.fixed) {
+            for wall in 0..self.fixed {
+                deepest = deepest.max(self.in_wall(wall, place, half));
             }
         }
         // From left to right, so that only what is side by side is looked at.
