@@ -321,3 +321,174 @@ fn the_herd_settles_in_its_pen() {
     let late = world.kinetic_energy();
     assert!(late < 50.0, "{late} J");
 }
+
+/// The body of that name in a gallery scene.
+fn body(scene: &Scene, name: &str) -> usize {
+    let found = scene.bodies.iter().position(|body| body.name == name);
+    found.unwrap_or_else(|| panic!("no body {name}"))
+}
+
+const GRAVITY: f64 = 9.81;
+
+/// Steps a gallery scene under gravity in which only friction and impacts change the energy.
+fn settle(name: &str, steps: u32) -> (Scene, World) {
+    let scene = Scene::load(name).expect("a gallery scene");
+    let mut world = scene.world().expect("a world");
+    let energy = |world: &World| world.kinetic_energy() + world.potential_energy();
+    let start = energy(&world);
+    let mut before = start;
+    for step in 0..steps {
+        world.step().expect("a step");
+        let after = energy(&world);
+        assert!(
+            after - before <= 1e-12 * start,
+            "{name}: the energy rises by {:e} J in step {step}",
+            after - before
+        );
+        before = after;
+    }
+    assert_eq!(world.overlapping(), [], "{name}");
+    (scene, world)
+}
+
+#[test]
+fn the_stack_stands_where_cubes_end() {
+    let (_, world) = settle("stack", 120);
+    for level in 0..12 {
+        let (at, velocity) = (world.position(1 + level), world.velocity(1 + level));
+        let height = 0.25 + 0.5 * level as f64;
+        assert!((at.y - height).abs() < 1e-9, "{level}: {at}");
+        assert_eq!(velocity, DVec3::ZERO, "{level}");
+    }
+    let weight = world.position(13).y - 6.4;
+    assert!(weight.abs() < 1e-8, "the weight is off by {weight:e} m");
+}
+
+#[test]
+fn what_slides_on_the_slope_has_too_little_friction() {
+    let (scene, world) = settle("slope", 60);
+    for (name, friction) in [
+        ("mu 0", 0.0),
+        ("mu 0.3", 0.3),
+        ("mu 0.5", 0.5),
+        ("mu 0.7", 0.7),
+        ("mu 0.74", 0.74),
+        ("mu 0.76", 0.76),
+        ("mu 0.9", 0.9),
+    ] {
+        let at = body(&scene, name);
+        let own: f64 = scene.bodies[at].friction;
+        assert!((own.sqrt() - friction).abs() < 1e-12, "{name}");
+        let down = DVec3::new(0.8, -0.6, 0.0);
+        let speed = (GRAVITY * (0.6 - 0.8 * friction)).max(0.0);
+        let off = (world.velocity(at) - speed * down).length();
+        assert!(off < 1e-9, "{name}: {}", world.velocity(at));
+        if friction > 0.75 {
+            assert_eq!(world.velocity(at), DVec3::ZERO, "{name}");
+        }
+    }
+    let (scene, world) = settle("slope", 600);
+    for name in ["mu 0", "mu 0.3", "mu 0.5", "mu 0.7", "mu 0.76", "mu 0.9"] {
+        assert_eq!(world.velocity(body(&scene, name)), DVec3::ZERO, "{name}");
+    }
+    assert!(world.velocity(body(&scene, "mu 0.74")).length() > 0.7);
+}
+
+#[test]
+fn a_push_gets_through_the_dominoes_as_far_as_one_would_slide() {
+    let (scene, world) = settle("dominoes", 300);
+    let (gap, reach) = (0.5 - 0.1875, 16.0 / (2.0 * 0.2 * GRAVITY));
+    let moved = |name: &str| {
+        let at = body(&scene, name);
+        assert_eq!(world.velocity(at), DVec3::ZERO, "{name}");
+        world.position(at).x - scene.bodies[at].position.x
+    };
+    for number in 1..=16 {
+        let way = (reach - gap * f64::from(number - 1)).clamp(0.0, gap);
+        let moved = moved(&format!("elastic {number}"));
+        assert!((moved - way).abs() < 1e-9, "{number}: {moved}, not {way}");
+    }
+    // Three that stick are pushed together; the fourth waits in vain.
+    let at = |number: usize| world.position(body(&scene, &format!("sticky {number}"))).x;
+    for number in 1..3 {
+        let between = at(number + 1) - at(number) - 0.1875;
+        assert!((0.0..1e-9).contains(&between), "{number}: {between:e}");
+    }
+    assert!(moved("sticky 3") > 0.2);
+    for number in 4..=16 {
+        assert_eq!(moved(&format!("sticky {number}")), 0.0, "{number}");
+    }
+}
+
+#[test]
+fn the_belt_carries_what_has_friction() {
+    let scene = Scene::load("conveyor").expect("a gallery scene");
+    let after = |steps| {
+        let world = run("conveyor", steps);
+        ["rough box", "box", "slippery box", "smooth ball"].map(|name| {
+            let at = body(&scene, name);
+            (world.position(at), world.velocity(at))
+        })
+    };
+    let carried = DVec3::X;
+    for (name, (_, velocity)) in ["rough", "box"].into_iter().zip(after(60)) {
+        assert!((velocity - carried).length() < 1e-12, "{name}: {velocity}");
+    }
+    let (early, late) = (after(150), after(210));
+    for i in 0..3 {
+        let (before, velocity) = early[i];
+        assert!((velocity - carried).length() < 1e-12, "{i}: {velocity}");
+        let creep = late[i].0 - before - carried;
+        assert!(creep.length() < 1e-9, "{i}: {creep}");
+    }
+    let late = after(360);
+    let (at, velocity) = late[3];
+    assert_eq!((at.x, velocity.x), (-1.0, 0.0), "the ball stays");
+    let (at, velocity) = late[0];
+    let held = 3.0 - 0.05 - 0.375;
+    assert!((at.x - held).abs() < 1e-9, "at the fence: {at}");
+    assert!(velocity.length() < 1e-12, "{velocity}");
+}
+
+#[test]
+fn the_wall_stands_but_where_the_ball_went_through() {
+    let (scene, world) = settle("wall", 300);
+    let start = scene.world().expect("a world");
+    let mut pushed_out = 0;
+    for at in 0..world.len() {
+        assert_eq!(world.velocity(at), DVec3::ZERO, "{}", scene.bodies[at].name);
+        let way = world.position(at) - start.position(at);
+        if way.z > 0.4 {
+            pushed_out += 1;
+        }
+    }
+    assert!((4..20).contains(&pushed_out), "{pushed_out}");
+    for name in ["brick 1", "brick 5"] {
+        let at = body(&scene, name);
+        let moved = (world.position(at) - start.position(at)).length();
+        assert!(moved < 0.01, "{name} of the lowest course: {moved} m");
+    }
+}
+
+#[test]
+fn the_funnel_runs_empty() {
+    let (scene, world) = settle("funnel", 360);
+    for at in 2..world.len() {
+        let name = &scene.bodies[at].name;
+        assert_eq!(world.velocity(at), DVec3::ZERO, "{name}");
+        let height = world.position(at).y;
+        assert!((0.15..1.5).contains(&height), "{name}: {height} m");
+    }
+}
+
+#[test]
+fn the_cows_come_to_rest_in_their_bin() {
+    let (scene, world) = settle("bin", 300);
+    for at in 5..world.len() {
+        let (place, velocity) = (world.position(at), world.velocity(at));
+        let name = &scene.bodies[at].name;
+        assert!(velocity.length() < 1e-9, "{name}: {velocity}");
+        let is_inside = place.x.abs() < 1.0 && place.z.abs() < 1.0 && place.y > 0.0;
+        assert!(is_inside, "{name}: {place}");
+    }
+}

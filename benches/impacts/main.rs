@@ -1,7 +1,7 @@
 //! Continuous collisions beside Rapier: time, impacts found, errors.
 //!
 //! `cargo bench -- impacts` runs all, prints tables and leaves them in `target/impacts.md`;
-//! `cargo bench -- impacts/crowd` runs a part. It fails if an answer of ours is wrong.
+//! `cargo bench -- impacts/crowd` runs a part, `cargo bench -- impacts/heap` the heaps alone. It fails if an answer of ours is wrong.
 
 mod boxes;
 mod crowd;
@@ -9,6 +9,7 @@ mod galperin;
 mod heap;
 mod one;
 mod ours;
+mod overlap;
 mod pair;
 #[expect(dead_code, reason = "the other benchmark picks whole numbers too")]
 #[path = "../collision/random.rs"]
@@ -33,16 +34,17 @@ fn main() {
         crowd::bench(&mut criterion),
         one::bench(&mut criterion),
         galperin::bench(&mut criterion),
-        heap::bench(),
     ];
     criterion.final_summary();
-    let tables = tables.iter().flatten();
+    let (heaps, wrong) = heap::bench();
+    let tables = tables.iter().flatten().chain(&heaps);
     let text: String = tables.map(|table| table.markdown() + "\n").collect();
     // Without `--bench` all runs once, as a test.
     if !text.is_empty() && watch::is_timed() {
         println!("\n{text}");
         publish(&text);
     }
+    assert!(wrong.is_empty(), "wrong answers of ours: {wrong:#?}");
 }
 
 /// Leaves the tables in the folder that cargo builds in: this program is in its `release/deps`.

@@ -23,7 +23,6 @@ pub(crate) fn world(scene: &Scene, collision: Collision, method: &str) -> World 
     let mut world = World::new(settings).expect("settings");
     let mut cube: Option<(f64, Arc<Mesh>)> = None;
     for item in &scene.items {
-        let is_wall = matches!(item.form, Some(Form::Wall(_)));
         let shape = item.form.as_ref().map(|form| match form {
             &Form::Wall(normal) => Shape::HalfSpace { normal },
             &Form::Ball(radius) => Shape::Sphere { radius },
@@ -32,13 +31,13 @@ pub(crate) fn world(scene: &Scene, collision: Collision, method: &str) -> World 
                 let (_, mesh) = cube.insert(known.unwrap_or_else(|| (half, scaled_cube(half))));
                 Shape::Mesh(mesh.clone())
             }
-            Form::Mesh(mesh) => Shape::Mesh(mesh.clone()),
+            Form::Mesh(mesh) | Form::Ground(mesh) => Shape::Mesh(mesh.clone()),
         });
         let body = Body {
             shape,
             position: item.position,
             velocity: item.velocity,
-            mass: if is_wall { f64::INFINITY } else { 1.0 },
+            mass: if item.is_fixed() { f64::INFINITY } else { 1.0 },
             restitution: scene.restitution,
             friction: scene.friction,
             ..Body::default()

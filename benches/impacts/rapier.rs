@@ -2,8 +2,9 @@
 //!
 //! Boxes and balls are shapes of its own, walls are thick boxes. Meshes are as they are, which of a
 //! cube on the cow makes the least errors, or have internal edges fixed, which of the cow on itself
-//! does. Its limit on speeds is lifted. Continuous detection of moving bodies is asked for with `ccd_enabled`; as one such body never sweeps another, of a pair only
-//! the mover has it. Bodies do not sleep, so that all of them are simulated.
+//! does. Its limit on speeds is lifted. Continuous detection of moving bodies is asked for with
+//! `ccd_enabled`; as one such body never sweeps another, of a pair only
+//! the mover has it. Bodies sleep only where a scene lets them, so that all of them are simulated.
 
 use rapier3d_f64::prelude::*;
 use sim_core::DVec3;
@@ -42,8 +43,7 @@ impl Rapier {
         settings.dt = scene.dt;
         settings.normalized_max_linear_velocity = Real::MAX;
         let handles = scene.items.iter().map(|item| {
-            let is_wall = matches!(item.form, Some(Form::Wall(_)));
-            let body = match is_wall {
+            let body = match item.is_fixed() {
                 true => RigidBodyBuilder::fixed(),
                 false => RigidBodyBuilder::dynamic(),
             };
@@ -56,7 +56,7 @@ impl Rapier {
                 }
                 Form::Ball(radius) => ColliderBuilder::ball(*radius),
                 Form::Cube(half) => ColliderBuilder::cuboid(*half, *half, *half),
-                Form::Mesh(mesh) => {
+                Form::Mesh(mesh) | Form::Ground(mesh) => {
                     let vertices = mesh.vertices().iter().map(|v| vector(v.as_dvec3()));
                     let (vertices, faces) = (vertices.collect(), mesh.triangles().to_vec());
                     ColliderBuilder::trimesh_with_flags(vertices, faces, flags).expect("a mesh")
@@ -66,8 +66,8 @@ impl Rapier {
                 .translation(vector(place))
                 .linvel(vector(item.velocity))
                 .lock_rotations()
-                .can_sleep(false)
-                .ccd_enabled(item.is_bullet && !is_wall);
+                .can_sleep(scene.may_sleep)
+                .ccd_enabled(item.is_bullet && !item.is_fixed());
             match collider {
                 Some(collider) => {
                     let collider = collider.mass(1.0).friction(scene.friction);

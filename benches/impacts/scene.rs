@@ -14,6 +14,8 @@ pub(crate) enum Form {
     /// A cube as engines know it: half of a side, m.
     Cube(f64),
     Mesh(Arc<Mesh>),
+    /// A mesh that nothing moves.
+    Ground(Arc<Mesh>),
 }
 
 #[derive(Clone)]
@@ -25,6 +27,24 @@ pub(crate) struct Item {
     pub(crate) is_bullet: bool,
 }
 
+impl Item {
+    pub(crate) fn is_fixed(&self) -> bool {
+        matches!(self.form, Some(Form::Wall(_) | Form::Ground(_)))
+    }
+
+    /// How far it reaches from its middle along each axis, m; walls reach nowhere.
+    pub(crate) fn half(&self) -> DVec3 {
+        match &self.form {
+            &Some(Form::Ball(half) | Form::Cube(half)) => DVec3::splat(half),
+            Some(Form::Mesh(mesh) | Form::Ground(mesh)) => {
+                let bounds = mesh.bounds();
+                bounds.max.as_dvec3().max(-bounds.min.as_dvec3())
+            }
+            Some(Form::Wall(_)) | None => DVec3::ZERO,
+        }
+    }
+}
+
 /// Bodies of 1 kg that do not turn, elastic and without friction unless said, and immovable walls.
 #[derive(Clone)]
 pub(crate) struct Scene {
@@ -33,6 +53,8 @@ pub(crate) struct Scene {
     pub(crate) gravity: DVec3,
     pub(crate) restitution: f64,
     pub(crate) friction: f64,
+    /// Whether engines may pass over what is at rest.
+    pub(crate) may_sleep: bool,
 }
 
 impl Scene {
@@ -43,6 +65,7 @@ impl Scene {
             gravity: DVec3::ZERO,
             restitution: 1.0,
             friction: 0.0,
+            may_sleep: false,
         }
     }
 }

@@ -19,6 +19,28 @@ pub(crate) fn is_timed() -> bool {
     std::env::args().any(|arg| arg == "--bench")
 }
 
+/// Whether a part that criterion does not time is asked for: as criterion has it, by a filter that is
+/// in its name.
+pub(crate) fn is_asked(part: &str) -> bool {
+    let filter = std::env::args().skip(1).find(|arg| !arg.starts_with("--"));
+    filter.is_none_or(|filter| part.contains(&filter))
+}
+
+/// Time of the processor that this thread has had, s, so that the longest step is not that in which
+/// another program had it.
+#[cfg(unix)]
+pub(crate) fn now() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// Time on the wall since the first call, s.
+#[cfg(not(unix))]
+pub(crate) fn now() -> f64 {
+    static FIRST: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
+    FIRST.get_or_init(Instant::now).elapsed().as_secs_f64()
+}
+
 /// Something that steps.
 pub(crate) trait Engine {
     fn step(&mut self);

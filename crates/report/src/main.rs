@@ -14,6 +14,7 @@ mod machine;
 mod page;
 mod plots;
 mod problems;
+mod resting;
 mod results;
 mod runs;
 mod scope;

@@ -110,6 +110,7 @@ fn tables_of(plot: &str, results: &Results) -> Vec<Table> {
         "drift" => vec![tables::drift(results)],
         "stability" => vec![tables::stability(results)],
         "collisions" => vec![tables::collisions(results), tables::bounces(results)],
+        "resting" => vec![tables::resting(results)],
         _ => Vec::new(),
     }
 }

@@ -5,6 +5,7 @@ use crate::contact;
 use crate::drift::{self, Drift};
 use crate::hard_cases::{self, Measured, Outcome};
 use crate::problems;
+use crate::resting::{self, Resting};
 use crate::runs::{self, Diagram};
 use crate::scope::Scope;
 use crate::stability;
@@ -16,6 +17,7 @@ pub(crate) struct Results {
     pub(crate) cases: Vec<Outcome>,
     pub(crate) contact: Vec<contact::Row>,
     pub(crate) collisions: Collisions,
+    pub(crate) resting: Vec<Resting>,
 }
 
 /// Measures all, and says what it is at.
@@ -39,6 +41,8 @@ pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
     let contact = contact::measure(scope);
     progress("collisions");
     let collisions = collisions::measure(scope);
+    progress("friction, stacks and heaps");
+    let resting = resting::measure(scope);
     progress("drift");
     let drifts = drift::measure(scope);
     progress("stability");
@@ -55,5 +59,6 @@ pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
         cases,
         contact,
         collisions,
+        resting,
     }
 }

@@ -24,6 +24,7 @@ pub(crate) fn all(results: &Results) -> Vec<Table> {
         contact(results),
         collisions(results),
         bounces(results),
+        resting(results),
     ]
 }
 
@@ -398,6 +399,37 @@ pub(crate) fn bounces(results: &Results) -> Table {
             bounce.time.map_or("not three".into(), short),
             short(bounce.energy),
         ]);
+    }
+    table
+}
+
+/// Every run in which bodies lie, slide or pile up.
+pub(crate) fn resting(results: &Results) -> Table {
+    let head = [
+        "scene",
+        "rate, Hz",
+        "who",
+        "error",
+        "overlap, m",
+        "energy rises by",
+        "bundling takes",
+        "time of a step",
+    ];
+    let title = "Friction, stacks and heaps: errors and mean time of a step";
+    let mut table = Table::new("resting", title, &head);
+    for scene in &results.resting {
+        for run in &scene.runs {
+            table.rows.push(vec![
+                scene.name.into(),
+                run.rate.to_string(),
+                run.engine.name().into(),
+                short(run.error),
+                short(run.overlap),
+                short(run.rise),
+                run.bundled.map_or("–".into(), short),
+                seconds(run.seconds),
+            ]);
+        }
     }
     table
 }

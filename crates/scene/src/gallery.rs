@@ -57,6 +57,34 @@ pub static SCENES: &[GalleryScene] = &[
         text: include_str!("../../../assets/scenes/herd.toml"),
     },
     GalleryScene {
+        name: "stack",
+        text: include_str!("../../../assets/scenes/stack.toml"),
+    },
+    GalleryScene {
+        name: "slope",
+        text: include_str!("../../../assets/scenes/slope.toml"),
+    },
+    GalleryScene {
+        name: "dominoes",
+        text: include_str!("../../../assets/scenes/dominoes.toml"),
+    },
+    GalleryScene {
+        name: "conveyor",
+        text: include_str!("../../../assets/scenes/conveyor.toml"),
+    },
+    GalleryScene {
+        name: "wall",
+        text: include_str!("../../../assets/scenes/wall.toml"),
+    },
+    GalleryScene {
+        name: "funnel",
+        text: include_str!("../../../assets/scenes/funnel.toml"),
+    },
+    GalleryScene {
+        name: "bin",
+        text: include_str!("../../../assets/scenes/bin.toml"),
+    },
+    GalleryScene {
         name: "spring",
         text: include_str!("../../../assets/scenes/spring.toml"),
     },

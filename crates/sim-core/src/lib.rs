@@ -21,8 +21,11 @@
 //!    and always agree. No two surfaces are left crossing at the end of a step.
 //!    Bodies that are put into each other are no error: [`World::overlaps`] tells how deep they are,
 //!    they are kept from getting deeper, and [`World::separate`] moves them apart.
-//! 5. [`World::contacts`] lists what lies on what, and [`World::contact_features`] the vertices, edges and
-//!    faces that touch there. [`World::impacts`] counts impacts, [`World::step_reporting`] lists them, and
+//! 5. What comes to rest on something stays in contact with it, from step to step
+//!    ([`World::contacts`], [`World::contact_features`]): forces press, friction
+//!    ([`Body::friction`]) slows and holds, and what lies still sleeps. Where many contacts of a heap
+//!    come and go within a step, they are solved at once, and [`World::bundled`] tells what that costs.
+//! 6. [`World::impacts`] counts impacts, [`World::step_reporting`] lists them, and
 //!    [`World::interpolated`] gives positions between the last two states to draw.
 //!
 //! ```
@@ -59,8 +62,9 @@
 //! - Bodies translate and do not turn.
 //! - Ways that bend under forces are searched along chords. A graze shallower than a thousandth of
 //!   the smaller body may be missed within a step; never an overlap at its end.
-//! - A contact rests for the rest of a step, over an edge too, and is looked for anew in the next.
-//! - Of bodies that a pile wedges in, some lose the rest of a step.
+//! - In a heap whose contacts are solved at once, contacts close ahead of their time by up to a step,
+//!   flights of less than a step are none, and friction acts at the step's start: errors that shrink
+//!   with the step.
 //! - In the discrete modes a body that is through another within one step is not seen, and one that
 //!   is put back loses the rest of its step. Under a force the work done in that step stays in its
 //!   velocity: a bouncing body keeps its height under symplectic and backward Euler, and gains some

@@ -28,7 +28,7 @@ fn draw(results: &Results) -> Vec<Figure> {
     scenes.chain([of_methods(results)]).collect()
 }
 
-fn style(engine: Engine) -> Style {
+pub(super) fn style(engine: Engine) -> Style {
     let (color, marker, line) = match engine {
         Engine::Continuous => ("#0072b2", MarkerShape::Circle, LineStyle::Solid),
         Engine::Discrete => ("#009e73", MarkerShape::Square, LineStyle::DashDot),

@@ -3,6 +3,7 @@
 mod collisions;
 mod drift;
 mod panel;
+mod resting;
 mod stability;
 mod style;
 mod work_precision;
@@ -19,11 +20,12 @@ pub(crate) struct Plot {
     pub(crate) draw: fn(&Results) -> Vec<Figure>,
 }
 
-pub(crate) static PLOTS: [&Plot; 4] = [
+pub(crate) static PLOTS: [&Plot; 5] = [
     &work_precision::PLOT,
     &drift::PLOT,
     &stability::PLOT,
     &collisions::PLOT,
+    &resting::PLOT,
 ];
 
 /// A picture with what is said of it.

@@ -8,7 +8,7 @@ use sim_core::Mesh;
 use super::{Format, read};
 
 /// The built-in meshes, by the file name that scenes use.
-pub static BUILTIN_MESHES: [BuiltinMesh; 3] = [
+pub static BUILTIN_MESHES: [BuiltinMesh; 4] = [
     BuiltinMesh {
         name: "cube.obj",
         bytes: include_bytes!("../../../../assets/meshes/cube.obj"),
@@ -22,6 +22,11 @@ pub static BUILTIN_MESHES: [BuiltinMesh; 3] = [
     BuiltinMesh {
         name: "u-channel.obj",
         bytes: include_bytes!("../../../../assets/meshes/u-channel.obj"),
+        mesh: OnceLock::new(),
+    },
+    BuiltinMesh {
+        name: "funnel.obj",
+        bytes: include_bytes!("../../../../assets/meshes/funnel.obj"),
         mesh: OnceLock::new(),
     },
 ];
