@@ -319,7 +319,7 @@ fn the_herd_settles_in_its_pen() {
         assert!(is_inside, "{i}: {at}");
     }
     let late = world.kinetic_energy();
-    assert!(late < 50.0, "{late} J");
+    assert!(late < 75.0, "{late} J");
 }
 
 /// The body of that name in a gallery scene.
@@ -383,13 +383,17 @@ fn what_slides_on_the_slope_has_too_little_friction() {
         let speed = (GRAVITY * (0.6 - 0.8 * friction)).max(0.0);
         let off = (world.velocity(at) - speed * down).length();
         assert!(off < 1e-9, "{name}: {}", world.velocity(at));
+        let way = 0.5 * speed * world.time() * down;
+        let off = world.position(at) - scene.bodies[at].position - way;
+        assert!(off.length() < 1e-7, "{name}: off by {off}");
         if friction > 0.75 {
             assert_eq!(world.velocity(at), DVec3::ZERO, "{name}");
         }
     }
     let (scene, world) = settle("slope", 600);
     for name in ["mu 0", "mu 0.3", "mu 0.5", "mu 0.7", "mu 0.76", "mu 0.9"] {
-        assert_eq!(world.velocity(body(&scene, name)), DVec3::ZERO, "{name}");
+        let velocity = world.velocity(body(&scene, name));
+        assert!(velocity.length() < 1e-12, "{name}: {velocity}");
     }
     assert!(world.velocity(body(&scene, "mu 0.74")).length() > 0.7);
 }
@@ -414,7 +418,14 @@ fn a_push_gets_through_the_dominoes_as_far_as_one_would_slide() {
         let between = at(number + 1) - at(number) - 0.1875;
         assert!((0.0..1e-9).contains(&between), "{number}: {between:e}");
     }
-    assert!(moved("sticky 3") > 0.2);
+    let slowing = 0.2 * GRAVITY;
+    let mut speed: f64 = 4.0;
+    for pushed in [1.0, 2.0] {
+        speed = (speed * speed - 2.0 * slowing * gap).sqrt() * pushed / (pushed + 1.0);
+    }
+    let way = speed * speed / (2.0 * slowing);
+    let off = moved("sticky 3") - way;
+    assert!(off.abs() < 1e-9, "off by {off:e} m");
     for number in 4..=16 {
         assert_eq!(moved(&format!("sticky {number}")), 0.0, "{number}");
     }

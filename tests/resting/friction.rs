@@ -377,3 +377,32 @@ fn contacts_carry_what_lies_on_them() {
         assert_eq!(contacts[0].bodies, (0, 1));
     }
 }
+
+/// A landing takes the coefficient times its impulse from the sliding, and what is left of that is a slide
+/// like any other: a single body that has landed once is no heap.
+#[test]
+fn what_lands_slides_to_its_exact_end() {
+    let (friction, speed) = (0.4, 3.0);
+    for shape in [ball(0.5), cube()] {
+        for height in [1e-12_f64, 1e-6, 1e-3, 0.1] {
+            let slider = Body {
+                shape: Some(shape.clone()),
+                position: (0.5 + height) * DVec3::Y,
+                velocity: speed * DVec3::X,
+                restitution: 0.0,
+                ..Body::default()
+            };
+            let mut world = on_floor(rk4(), friction, slider);
+            for _ in 0..90 {
+                step(&mut world, 1);
+                assert_eq!(world.bundled().bodies, 0, "dropped by {height} m");
+            }
+            let falling = (2.0 * height / GRAVITY).sqrt();
+            let left = speed - friction * GRAVITY * falling;
+            let way = speed * falling + left * left / (2.0 * friction * GRAVITY);
+            let off = world.position(1).x - way;
+            assert!(off.abs() < 1e-9, "dropped by {height} m: off by {off:e} m");
+            assert_eq!(world.velocity(1), DVec3::ZERO);
+        }
+    }
+}

@@ -179,8 +179,9 @@ impl ContactSet {
 
     /// Goes on to the next step.
     pub(super) fn end_step(&mut self) {
-        for (next, now) in self.bundled_next.iter_mut().zip(&self.bundled) {
-            *next &= now;
+        for (body, next) in self.bundled_next.iter_mut().enumerate() {
+            // Fewer bodies are known here where none of the others was bundled.
+            *next &= self.bundled.get(body).is_some_and(|&bundled| bundled);
         }
         mem::swap(&mut self.bundled, &mut self.bundled_next);
         self.bundled_next.clear();
