@@ -646,7 +646,7 @@ impl World {
             let (i, j) = constraint.bodies;
             let velocity = &self.continuous.start.velocity;
             let closing = (velocity[i] - velocity[j]).dot(constraint.normal);
-            if self.bounces((i, j), closing, constraint.load_speed) {
+            if self.bounces(((i, j), constraint.normal), closing, constraint.load_speed) {
                 match constraint.is_overlap {
                     true => self.exchange_there(&self.event_of(&constraint, 0.0), 0.0),
                     false => self.contacts.remove(index),

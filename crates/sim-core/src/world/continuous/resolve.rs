@@ -93,6 +93,7 @@ impl World {
             self.find_impacts_of(body, &restarted)?;
         }
         self.queue_contact_ends(&restarted);
+        self.queue_horizons(restarted.iter().copied());
         self.continuous.restarted = restarted;
         Ok(())
     }
@@ -250,9 +251,8 @@ impl World {
     }
 
     fn classify_by(&self, event: &mut Event, closing: f64, pressed: f64) {
-        let (i, j) = event.bodies;
         event.load_speed = self.settings.dt * pressed;
-        event.outcome = match self.bounces((i, j), closing, event.load_speed) {
+        event.outcome = match self.bounces(event.plane(), closing, event.load_speed) {
             true => Outcome::Bounce,
             false => Outcome::Rest,
         };
@@ -260,7 +260,12 @@ impl World {
 
     /// Whether two bodies that close at a speed, while forces close them by another one in a step, part
     /// again.
-    pub(super) fn bounces(&self, (i, j): (usize, usize), closing: f64, load_speed: f64) -> bool {
+    pub(super) fn bounces(
+        &self,
+        ((i, j), normal): ((usize, usize), DVec3),
+        closing: f64,
+        load_speed: f64,
+    ) -> bool {
         if closing <= 0.0 {
             return false;
         }
@@ -274,7 +279,7 @@ impl World {
             return false;
         }
         let leaving = restitution * closing;
-        let is_spent = || leaving * self.settings.dt <= self.position_resolution(i, j);
+        let is_spent = || leaving * self.settings.dt <= self.resolution_along(i, j, normal);
         let is_caught = || {
             let felt = self.settings.dt * self.greatest_push(i, j);
             let bounces = self.bounces_of(i, j);
