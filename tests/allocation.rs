@@ -5,10 +5,12 @@ use std::cell::Cell;
 
 use std::ops::ControlFlow;
 
+use scene::SCENES;
 use sim_core::collide::{self, Placement, tree};
-use sim_core::{Body, Bvh, DQuat, DVec3, Force, METHODS, Settings, World};
+use sim_core::{Body, Bvh, Collision, DQuat, DVec3, Force, METHODS, Settings, World};
 
 thread_local! {
+    static TRACE: Cell<bool> = const { Cell::new(false) };
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
@@ -20,6 +22,10 @@ struct Counting;
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        if TRACE.with(Cell::get) {
+            TRACE.with(|t| t.set(false));
+            eprintln!("ALLOC {}", std::backtrace::Backtrace::force_capture());
+        }
         // SAFETY: as the caller promises.
         unsafe { System.alloc(layout) }
     }
@@ -114,4 +120,43 @@ fn questions_about_meshes_do_not_allocate() {
         assert!(answers > 1000, "{answers}");
     };
     assert_eq!(allocations(questions), 0);
+}
+
+/// Steps of a scene after which every room it needs has been made.
+const WARM_UP: u32 = 60;
+
+#[test]
+fn zz_table() {
+    for entry in SCENES {
+        for (mode, collision) in [
+            ("continuous", Collision::Continuous),
+            ("bvh", Collision::Bvh),
+        ] {
+            let mut scene = entry.scene().expect("a gallery scene");
+            scene.collision = collision;
+            let mut world = scene.world().expect("a world");
+            for _ in 0..WARM_UP {
+                world.step().unwrap();
+            }
+            let (mut quiet, mut quiet_steps, mut busy, mut busy_steps) = (0, 0, 0, 0);
+            let trace = std::env::var("TRACE").is_ok_and(|t| t == entry.name);
+            for _ in 0..400 {
+                let before = world.impacts();
+                TRACE.with(|t| t.set(trace && collision == Collision::Continuous));
+                let n = allocations(|| world.step().unwrap());
+                TRACE.with(|t| t.set(false));
+                if world.impacts() == before {
+                    quiet += n;
+                    quiet_steps += 1
+                } else {
+                    busy += n;
+                    busy_steps += 1
+                }
+            }
+            println!(
+                "{} {mode}: {quiet} in {quiet_steps} quiet, {busy} in {busy_steps} with impacts",
+                entry.name
+            );
+        }
+    }
 }

@@ -230,12 +230,9 @@ impl World {
         let run = group.and_then(|group| group.run.clone());
         let bodies = run.unwrap_or_else(|| block.bodies.clone());
         let (start, first) = (bodies.start, bodies.start - block.bodies.start);
-        let names: Vec<usize> = match watch {
-            Some(_) => bodies.clone().collect(),
-            None => Vec::new(),
-        };
-        let mut watch =
-            watch.map(|watch| |time: f64, x: &[DVec3], y: &[DVec3]| watch(time, &names, x, y));
+        let mut watch = watch.map(|watch| {
+            move |time: f64, x: &[DVec3], y: &[DVec3]| watch(time, &|place| start + place, x, y)
+        });
         let step = Step {
             time: self.time() + block.since,
             dt: block.length,
@@ -279,8 +276,9 @@ impl World {
             acceleration[i] = block.acceleration[body - block.bodies.start];
             mass[i] = self.mass[body];
         }
-        let mut watch = watch
-            .map(|watch| |time: f64, x: &[DVec3], y: &[DVec3]| watch(time, &group.bodies, x, y));
+        let mut watch = watch.map(|watch| {
+            |time: f64, x: &[DVec3], y: &[DVec3]| watch(time, &|place| group.bodies[place], x, y)
+        });
         let step = Step {
             time: self.time() + block.since,
             dt: block.length,
@@ -502,9 +500,10 @@ fn body_of(failure: &Failure) -> usize {
     }
 }
 
-/// Told the time after a step within a block's, s from its start, whose motion it is, and their places
-/// before and after it, m; says whether to stop there.
-pub(super) type BlockWatch<'a> = dyn FnMut(f64, &[usize], &[DVec3], &[DVec3]) -> bool + 'a;
+/// Told the time after a step within a block's, s from its start, which body has which place in
+/// it, and where they are before and after it, m; says whether to stop there.
+pub(super) type BlockWatch<'a> =
+    dyn FnMut(f64, &dyn Fn(usize) -> usize, &[DVec3], &[DVec3]) -> bool + 'a;
 
 /// Bodies that are stepped at once, and how.
 #[derive(Clone)]

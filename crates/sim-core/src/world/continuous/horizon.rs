@@ -60,13 +60,14 @@ impl World {
             return Ok(since + length);
         }
         let mut reached = length;
-        let mut watch = |time: f64, bodies: &[usize], before: &[DVec3], after: &[DVec3]| {
-            let is_met = self.meets_on_way(since + time, bodies, before, after);
-            if is_met {
-                reached = reached.min(time);
-            }
-            is_met
-        };
+        let mut watch =
+            |time: f64, body: &dyn Fn(usize) -> usize, before: &[DVec3], after: &[DVec3]| {
+                let is_met = self.meets_on_way(since + time, body, before, after);
+                if is_met {
+                    reached = reached.min(time);
+                }
+                is_met
+            };
         let done = self.step_block(plan, block.clone(), to, scratch, Some(&mut watch));
         if reached < length {
             let part = Block {
@@ -79,7 +80,6 @@ impl World {
         let Err(failure) = done else {
             return Ok(since + length);
         };
-        let bodies: alloc::vec::Vec<usize> = block.bodies.clone().collect();
         let (mut low, mut high) = (0.0, length);
         for _ in 0..HALVINGS {
             let part = Block {
@@ -93,7 +93,8 @@ impl World {
             }
             let before = &block.from.position[block.bodies.clone()];
             let after = &to.position[block.bodies.clone()];
-            if self.meets_on_way(since + time, &bodies, before, after) {
+            let first = block.bodies.start;
+            if self.meets_on_way(since + time, &|place| first + place, before, after) {
                 return Ok(since + time);
             }
             low = time;
@@ -164,22 +165,31 @@ impl World {
 
     /// Whether some of these bodies come to touch each other, or what stands or moves on whatever comes, on
     /// the chords of their ways to a time, s from the step's start.
-    fn meets_on_way(&self, time: f64, bodies: &[usize], before: &[DVec3], after: &[DVec3]) -> bool {
-        let ways = || bodies.iter().zip(before.iter().zip(after));
-        for (place, (&i, from)) in ways().enumerate() {
+    fn meets_on_way(
+        &self,
+        time: f64,
+        body: &dyn Fn(usize) -> usize,
+        before: &[DVec3],
+        after: &[DVec3],
+    ) -> bool {
+        let ways = || before.iter().zip(after).enumerate();
+        for (place, from) in ways() {
+            let i = body(place);
             if self.shape[i].is_none() {
                 continue;
             }
             let others = ways().skip(place + 1);
             if others
                 .clone()
-                .any(|(&j, to)| self.touch_on_chord((i, j), from, to))
+                .any(|(place, to)| self.touch_on_chord((i, body(place)), from, to))
             {
                 return true;
             }
             for &wall in self.solid.iter().filter(|&&body| !self.is_movable(body)) {
                 let at = self.previous.position[wall] + time * self.previous.velocity[wall];
-                if self.touch_on_chord((i, wall), from, (&at, &at)) && !bodies.contains(&wall) {
+                if self.touch_on_chord((i, wall), from, (&at, &at))
+                    && ways().all(|(place, _)| body(place) != wall)
+                {
                     return true;
                 }
             }

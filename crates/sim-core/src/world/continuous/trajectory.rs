@@ -253,6 +253,11 @@ impl World {
 
     /// What forces and contacts do to a body where its trajectory starts, m/s².
     pub(super) fn acceleration_there(&self, body: usize) -> DVec3 {
+        self.acceleration_beside(body, &[])
+    }
+
+    /// The same if some bodies were moved from there, each by so much, m.
+    pub(super) fn acceleration_beside(&self, body: usize, moved: &[(usize, DVec3)]) -> DVec3 {
         let continuous = &self.continuous;
         let Some((bodies, is_coupled)) = self.coupled_group(body) else {
             return continuous.acceleration[body];
@@ -272,7 +277,13 @@ impl World {
         let time = self.time() + continuous.since[body];
         let mut all = vec![DVec3::ZERO; bodies.len()];
         let (x, v) = (&continuous.start.position, &continuous.start.velocity);
-        part.accelerations(time, &x[bodies.clone()], &v[bodies.clone()], &mut all);
+        let mut x = x[bodies.clone()].to_vec();
+        for &(other, by) in moved {
+            if bodies.contains(&other) {
+                x[other - bodies.start] += by;
+            }
+        }
+        part.accelerations(time, &x, &v[bodies.clone()], &mut all);
         all[body - bodies.start]
     }
 

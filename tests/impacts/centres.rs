@@ -1,0 +1,196 @@
+//! Impacts where forces grow without bound: bodies that meet go through no centre, and gain nothing.
+
+use sim_core::{Body, DVec3, Force, METHODS, Method, Settings, World};
+
+use crate::worlds::{ball, immovable, settings, world_with};
+
+fn random(state: &mut u64) -> f64 {
+    *state = state
+        .wrapping_mul(6364136223846793005)
+        .wrapping_add(1442695040888963407);
+    (*state >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+fn settings_of(method: &'static Method, dt: f64) -> Settings {
+    Settings {
+        method,
+        tolerance: 1e-10,
+        ..settings(dt)
+    }
+}
+
+fn adaptive() -> impl Iterator<Item = &'static Method> {
+    METHODS.into_iter().filter(|method| method.adaptive)
+}
+
+fn energy(world: &World) -> f64 {
+    world.kinetic_energy() + world.potential_energy()
+}
+
+/// Steps a world whose energy is kept, and how much of the greatest kinetic energy it has gained or lost at
+/// most; or the error.
+fn drift(world: &mut World, steps: u32) -> Result<f64, String> {
+    let start = energy(world);
+    let (mut most, mut fastest) = (0.0_f64, world.kinetic_energy());
+    for _ in 0..steps {
+        world.step().map_err(|error| error.to_string())?;
+        fastest = fastest.max(world.kinetic_energy());
+        most = most.max((energy(world) - start).abs());
+    }
+    Ok(most / fastest.max(start.abs()))
+}
+
+fn gravitating(method: &'static Method, dt: f64, stars: &[Body]) -> World {
+    let mut world = world_with(settings_of(method, dt), stars);
+    world
+        .add_force(Force::Gravitation { constant: 1.0 })
+        .expect("a force");
+    world
+}
+
+fn star(mass: f64, radius: f64, position: DVec3, velocity: DVec3) -> Body {
+    Body {
+        mass,
+        ..ball(radius, position, velocity)
+    }
+}
+
+#[test]
+fn stars_that_fall_into_each_other_bounce_and_keep_their_energy() {
+    for method in adaptive() {
+        for radius in [0.1, 1e-3, 1e-6] {
+            let stars = [
+                star(4.0, radius, DVec3::ZERO, DVec3::ZERO),
+                star(7.0, radius, DVec3::X, DVec3::ZERO),
+            ];
+            let mut world = gravitating(method, 1.0 / 240.0, &stars);
+            let drift = drift(&mut world, 400);
+            let what = format!("{}, radius {radius}", method.name);
+            assert!(
+                matches!(drift, Ok(drift) if drift < 1e-7),
+                "{what}: {drift:?}"
+            );
+            assert!(world.impacts() >= 2, "{what}: {}", world.impacts());
+        }
+    }
+}
+
+/// A method of a fixed step that finds no motion through the centre is not asked for one.
+#[test]
+fn implicit_methods_are_asked_for_no_motion_through_a_star() {
+    for name in ["radau5", "implicit-midpoint"] {
+        let method = Method::named(name).expect("a method");
+        let stars = [
+            star(4.0, 1e-3, DVec3::ZERO, DVec3::ZERO),
+            star(7.0, 1e-3, DVec3::X, DVec3::ZERO),
+        ];
+        let mut world = gravitating(method, 1.0 / 240.0, &stars);
+        while world.impacts() == 0 {
+            world
+                .step()
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+        assert!(
+            world.steps() > 70 && world.steps() < 90,
+            "{name}: {}",
+            world.steps()
+        );
+    }
+}
+
+#[test]
+fn small_systems_of_stars_keep_their_energy_through_many_impacts() {
+    let mut state = 7;
+    let mut impacts = 0;
+    for case in 0..24 {
+        let count = 2 + case % 4;
+        let radius = 10_f64.powf(-1.0 - 2.0 * random(&mut state));
+        let mut stars: Vec<Body> = Vec::new();
+        while stars.len() < count {
+            let mut vector = || DVec3::from_array([0; 3].map(|_| 2.0 * random(&mut state) - 1.0));
+            let (position, velocity) = (vector(), 0.3 * vector());
+            let apart = |star: &Body| (star.position - position).length() > 4.0 * radius;
+            if stars.iter().all(apart) {
+                let mass = 0.5 + 4.0 * random(&mut state);
+                stars.push(star(mass, radius, position, velocity));
+            }
+        }
+        for method in adaptive() {
+            let mut world = gravitating(method, 1.0 / 60.0, &stars);
+            let drift = drift(&mut world, 240);
+            let what = format!("case {case}, {}, {count} of radius {radius:e}", method.name);
+            assert!(
+                matches!(drift, Ok(drift) if drift < 1e-6),
+                "{what}: {drift:?}"
+            );
+            impacts += world.impacts();
+        }
+    }
+    assert!(impacts > 100, "{impacts}");
+}
+
+/// A centre of attraction in a ball that stands still, hit from any side.
+#[test]
+fn what_falls_onto_a_ball_about_a_centre_bounces_off_it() {
+    let mut state = 5;
+    for method in adaptive() {
+        for _ in 0..12 {
+            let radius = 10_f64.powf(-1.0 - 4.0 * random(&mut state));
+            let from = DVec3::from_array([0; 3].map(|_| random(&mut state) + 0.2));
+            let bodies = [
+                immovable(ball(radius, DVec3::ZERO, DVec3::ZERO)),
+                ball(0.1 * radius, from, DVec3::ZERO),
+            ];
+            let mut world = world_with(settings_of(method, 1.0 / 60.0), &bodies);
+            let force = Force::Attraction {
+                body: Some(1),
+                centre: DVec3::ZERO,
+                strength: 5.0,
+            };
+            world.add_force(force).expect("a force");
+            let drift = drift(&mut world, 240);
+            let what = format!("{}, radius {radius:e}, from {from}", method.name);
+            assert!(
+                matches!(drift, Ok(drift) if drift < 1e-6),
+                "{what}: {drift:?}"
+            );
+            assert!(world.impacts() >= 1, "{what}");
+        }
+    }
+}
+
+#[test]
+fn zz_debug() {
+    for name in ["dopri5", "dop853", "radau5"] {
+        let method = Method::named(name).unwrap();
+        for radius in [1e-2, 1e-3, 1e-6] {
+            let stars = [
+                star(4.0, radius, DVec3::ZERO, DVec3::ZERO),
+                star(7.0, radius, DVec3::X, DVec3::ZERO),
+            ];
+            let mut world = gravitating(method, 1.0 / 240.0, &stars);
+            println!("{name} {radius}");
+            for step in 0..400 {
+                let mut impacts = Vec::new();
+                let done = world.step_reporting(&mut impacts);
+                if let Err(e) = done {
+                    println!("{step} {e}");
+                    println!(
+                        "  x {} v {}",
+                        world.position(1) - world.position(0),
+                        world.velocity(1) - world.velocity(0)
+                    );
+                    break;
+                }
+                if !impacts.is_empty() {
+                    println!(
+                        "  {step} E {} {:?} x {}",
+                        energy(&world),
+                        impacts,
+                        (world.position(1) - world.position(0)).length()
+                    );
+                }
+            }
+        }
+    }
+}
