@@ -27,17 +27,26 @@ fn energy(world: &World) -> f64 {
     world.kinetic_energy() + world.potential_energy()
 }
 
-/// Steps a world whose energy is kept, and how much of the greatest kinetic energy it has gained or lost at
-/// most; or the error.
+/// Steps a world whose energy is kept, and how much it has gained or lost at most, of the greatest kinetic
+/// energy that it has had, at an impact too; or the error.
 fn drift(world: &mut World, steps: u32) -> Result<f64, String> {
     let start = energy(world);
-    let (mut most, mut fastest) = (0.0_f64, world.kinetic_energy());
+    let (mut most, mut fastest) = (0.0_f64, start.abs());
+    let mut impacts = Vec::new();
     for _ in 0..steps {
-        world.step().map_err(|error| error.to_string())?;
+        impacts.clear();
+        let done = world.step_reporting(&mut impacts);
+        done.map_err(|error| error.to_string())?;
         fastest = fastest.max(world.kinetic_energy());
+        for impact in &impacts {
+            let (i, j) = impact.bodies;
+            let (first, second) = (1.0 / world.mass(i), 1.0 / world.mass(j));
+            let speed = impact.speeds.0;
+            fastest = fastest.max(0.5 * speed * speed / (first + second));
+        }
         most = most.max((energy(world) - start).abs());
     }
-    Ok(most / fastest.max(start.abs()))
+    Ok(most / fastest)
 }
 
 fn gravitating(method: &'static Method, dt: f64, stars: &[Body]) -> World {
@@ -67,7 +76,7 @@ fn stars_that_fall_into_each_other_bounce_and_keep_their_energy() {
             let drift = drift(&mut world, 400);
             let what = format!("{}, radius {radius}", method.name);
             assert!(
-                matches!(drift, Ok(drift) if drift < 1e-7),
+                matches!(drift, Ok(drift) if drift < 1e-8),
                 "{what}: {drift:?}"
             );
             assert!(world.impacts() >= 2, "{what}: {}", world.impacts());
@@ -120,7 +129,7 @@ fn small_systems_of_stars_keep_their_energy_through_many_impacts() {
             let drift = drift(&mut world, 240);
             let what = format!("case {case}, {}, {count} of radius {radius:e}", method.name);
             assert!(
-                matches!(drift, Ok(drift) if drift < 1e-6),
+                matches!(drift, Ok(drift) if drift < 1e-7),
                 "{what}: {drift:?}"
             );
             impacts += world.impacts();
@@ -151,7 +160,7 @@ fn what_falls_onto_a_ball_about_a_centre_bounces_off_it() {
             let drift = drift(&mut world, 240);
             let what = format!("{}, radius {radius:e}, from {from}", method.name);
             assert!(
-                matches!(drift, Ok(drift) if drift < 1e-6),
+                matches!(drift, Ok(drift) if drift < 1e-7),
                 "{what}: {drift:?}"
             );
             assert!(world.impacts() >= 1, "{what}");
@@ -161,36 +170,71 @@ fn what_falls_onto_a_ball_about_a_centre_bounces_off_it() {
 
 #[test]
 fn zz_debug() {
-    for name in ["dopri5", "dop853", "radau5"] {
+    for name in ["radau5", "implicit-midpoint"] {
         let method = Method::named(name).unwrap();
-        for radius in [1e-2, 1e-3, 1e-6] {
-            let stars = [
-                star(4.0, radius, DVec3::ZERO, DVec3::ZERO),
-                star(7.0, radius, DVec3::X, DVec3::ZERO),
-            ];
-            let mut world = gravitating(method, 1.0 / 240.0, &stars);
-            println!("{name} {radius}");
-            for step in 0..400 {
-                let mut impacts = Vec::new();
-                let done = world.step_reporting(&mut impacts);
-                if let Err(e) = done {
-                    println!("{step} {e}");
-                    println!(
-                        "  x {} v {}",
-                        world.position(1) - world.position(0),
-                        world.velocity(1) - world.velocity(0)
-                    );
-                    break;
-                }
-                if !impacts.is_empty() {
-                    println!(
-                        "  {step} E {} {:?} x {}",
-                        energy(&world),
-                        impacts,
-                        (world.position(1) - world.position(0)).length()
-                    );
+        for radius in [1e-2, 1e-3] {
+            for rate in [240.0, 1000.0] {
+                let stars = [
+                    star(4.0, radius, DVec3::ZERO, DVec3::ZERO),
+                    star(7.0, radius, DVec3::X, DVec3::ZERO),
+                ];
+                let mut world = gravitating(method, 1.0 / rate, &stars);
+                println!("{name} {radius} {rate}");
+                for step in 0..400 {
+                    let mut impacts = Vec::new();
+                    let done = world.step_reporting(&mut impacts);
+                    if let Err(e) = done {
+                        println!("{step} {e}");
+                        println!(
+                            "  x {} v {}",
+                            world.position(1) - world.position(0),
+                            world.velocity(1) - world.velocity(0)
+                        );
+                        break;
+                    }
+                    if !impacts.is_empty() {
+                        println!(
+                            "  {step} E {} {:?} x {}",
+                            energy(&world),
+                            impacts,
+                            (world.position(1) - world.position(0)).length()
+                        );
+                    }
                 }
             }
+        }
+    }
+    let mut state = 7;
+    for case in 0..7 {
+        let count = 2 + case % 4;
+        let radius = 10_f64.powf(-1.0 - 2.0 * random(&mut state));
+        let mut stars: Vec<Body> = Vec::new();
+        while stars.len() < count {
+            let mut vector = || DVec3::from_array([0; 3].map(|_| 2.0 * random(&mut state) - 1.0));
+            let (position, velocity) = (vector(), 0.3 * vector());
+            let apart = |star: &Body| (star.position - position).length() > 4.0 * radius;
+            if stars.iter().all(apart) {
+                let mass = 0.5 + 4.0 * random(&mut state);
+                stars.push(star(mass, radius, position, velocity));
+            }
+        }
+        if case < 6 {
+            continue;
+        }
+        let mut world = gravitating(Method::named("dopri5").unwrap(), 1.0 / 60.0, &stars);
+        let mut last = energy(&world);
+        for step in 0..240 {
+            let mut impacts = Vec::new();
+            println!("{:?}", world.step_reporting(&mut impacts));
+            if !impacts.is_empty() || (energy(&world) - last).abs() > 1e-6 {
+                println!(
+                    "case 6 step {step} E {} {:?} contacts {:?}",
+                    energy(&world),
+                    impacts,
+                    world.contacts().collect::<Vec<_>>()
+                );
+            }
+            last = energy(&world);
         }
     }
 }

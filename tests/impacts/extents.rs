@@ -150,3 +150,28 @@ fn a_small_ball_hits_a_large_one_in_time() {
         );
     }
 }
+
+#[test]
+fn zz_debug() {
+    let shot = Shot {
+        axis: 2,
+        half: Vec3::new(1.8260197e24, 6.755093e-16, 0.0021198383),
+        distance: 8.310413691223427,
+        speed: 8.365280987217481,
+        along: 9.81,
+    };
+    let settings = Settings {
+        method: METHODS[3],
+        ..settings(DT)
+    };
+    let mut world = shot.world(settings);
+    for step in 0..70 {
+        println!(
+            "{step} {:?} {} {} {:?}",
+            world.step(),
+            world.position(0),
+            world.velocity(0),
+            world.contacts().collect::<Vec<_>>()
+        );
+    }
+}

@@ -274,7 +274,7 @@ impl World {
     }
 
     /// Pairs of which one may move whose boxes, widened by a length, meet.
-    fn near_pairs(
+    pub(in crate::world) fn near_pairs(
         &self,
         at: &[DVec3],
         margin: impl Fn(usize, usize) -> f64,
