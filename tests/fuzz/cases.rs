@@ -15,7 +15,7 @@ pub(crate) type Case = (&'static str, fn(&[u8]));
 
 pub(crate) const CASES: [Case; 8] = [
     ("obj", |bytes| mesh("obj", bytes)),
-    ("collada", |bytes| mesh("collada", bytes)),
+    ("collada", |bytes| mesh("dae", bytes)),
     ("stl", |bytes| mesh("stl", bytes)),
     ("ply", |bytes| mesh("ply", bytes)),
     ("scene", scene),

@@ -58,19 +58,10 @@ impl Shot {
         let gap = self.distance - 0.5 - f64::from(self.half[self.axis]);
         let exact = gap / self.speed;
         let steps = (exact / world.settings().dt) as u64 + 2;
-        let mut impacts = Vec::new();
-        for _ in 0..steps {
-            if let Err(error) = world.step_reporting(&mut impacts) {
-                println!("{error}: {self:?} {impacts:?}");
-                break;
-            }
-        }
+        let impacts = run(world, steps);
         let time = impacts.first().map_or(f64::INFINITY, |impact| impact.time);
-        // Some units in the last place of the way, and of the time.
-        (
-            time - exact,
-            64.0 * ULP * (self.distance / self.speed + exact),
-        )
+        // Some units in the last place of the time, and of a step.
+        (time - exact, 64.0 * ULP * (exact + DT))
     }
 }
 
@@ -99,7 +90,9 @@ fn a_plate_is_hit_in_time_on_a_way_that_bends() {
             shot.along = 9.81;
             let side = (shot.axis + 1) % 3;
             // So long that the bullet does not fall past it.
-            shot.half[side] = shot.half[side].max(1.0) * 1e3;
+            shot.half[side] = 1e3;
+            let other = (shot.axis + 2) % 3;
+            shot.half[other] = shot.half[other].clamp(1e-9, 1e9);
             let settings = Settings {
                 method,
                 ..settings(DT)
@@ -147,31 +140,6 @@ fn a_small_ball_hits_a_large_one_in_time() {
         assert!(
             error.abs() <= 64.0 * ULP * radius / 100.0,
             "{radius}: {error:e}"
-        );
-    }
-}
-
-#[test]
-fn zz_debug() {
-    let shot = Shot {
-        axis: 2,
-        half: Vec3::new(1.8260197e24, 6.755093e-16, 0.0021198383),
-        distance: 8.310413691223427,
-        speed: 8.365280987217481,
-        along: 9.81,
-    };
-    let settings = Settings {
-        method: METHODS[3],
-        ..settings(DT)
-    };
-    let mut world = shot.world(settings);
-    for step in 0..70 {
-        println!(
-            "{step} {:?} {} {} {:?}",
-            world.step(),
-            world.position(0),
-            world.velocity(0),
-            world.contacts().collect::<Vec<_>>()
         );
     }
 }

@@ -12,7 +12,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use scene::{Scene, shown};
 use sim_core::{Collision, FixedStep, METHODS, Method, Settings};
 
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Interrupt, survive_file_limits};
 use crate::{app, failure::Failure, headless, shot, soak};
 
 /// Scene of the window when none is named.
@@ -174,6 +174,7 @@ enum CollisionArg {
 
 /// Does what the arguments of the process ask for.
 pub fn main() -> ExitCode {
+    survive_file_limits();
     let interrupt = Interrupt::default();
     let done = match Cli::try_parse() {
         Ok(cli) => obey(cli, &interrupt),
