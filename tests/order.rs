@@ -17,7 +17,7 @@ const MODES: [(&str, Collision); 3] = [
 const NOT_YET: [(&str, &str, &str); 1] = [(
     "herd",
     "continuous",
-    "what the continuous mode keeps of a heap's contacts still depends on it",
+    "from step 52 on, though islands are solved in an order of their motion; why is not known yet",
 )];
 
 /// What is not run, and why.

@@ -9,8 +9,8 @@
 //!   does not go past what lies within a body.
 //! - Where a method finds no motion for the whole step, it is asked for a part of it, halved between
 //!   parts on which nothing is met and parts for which there is no motion, until something is met on
-//!   one. If nothing is, the step fails as it did; but what is left of it after an impact is gone through in
-//!   parts for which there is a motion.
+//!   one, or else to the end of the longest part for which there is one: what bodies meet may come after.
+//!   The step fails where that is a small part of what is left of it.
 //!
 //! Impacts are sought up to the horizon. There the trajectory starts again, from the motion after the
 //! impacts that there were, and has a new horizon.
@@ -34,7 +34,7 @@ use crate::{
 /// Halvings of a step in search of a part for which there is a motion, and on which something is met.
 const HALVINGS: u32 = 52;
 
-/// Part of what is left of a step after an impact that a method must find a motion for.
+/// Part of what is left of a step that a method must find a motion for.
 const SHORTEST_PART: f64 = 1.0 / 64.0;
 
 impl World {
@@ -103,8 +103,7 @@ impl World {
             }
             low = time;
         }
-        // After an impact what is left of a step is a part of it anyway.
-        if since == 0.0 || low < SHORTEST_PART * length {
+        if low < SHORTEST_PART * length {
             return Err(failure);
         }
         let part = Block {
