@@ -9,8 +9,7 @@
 //!   does not go past what lies within a body.
 //! - Where a method finds no motion for the whole step, it is asked for a part of it, halved between
 //!   parts on which nothing is met and parts for which there is no motion, until something is met on
-//!   one, or else to the end of the longest part for which there is one: what bodies meet may come after.
-//!   The step fails where that is a small part of what is left of it.
+//!   one. If nothing is, the step fails as it did.
 //!
 //! Impacts are sought up to the horizon. There the trajectory starts again, from the motion after the
 //! impacts that there were, and has a new horizon.
@@ -33,9 +32,6 @@ use crate::{
 
 /// Halvings of a step in search of a part for which there is a motion, and on which something is met.
 const HALVINGS: u32 = 52;
-
-/// Part of what is left of a step that a method must find a motion for.
-const SHORTEST_PART: f64 = 1.0 / 64.0;
 
 impl World {
     /// Until when the trajectory of a body is known, s from the step's start.
@@ -103,15 +99,7 @@ impl World {
             }
             low = time;
         }
-        if low < SHORTEST_PART * length {
-            return Err(failure);
-        }
-        let part = Block {
-            length: low,
-            ..block
-        };
-        self.step_block(plan, part, to, scratch, None)?;
-        Ok(since + low)
+        Err(failure)
     }
 
     /// Notes how far the trajectories of some bodies are known.
