@@ -118,12 +118,15 @@ pub struct Step<'a> {
 }
 
 /// Is told each step that an adaptive method takes within `dt`, and may stop it there.
-pub struct Watch<'a>(&'a mut dyn FnMut(f64, &[DVec3], &[DVec3]) -> bool);
+pub struct Watch<'a>(&'a mut Ask<'a>);
+
+/// A function that is asked after each step.
+pub type Ask<'a> = dyn FnMut(f64, &[DVec3], &[DVec3]) -> bool + 'a;
 
 impl<'a> Watch<'a> {
     /// Asks a function, with the time after a step, s from the start of `dt`, and all positions before
     /// and after it, m.
-    pub fn new(ask: &'a mut dyn FnMut(f64, &[DVec3], &[DVec3]) -> bool) -> Watch<'a> {
+    pub fn new(ask: &'a mut Ask<'a>) -> Watch<'a> {
         Watch(ask)
     }
 
