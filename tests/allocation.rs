@@ -5,8 +5,9 @@ use std::cell::Cell;
 
 use std::ops::ControlFlow;
 
+use scene::SCENES;
 use sim_core::collide::{self, Placement, tree};
-use sim_core::{Body, Bvh, DQuat, DVec3, Force, METHODS, Settings, World};
+use sim_core::{Body, Bvh, Collision, DQuat, DVec3, Force, METHODS, Settings, World};
 
 thread_local! {
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
@@ -114,4 +115,38 @@ fn questions_about_meshes_do_not_allocate() {
         assert!(answers > 1000, "{answers}");
     };
     assert_eq!(allocations(questions), 0);
+}
+
+/// Steps of a scene after which all room that it needs has been made, but for what it has not met yet.
+const WARM_UP: u32 = 60;
+
+/// Scenes of which contacts last: each island is solved in vectors of its own.
+const SOLVED: [&str; 2] = ["bounce", "herd"];
+
+/// Steps without an impact may make room that grows, a few times in a run.
+const GROWTH: u64 = 24;
+
+/// With solids, in the continuous mode and by the BVH: what allocates is the answer to an impact (who is in
+/// it, and its report), and the contacts of an island that lasts.
+#[test]
+fn steps_of_the_gallery_allocate_only_where_bodies_meet() {
+    for entry in SCENES {
+        for collision in [Collision::Continuous, Collision::Bvh] {
+            let mut scene = entry.scene().expect("a gallery scene");
+            scene.collision = collision;
+            let mut world = scene.world().expect("a world");
+            (0..WARM_UP).for_each(|_| world.step().expect("a step"));
+            let mut without = 0;
+            for _ in 0..400 {
+                let before = (world.impacts(), world.contact_steps());
+                let made = allocations(|| world.step().expect("a step"));
+                if (world.impacts(), world.contact_steps()) == before {
+                    without += made;
+                }
+            }
+            let is_solved = SOLVED.contains(&entry.name) && collision == Collision::Continuous;
+            let what = format!("{} {collision:?}", entry.name);
+            assert!(is_solved || without <= GROWTH, "{what}: {without}");
+        }
+    }
 }

@@ -5,9 +5,11 @@
 //! they are compared with closed forms.
 
 mod balls;
+mod centres;
 mod chains;
 mod crowds;
 mod discrete;
+mod extents;
 mod forces;
 mod grazing;
 mod meshes;

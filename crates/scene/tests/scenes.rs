@@ -143,17 +143,17 @@ colour = "#c8553d"
         (
             "rate = 60",
             "rate = 0",
-            ":2: rate: must be from 1e-6 to 1e9 Hz, is 0",
+            ":2: rate: must be from 1e-3 to 1e9 Hz, is 0",
         ),
         (
             "rate = 60",
             "rate = -0.0",
-            ":2: rate: must be from 1e-6 to 1e9 Hz, is -0",
+            ":2: rate: must be from 1e-3 to 1e9 Hz, is -0",
         ),
         (
             "rate = 60",
             "rate = nan",
-            ":2: rate: must be from 1e-6 to 1e9 Hz, is NaN",
+            ":2: rate: must be from 1e-3 to 1e9 Hz, is NaN",
         ),
         (
             "rate = 60",

@@ -104,7 +104,9 @@ pub use clock::{ClockError, FixedStep};
 pub use collide::Feature;
 pub use force::{BodyLaw, BodyMotion, Force, ForceError, Law, PairLaw, PairMotion};
 pub use glam::{DMat3, DQuat, DVec3, Vec3};
-pub use integrate::{Failure, Jacobians, METHODS, Method, Scratch, Step, Stepper, System};
+pub use integrate::{
+    Ask, Failure, Jacobians, METHODS, Method, Scratch, Step, Stepper, System, Watch,
+};
 pub use mesh::{Mesh, MeshError, Repairs};
 pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
 pub(crate) use shape::Extent;

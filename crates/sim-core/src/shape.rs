@@ -41,7 +41,8 @@ pub(crate) struct Extent {
     pub(crate) high: DVec3,
     /// Largest half extent, m.
     pub(crate) half: f64,
-    /// Largest coordinate of what is placed with it, m.
+    /// Largest coordinates of what is placed with it, m, by axis, and the largest of them.
+    pub(crate) reach: DVec3,
     pub(crate) farthest: f64,
 }
 
@@ -51,17 +52,20 @@ impl Shape {
             Shape::Mesh(mesh) => {
                 let bounds = mesh.bounds();
                 let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+                let reach = low.abs().max(high.abs());
                 Extent {
                     low,
                     high,
                     half: bounds.half_extent().max_element(),
-                    farthest: low.abs().max(high.abs()).max_element(),
+                    reach,
+                    farthest: reach.max_element(),
                 }
             }
             &Shape::Sphere { radius } => Extent {
                 low: DVec3::splat(-radius),
                 high: DVec3::splat(radius),
                 half: radius,
+                reach: DVec3::splat(radius),
                 farthest: radius,
             },
             Shape::HalfSpace { .. } => Extent {

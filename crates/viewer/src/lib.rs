@@ -18,6 +18,7 @@ pub mod picture;
 pub mod render;
 pub mod session;
 pub mod shot;
+pub mod soak;
 pub mod stopwatch;
 pub mod ui;
 pub mod worker;

@@ -7,7 +7,6 @@ use scene::{Scene, file, shown};
 
 use crate::cli::{Depth, ShotArgs};
 use crate::failure::Failure;
-use crate::interrupt::survive_file_limits;
 use crate::render::offscreen::{self, ShotError};
 use crate::session::Session;
 use crate::stopwatch::Stopwatch;
@@ -54,7 +53,6 @@ pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
     image
         .write_to(&mut png, image::ImageFormat::Png)
         .map_err(|error| Failure::Run(format!("cannot encode the picture: {error}")))?;
-    survive_file_limits();
     file::write(&args.output, png.get_ref()).map_err(|error| {
         let path = shown::path(&args.output);
         Failure::Refused(format!("cannot write {path}: {error}"))

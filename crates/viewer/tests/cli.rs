@@ -599,3 +599,38 @@ fn an_interrupted_run_tells_what_it_reached() {
     let text = String::from_utf8(output.stderr).expect("text");
     assert!(text.starts_with("cowbell: interrupted after "), "{text}");
 }
+
+/// A file that may not grow is an error, as a full disk is: the program does not die of it.
+#[cfg(unix)]
+#[test]
+fn a_limit_on_files_is_an_error_in_words() {
+    let path = std::env::temp_dir().join(format!("cowbell-limit-{}", std::process::id()));
+    let script = "ulimit -f 0; exec \"$0\" run parabola --steps 1 --json > \"$1\"";
+    let output = Command::new("sh")
+        .args(["-c", script, env!("CARGO_BIN_EXE_cowbell")])
+        .arg(&path)
+        .output()
+        .expect("a shell");
+    let _ = std::fs::remove_file(&path);
+    let text = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(
+        text.starts_with("cowbell: cannot write the result: "),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_soak_looks_at_each_step_of_every_scene() {
+    let output = cowbell(&["soak", "all", "--minutes", "0.1"])
+        .output()
+        .expect("it runs");
+    let text = String::from_utf8(output.stdout).expect("text");
+    let wrong = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{wrong}");
+    assert_eq!(text.lines().count(), 1 + scene::SCENES.len(), "{text}");
+    let output = cowbell(&["soak", "all", "--minutes", "-1"])
+        .output()
+        .expect("it runs");
+    assert_eq!(output.status.code(), Some(2));
+}

@@ -275,7 +275,7 @@ fn dt(source: &Source, header: &Header) -> Result<f64, SceneError> {
     };
     if !FixedStep::DT_RANGE.contains(&dt) {
         let what = match field {
-            "rate" => "must be from 1e-6 to 1e9 Hz",
+            "rate" => "must be from 1e-3 to 1e9 Hz",
             _ => "must be from 1e-9 to 1e3 s",
         };
         let what = format!("{what}, is {}", shown::number(value.get_ref().0));

@@ -40,7 +40,13 @@ pub(super) fn step<E: Embedded>(system: &dyn System, s: Step<'_>) -> Result<(), 
             );
             *dy = [v.x, v.y, v.z, a.x, a.y, a.z];
         };
-        let done = solve::<E, [f64; 6]>(f, &mut y, span, &mut || [0.0; 6]);
+        let mut watch = s.watch;
+        let stops = |time: f64, before: &[f64; 6], after: &[f64; 6]| {
+            let place = |y: &[f64; 6]| DVec3::new(y[0], y[1], y[2]);
+            let watch = watch.as_mut();
+            watch.is_some_and(|watch| watch.stops(time, &[place(before)], &[place(after)]))
+        };
+        let done = solve::<E, [f64; 6]>(f, &mut y, span, &mut || [0.0; 6], stops);
         let [x, y, z, u, v, w] = y;
         s.new_position[0] = DVec3::new(x, y, z);
         s.new_velocity[0] = DVec3::new(u, v, w);
@@ -58,7 +64,13 @@ pub(super) fn step<E: Embedded>(system: &dyn System, s: Step<'_>) -> Result<(), 
         dx.copy_from_slice(v);
         system.accelerations(s.time + t, cast_slice(x), cast_slice(v), cast_slice_mut(dv));
     };
-    let done = solve::<E, &mut [f64]>(f, &mut y, span, &mut room);
+    let mut watch = s.watch;
+    let stops = |time: f64, before: &&mut [f64], after: &&mut [f64]| {
+        let (before, after) = (cast_slice(&before[..3 * n]), cast_slice(&after[..3 * n]));
+        let watch = watch.as_mut();
+        watch.is_some_and(|watch| watch.stops(time, before, after))
+    };
+    let done = solve::<E, &mut [f64]>(f, &mut y, span, &mut room, stops);
     let (x, v) = y.split_at(3 * n);
     s.new_position.copy_from_slice(cast_slice(x));
     s.new_velocity.copy_from_slice(cast_slice(v));
@@ -69,12 +81,13 @@ pub(super) fn step<E: Embedded>(system: &dyn System, s: Step<'_>) -> Result<(), 
     })
 }
 
-/// Solves from `y` to the end of the step and leaves the state there.
+/// Solves from `y` to the end of the step, or to where it is stopped, and leaves the state there.
 fn solve<E: Embedded, Y: State>(
     f: impl FnMut(f64, &Y, &mut Y),
     y: &mut Y,
     [dt, tolerance]: [f64; 2],
     room: &mut dyn FnMut() -> Y,
+    mut stops: impl FnMut(f64, &Y, &Y) -> bool,
 ) -> Result<(), ()> {
     let mut start = room();
     start.as_mut().copy_from_slice(y.as_ref());
@@ -82,7 +95,13 @@ fn solve<E: Embedded, Y: State>(
         Solver::<E::Stages<Y>, Y, _>::with_room(f, 0.0, start, Tolerance::of(tolerance), room);
     solver.most_steps = u64::from(MOST_STEPS);
     solver.try_step(dt);
-    let done = solver.advance(dt);
+    let mut done = solver.step(dt);
+    while done.is_ok()
+        && solver.time() != dt
+        && !stops(solver.time(), solver.state_before(), solver.state())
+    {
+        done = solver.step(dt);
+    }
     y.as_mut().copy_from_slice(solver.state().as_ref());
     done.map_err(|_| ())
 }

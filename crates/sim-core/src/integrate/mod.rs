@@ -113,6 +113,33 @@ pub struct Step<'a> {
     pub new_velocity: &'a mut [DVec3],
     /// Room for intermediate results, kept from step to step.
     pub scratch: &'a mut Scratch,
+    /// Who an adaptive method tells the steps that it takes.
+    pub watch: Option<Watch<'a>>,
+}
+
+/// Is told each step that an adaptive method takes within `dt`, and may stop it there.
+pub struct Watch<'a>(&'a mut Ask<'a>);
+
+/// A function that is asked after each step.
+pub type Ask<'a> = dyn FnMut(f64, &[DVec3], &[DVec3]) -> bool + 'a;
+
+impl<'a> Watch<'a> {
+    /// Asks a function, with the time after a step, s from the start of `dt`, and all positions before
+    /// and after it, m.
+    pub fn new(ask: &'a mut Ask<'a>) -> Watch<'a> {
+        Watch(ask)
+    }
+
+    /// Whether to stop after a step, with the motion there as that at the end.
+    pub fn stops(&mut self, time: f64, before: &[DVec3], after: &[DVec3]) -> bool {
+        (self.0)(time, before, after)
+    }
+}
+
+impl core::fmt::Debug for Watch<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("Watch")
+    }
 }
 
 /// Why a method could not do a step.

@@ -66,6 +66,7 @@ impl Method {
                 new_position: slice::from_mut(&mut x1),
                 new_velocity: slice::from_mut(&mut v1),
                 scratch: &mut scratch,
+                watch: None,
             };
             let done = (self.step)(&Oscillator { k, c }, step);
             done.map_or((f64::INFINITY, f64::INFINITY), |()| (x1.x, v1.x))

@@ -74,6 +74,7 @@ impl Stepper {
             new_position: &mut self.new_position,
             new_velocity: &mut self.new_velocity,
             scratch: &mut self.scratch,
+            watch: None,
         };
         (self.method.step)(system, step)?;
         swap(&mut self.position, &mut self.new_position);

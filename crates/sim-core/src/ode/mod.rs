@@ -287,6 +287,11 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
         self.time
     }
 
+    /// State before the last step.
+    pub(crate) fn state_before(&self) -> &Y {
+        &self.start
+    }
+
     /// State at that time.
     pub fn state(&self) -> &Y {
         &self.end

@@ -5,10 +5,25 @@ use core::ops::Range;
 use glam::DVec3;
 
 /// Motion of all bodies.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct State {
     pub(super) position: Vec<DVec3>,
     pub(super) velocity: Vec<DVec3>,
+}
+
+impl Clone for State {
+    fn clone(&self) -> State {
+        State {
+            position: self.position.clone(),
+            velocity: self.velocity.clone(),
+        }
+    }
+
+    /// Keeps the room that there is, as no step may allocate.
+    fn clone_from(&mut self, other: &State) {
+        self.position.clone_from(&other.position);
+        self.velocity.clone_from(&other.velocity);
+    }
 }
 
 impl State {

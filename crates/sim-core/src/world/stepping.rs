@@ -15,7 +15,7 @@ use super::{
 };
 use glam::DVec3;
 
-use crate::integrate::{Failure, Method, Scratch, Step, ballistic, stability};
+use crate::integrate::{Failure, Method, Scratch, Step, Watch, ballistic, stability};
 
 /// Bodies in a block: some 200 bytes each for state, acceleration and a few stages fill about
 /// the 32 KiB of a first cache.
@@ -27,6 +27,7 @@ const GROWTH: f64 = 1e6;
 
 impl World {
     pub(super) fn integrate(&mut self) -> Result<(), StepError> {
+        self.clear_horizons();
         if self.plan.is_none() {
             self.make_plan();
         }
@@ -147,9 +148,9 @@ impl World {
                 since: 0.0,
                 length: self.settings.dt,
             };
-            let moved = self.step_block(plan, block, &mut to, &mut scratch);
+            let moved = self.step_to_horizon(plan, block, &mut to, &mut scratch);
             (self.current, self.scratch) = (to, scratch);
-            moved?;
+            self.set_horizon(bodies.clone(), moved?);
             if let Some(body) = self.beyond(bodies.clone()) {
                 return Err((body, Cause::Range));
             }
@@ -164,20 +165,22 @@ impl World {
         Ok(())
     }
 
-    /// One call of the method, or of coupled bodies one for each group.
+    /// One call of the method, or of coupled bodies one for each group; a method with error control tells
+    /// a watch the steps that it takes, by whose motion they are, and stops where that says so.
     pub(super) fn step_block(
         &self,
         plan: &Plan,
         block: Block<'_>,
         to: &mut State,
         scratch: &mut Scratch,
+        mut watch: Option<&mut BlockWatch<'_>>,
     ) -> Result<(), (usize, Cause)> {
         let section = match block.is_coupled {
             true => plan.section_at(block.bodies.start),
             false => None,
         };
         let Some(section) = section else {
-            return self.step_run(plan, &block, None, to, scratch);
+            return self.step_run(plan, &block, None, (to, scratch), watch);
         };
         let fall = self.settings.method.fall;
         section.groups.iter().try_for_each(|group| {
@@ -186,8 +189,16 @@ impl World {
                 return Ok(());
             }
             match group.run {
-                Some(_) => self.step_run(plan, &block, Some(group), to, scratch),
-                None => self.step_gathered(plan, &block, group, to, scratch),
+                Some(_) => self.step_run(
+                    plan,
+                    &block,
+                    Some(group),
+                    (to, scratch),
+                    watch.as_deref_mut(),
+                ),
+                None => {
+                    self.step_gathered(plan, &block, group, (to, scratch), watch.as_deref_mut())
+                }
             }
         })
     }
@@ -213,12 +224,15 @@ impl World {
         plan: &Plan,
         block: &Block<'_>,
         group: Option<&Group>,
-        to: &mut State,
-        scratch: &mut Scratch,
+        (to, scratch): (&mut State, &mut Scratch),
+        watch: Option<&mut BlockWatch<'_>>,
     ) -> Result<(), (usize, Cause)> {
         let run = group.and_then(|group| group.run.clone());
         let bodies = run.unwrap_or_else(|| block.bodies.clone());
         let (start, first) = (bodies.start, bodies.start - block.bodies.start);
+        let mut watch = watch.map(|watch| {
+            move |time: f64, x: &[DVec3], y: &[DVec3]| watch(time, &|place| start + place, x, y)
+        });
         let step = Step {
             time: self.time() + block.since,
             dt: block.length,
@@ -228,6 +242,7 @@ impl World {
             new_position: &mut to.position[bodies.clone()],
             new_velocity: &mut to.velocity[bodies.clone()],
             scratch,
+            watch: watch.as_mut().map(|watch| Watch::new(watch)),
         };
         let part = Part {
             forces: &self.forces,
@@ -248,8 +263,8 @@ impl World {
         plan: &Plan,
         block: &Block<'_>,
         group: &Group,
-        to: &mut State,
-        scratch: &mut Scratch,
+        (to, scratch): (&mut State, &mut Scratch),
+        watch: Option<&mut BlockWatch<'_>>,
     ) -> Result<(), (usize, Cause)> {
         let count = group.bodies.len();
         // Out of the scratch while the method has it.
@@ -261,6 +276,9 @@ impl World {
             acceleration[i] = block.acceleration[body - block.bodies.start];
             mass[i] = self.mass[body];
         }
+        let mut watch = watch.map(|watch| {
+            |time: f64, x: &[DVec3], y: &[DVec3]| watch(time, &|place| group.bodies[place], x, y)
+        });
         let step = Step {
             time: self.time() + block.since,
             dt: block.length,
@@ -270,6 +288,7 @@ impl World {
             new_position: new_x,
             new_velocity: new_v,
             scratch,
+            watch: watch.as_mut().map(|watch| Watch::new(watch)),
         };
         let part = Part {
             forces: &self.forces,
@@ -453,6 +472,7 @@ fn followed(
         new_position: &mut new_x,
         new_velocity: &mut new_v,
         scratch: &mut Scratch::default(),
+        watch: None,
     };
     (Method::named("radau5")?.step)(part, step).ok()?;
     Some((new_x, new_v))
@@ -480,7 +500,13 @@ fn body_of(failure: &Failure) -> usize {
     }
 }
 
+/// Told the time after a step within a block's, s from its start, which body has which place in
+/// it, and where they are before and after it, m; says whether to stop there.
+pub(super) type BlockWatch<'a> =
+    dyn FnMut(f64, &dyn Fn(usize) -> usize, &[DVec3], &[DVec3]) -> bool + 'a;
+
 /// Bodies that are stepped at once, and how.
+#[derive(Clone)]
 pub(super) struct Block<'a> {
     pub(super) bodies: Range<usize>,
     pub(super) is_coupled: bool,

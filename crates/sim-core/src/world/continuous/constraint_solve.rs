@@ -7,11 +7,12 @@
 //! Neither adds energy: what holds a contact is at right angles to how it moves.
 
 use alloc::vec::Vec;
-use core::mem;
+use core::{cmp::Ordering, mem};
 use glam::DVec3;
 
-use super::super::{World, stepping::Cause};
+use super::super::{World, order, stepping::Cause};
 use super::contact_motion::{Course, LEAST_GAP};
+use super::contact_set::ContactConstraint;
 use super::friction::Friction;
 use super::{Event, EventKind, Outcome};
 use crate::impulse::{Joined, Known, apply, greatest, project_with};
@@ -109,11 +110,37 @@ impl World {
                 }
             }
         }
-        island.bodies.sort_unstable();
-        island
-            .constraints
-            .sort_unstable_by_key(|&index| (self.contacts.all()[index].bodies, index));
+        self.sort_bodies(&mut island.bodies);
+        let all = self.contacts.all();
+        island.constraints.sort_unstable_by(|&one, &other| {
+            let (one_pair, one_normal) = self.in_order(&all[one]);
+            let (other_pair, other_normal) = self.in_order(&all[other]);
+            let by_bodies = self.compare_bodies(one_pair.0, other_pair.0);
+            by_bodies
+                .then_with(|| self.compare_bodies(one_pair.1, other_pair.1))
+                .then_with(|| order::of_vectors(one_normal, other_normal))
+                .then(one.cmp(&other))
+        });
         Some(island)
+    }
+
+    /// Puts bodies into an order that is not that of their places: sums over an island round.
+    fn sort_bodies(&self, bodies: &mut [usize]) {
+        bodies.sort_unstable_by(|&one, &other| self.compare_bodies(one, other));
+    }
+
+    fn compare_bodies(&self, one: usize, other: usize) -> Ordering {
+        let by_motion = self.motion_key(one).cmp(&self.motion_key(other));
+        by_motion.then(one.cmp(&other))
+    }
+
+    /// The bodies of a contact in that order, and its normal from the first to the second.
+    fn in_order(&self, contact: &ContactConstraint) -> ((usize, usize), DVec3) {
+        let (i, j) = contact.bodies;
+        match self.compare_bodies(i, j) {
+            Ordering::Greater => ((j, i), -contact.normal),
+            _ => ((i, j), contact.normal),
+        }
     }
 
     /// Solves the islands of some bodies at a time, and adds the bodies whose trajectories have started
@@ -660,7 +687,7 @@ impl World {
             let (i, j) = constraint.bodies;
             let velocity = &self.continuous.start.velocity;
             let closing = (velocity[i] - velocity[j]).dot(constraint.normal);
-            if self.bounces((i, j), closing, constraint.load_speed) {
+            if self.bounces(((i, j), constraint.normal), closing, constraint.load_speed) {
                 match constraint.is_overlap {
                     true => self.exchange_there(&self.event_of(&constraint, 0.0), 0.0),
                     false => self.contacts.remove(index),
@@ -711,7 +738,10 @@ impl Places {
         let mut bodies: Vec<usize> = both.collect();
         bodies.sort_unstable();
         bodies.dedup();
-        let place = |body: usize| bodies.partition_point(|&other| other < body);
+        world.sort_bodies(&mut bodies);
+        let mut places: Vec<(usize, usize)> = bodies.iter().copied().zip(0..).collect();
+        places.sort_unstable();
+        let place = |body: usize| places[places.partition_point(|&(other, _)| other < body)].1;
         let joined = contacts
             .map(|((i, j), normal)| Joined {
                 bodies: (place(i), place(j)),

@@ -54,10 +54,10 @@ pub(super) const TOUCHING: f64 = 4.0;
 struct Pair {
     i: usize,
     j: usize,
-    /// Departure of a chord from the trajectory, m, per square of its length, s².
-    deviation: f64,
-    /// What rounding may be, m.
-    resolution: f64,
+    /// Departure of a chord from the trajectory, m, per square of its length, s², by component.
+    deviation: DVec3,
+    /// What rounding may be, m, by component.
+    resolution: DVec3,
     /// Whether a contact constraint keeps them apart already.
     is_in_contact: bool,
     /// Whether both have an inside, in which the exact test sees the other one.
@@ -80,12 +80,12 @@ impl World {
             i,
             j,
             deviation: self.deviation_per_time2(i, j),
-            resolution: self.position_resolution(i, j),
+            resolution: self.resolution_by_axis(i, j),
             is_in_contact: !self.contacts.is_empty()
                 && self.contacts.of_pair(i, j).next().is_some(),
             is_solid: has_roots(forms.0, forms.1),
         };
-        let is_parabola = pair.deviation > 0.0
+        let is_parabola = pair.deviation != DVec3::ZERO
             && self.coupled_group(i).is_none()
             && self.coupled_group(j).is_none();
         match is_parabola && pair.is_solid {
@@ -101,7 +101,7 @@ impl World {
         forms: (Form<'_>, Form<'_>),
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
-        let (start, end) = (self.start_of(pair), self.settings.dt);
+        let (start, end) = (self.start_of(pair), self.end_of(pair));
         let size = self.extent(pair.i).half.min(self.extent(pair.j).half);
         let length = end - start;
         let mut from = (start, self.offset_at(pair, start, probe)?);
@@ -110,7 +110,7 @@ impl World {
             true => size,
             false => (self.offset_at(pair, end, probe)? - from.1).length(),
         };
-        let ratio = libm::sqrt(pair.deviation / (FLATNESS * size)) * length;
+        let ratio = libm::sqrt(pair.deviation.length() / (FLATNESS * size)) * length;
         // 0/0 where nothing moves.
         let chords = if ratio > 1.0 {
             libm::ceil(ratio).min(MAX_CHORDS)
@@ -177,10 +177,12 @@ impl World {
         let (x2, v2) = self.motion_at(pair.j, start, probe)?;
         let still = 8.0 * f64::EPSILON * (v1.length() + v2.length());
         // What is in contact has its gap, and need not be brought to touch.
-        let touching = if pair.is_in_contact {
-            0.0
-        } else {
-            pair.resolution
+        let touching = match (pair.is_in_contact, first, second) {
+            (true, ..) => 0.0,
+            (_, Form::HalfSpace(normal), _) | (_, _, Form::HalfSpace(normal)) => {
+                along(pair.resolution, normal)
+            }
+            _ => pair.resolution.max_element(),
         };
         let parabola = Parabola {
             offset: x2 - x1,
@@ -188,7 +190,7 @@ impl World {
             acceleration: self.acceleration_there(pair.j) - self.acceleration_there(pair.i),
             grain: (touching, still),
         };
-        let length = self.settings.dt - start;
+        let length = self.end_of(pair) - start;
         let Some(contact) = first_on_parabola(first, second, &parabola, length) else {
             return Ok(None);
         };
@@ -209,7 +211,7 @@ impl World {
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         let motion = to.1 - from.1;
-        let goes_on = to.0 == self.settings.dt && !pair.is_solid;
+        let goes_on = to.0 == self.end_of(pair) && !pair.is_solid;
         let stretch = if goes_on {
             self.stretch(pair, motion)
         } else {
@@ -226,8 +228,11 @@ impl World {
         let length = to.0 - from.0;
         let fall = -contact.normal.dot(motion);
         let departure = pair.deviation * length * length;
-        let is_straight = departure <= pair.resolution || depth == MAX_DEPTH;
-        let is_there = contact.time * fall <= TOUCHING * pair.resolution
+        // Less than that of what is moved is rounding as well.
+        let unseen = pair.resolution + RESOLUTION_ULPS * f64::EPSILON * motion.abs();
+        let is_straight = departure.cmple(unseen).all() || depth == MAX_DEPTH;
+        let departure = departure.length();
+        let is_there = contact.time * fall <= TOUCHING * along(pair.resolution, contact.normal)
             && from.0 == self.start_of(pair)
             && self.is_closing(pair, contact.normal, probe);
         if is_straight || is_there {
@@ -274,13 +279,15 @@ impl World {
     ) -> Result<Event, (usize, Cause)> {
         let Pair { i, j, .. } = pair;
         // By their speed, or where there is hardly any by the trajectory's bend.
-        let back = (room / closing).min(libm::sqrt(room / (4.0 * pair.deviation)));
+        let back = (room / closing).min(libm::sqrt(
+            room / (4.0 * along(pair.deviation, contact.normal)),
+        ));
         let mut back = back.max(f64::MIN_POSITIVE);
         if self.extent(i).half.max(self.extent(j).half) == 0.0 {
             // Points that have passed each other by a rounding of the time do not meet.
             back = back.max(RESOLUTION_ULPS * f64::EPSILON * touching);
         }
-        let (last, mut time) = (self.settings.dt.next_down(), touching);
+        let (last, mut time) = (self.end_of(pair).next_down(), touching);
         while time > start {
             time = (touching - back).min(last).max(start);
             back *= 2.0;
@@ -309,13 +316,14 @@ impl World {
     /// How far from a contact bodies are kept at their impact, m.
     fn room(&self, pair: Pair, normal: DVec3) -> f64 {
         // Bodies that nothing presses together part at once, and need no room to stay in.
+        let resolution = along(pair.resolution, normal);
         let least = match self.are_pressed(pair.i, pair.j) {
-            true => pair.resolution,
-            false => 0.0625 * pair.resolution,
+            true => resolution,
+            false => 0.0625 * resolution,
         };
         match pair.is_solid {
             true => least,
-            false => least.max(normal.abs().dot(self.rounding(pair))),
+            false => least.max(along(self.rounding(pair), normal)),
         }
     }
 
@@ -333,7 +341,7 @@ impl World {
             let (from, to) = (continuous.start.position[body], self.current.position[body]);
             let bend = 4.0 * self.chord_deviation(body);
             let (place, motion) = (from.abs().max(to.abs()) + bend, (to - from).abs() + bend);
-            5.0 * place + 7.0 * motion + 2.0 * self.extent(body).farthest
+            5.0 * place + 7.0 * motion + 2.0 * self.extent(body).reach
         };
         0.5 * f64::EPSILON * (of(pair.i) + of(pair.j))
     }
@@ -353,6 +361,11 @@ impl World {
         self.continuous.since[pair.i].max(self.continuous.since[pair.j])
     }
 
+    /// Until when the trajectories of both are known, s from the step's start.
+    fn end_of(&self, pair: Pair) -> f64 {
+        self.horizon(pair.i).min(self.horizon(pair.j))
+    }
+
     /// Whether two bodies at the start of their common trajectory do not part along a normal.
     fn is_closing(&self, pair: Pair, normal: DVec3, probe: &mut Probe) -> bool {
         let start = self.start_of(pair);
@@ -365,13 +378,31 @@ impl World {
 
     /// What the rounding of positions and placed vertices, and of distances from triangles, may be, m.
     pub(super) fn position_resolution(&self, i: usize, j: usize) -> f64 {
-        let at = &self.current.position;
-        let far = |body: usize| at[body].abs().max_element() + self.extent(body).farthest;
-        let ulps = match (self.shape(i), self.shape(j)) {
-            (Some(Shape::Mesh(_)), Some(Shape::Sphere { .. }))
-            | (Some(Shape::Sphere { .. }), Some(Shape::Mesh(_))) => SPHERE_MESH_ULPS,
-            _ => RESOLUTION_ULPS,
-        };
-        ulps * f64::EPSILON * (far(i) + far(j))
+        self.resolution_by_axis(i, j).max_element()
     }
+
+    /// The same along a normal: a body that is long along one axis rounds no more along another.
+    pub(super) fn resolution_along(&self, i: usize, j: usize, normal: DVec3) -> f64 {
+        along(self.resolution_by_axis(i, j), normal)
+    }
+
+    fn resolution_by_axis(&self, i: usize, j: usize) -> DVec3 {
+        let (from, to) = (&self.previous.position, &self.current.position);
+        let at = |body: usize| from[body].abs().max(to[body].abs());
+        let far = |body: usize| at(body) + self.extent(body).reach;
+        let far = far(i) + far(j);
+        match (self.shape(i), self.shape(j)) {
+            // A distance is a sum over all axes.
+            (Some(Shape::Mesh(_)), Some(Shape::Sphere { .. }))
+            | (Some(Shape::Sphere { .. }), Some(Shape::Mesh(_))) => {
+                DVec3::splat(SPHERE_MESH_ULPS * f64::EPSILON * far.max_element())
+            }
+            _ => RESOLUTION_ULPS * f64::EPSILON * far,
+        }
+    }
+}
+
+/// The most that components of some sizes are together along a normal.
+fn along(sizes: DVec3, normal: DVec3) -> f64 {
+    normal.abs().dot(sizes)
 }

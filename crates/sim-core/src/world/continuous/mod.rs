@@ -2,7 +2,8 @@
 //!
 //! A step goes through these phases, a file each:
 //!
-//! 1. [`trajectory`]: each body has a trajectory through the step, as its method makes it.
+//! 1. [`trajectory`]: each body has a trajectory through the step, as its method makes it, or as far as
+//!    contact lets the method be asked ([`horizon`]).
 //! 2. [`initial_contacts`]: of bodies that have just been placed it is found out who touches.
 //! 3. [`contact_motion`]: the contacts that the last step has left are measured;
 //!    [`constraint_solve`]: the bodies of each island get the velocities and accelerations with which
@@ -26,6 +27,7 @@ mod contact_set;
 mod crush;
 mod friction;
 mod held_overlaps;
+mod horizon;
 mod impact_search;
 mod initial_contacts;
 mod position_correction;
@@ -60,6 +62,9 @@ pub(super) struct Continuous {
     /// Motion of each body where its trajectory starts, and when that is, s from the step's start.
     start: State,
     since: Vec<f64>,
+    /// Until when each trajectory is known, s from the step's start ([`horizon`]); empty where all are to the
+    /// step's end.
+    horizon: Vec<f64>,
     /// How often a body's trajectory has changed in this step; an event of an older one is void.
     version: Vec<u32>,
     /// What forces do to each body all along its trajectory, m/s²: constant ones, or under a method of
@@ -117,6 +122,8 @@ enum EventKind {
     Impact,
     /// The surface of a contact ends, or begins to turn.
     ContactEnd,
+    /// A trajectory is known no farther.
+    Horizon,
 }
 
 /// What becomes of an impact.
@@ -259,6 +266,7 @@ impl World {
     /// Finds the first impact of every pair that may have one.
     fn find_all_impacts(&mut self) -> Result<(), (usize, Cause)> {
         self.find_candidate_pairs();
+        self.queue_horizons(0..self.len());
         self.find_impacts_of_candidates()
     }
 

@@ -145,6 +145,7 @@ impl World {
         let speed = match event.kind {
             EventKind::Impact => relative.dot(event.contact.normal).abs(),
             EventKind::ContactEnd => relative.length(),
+            EventKind::Horizon => return true,
         };
         time * speed > self.hover_gap(i, j)
     }

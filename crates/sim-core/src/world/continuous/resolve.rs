@@ -32,6 +32,9 @@ const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
 /// Impacts of a body in a step after which it may be caught among others.
 const MANY_BOUNCES: u32 = 8;
 
+/// Tops of a hop that are looked at, each where the force on the one before puts it.
+const HOPS: u32 = 16;
+
 /// Part of the greatest speed at which a body has had an impact in a step that is nothing beside it.
 const SPENT: f64 = 1e-6;
 
@@ -93,6 +96,7 @@ impl World {
             self.find_impacts_of(body, &restarted)?;
         }
         self.queue_contact_ends(&restarted);
+        self.queue_horizons(restarted.iter().copied());
         self.continuous.restarted = restarted;
         Ok(())
     }
@@ -224,7 +228,8 @@ impl World {
 
     /// Whether two bodies bounce or come to rest, from their motion where their trajectories start.
     fn classify(&self, event: &mut Event) {
-        self.classify_by(event, self.closing(event), self.pressed(event));
+        let closing = self.closing(event);
+        self.classify_by(event, closing, self.pressed_on_hop(event, closing));
     }
 
     /// The acceleration with which forces press two bodies together at their impact, m/s²: as their
@@ -237,6 +242,46 @@ impl World {
         there.dot(normal).max(alone.dot(normal))
     }
 
+    /// The acceleration with which forces press two bodies together that close at a speed, m/s²: as at
+    /// their impact, or as at the top of the hop that follows where it is so much less there that they
+    /// are not back soon. Where forces fall off with distance a hop goes farther than it seems from
+    /// where it begins.
+    fn pressed_on_hop(&self, event: &Event, closing: f64) -> f64 {
+        let pressed = self.pressed(event);
+        let ((i, j), normal) = (event.bodies, event.contact.normal);
+        let is_forced = self.coupled_group(i).is_some() || self.coupled_group(j).is_some();
+        let leaving = self.pair_restitution(i, j) * closing;
+        if !is_forced || leaving <= 0.0 {
+            return pressed;
+        }
+        let is_bundled = self.is_bundled(i) || self.is_bundled(j);
+        let flight = self.settings.dt * self.shortest_flight(is_bundled);
+        let weight = |body: usize| match self.is_movable(body) {
+            true => 1.0 / self.mass[body],
+            false => 0.0,
+        };
+        let (first, second) = (weight(i), weight(j));
+        let applied = &self.continuous.applied_acceleration;
+        let alone = (applied[i] - applied[j]).dot(normal);
+        let mut least = pressed;
+        for _ in 0..HOPS {
+            if 2.0 * leaving > flight * least {
+                return least;
+            }
+            let height = 0.5 * leaving * leaving / least;
+            let by = height / (first + second) * normal;
+            let moved = [(i, -first * by), (j, second * by)];
+            let there = self.acceleration_beside(i, &moved) - self.acceleration_beside(j, &moved);
+            let there = there.dot(normal).max(alone);
+            if there >= least {
+                break;
+            }
+            least = there;
+        }
+        // What is at rest is pressed by what there is.
+        pressed
+    }
+
     /// The same from their motion at the time of their impact.
     fn classify_at_its_time(&mut self, event: &mut Event) -> Result<(), (usize, Cause)> {
         let ((i, j), normal) = (event.bodies, event.contact.normal);
@@ -245,14 +290,13 @@ impl World {
         let second = self.motion_at(j, event.time, &mut probe);
         self.continuous.probe = probe;
         let closing = (first?.1 - second?.1).dot(normal);
-        self.classify_by(event, closing, self.pressed(event));
+        self.classify_by(event, closing, self.pressed_on_hop(event, closing));
         Ok(())
     }
 
     fn classify_by(&self, event: &mut Event, closing: f64, pressed: f64) {
-        let (i, j) = event.bodies;
         event.load_speed = self.settings.dt * pressed;
-        event.outcome = match self.bounces((i, j), closing, event.load_speed) {
+        event.outcome = match self.bounces(event.plane(), closing, event.load_speed) {
             true => Outcome::Bounce,
             false => Outcome::Rest,
         };
@@ -260,7 +304,12 @@ impl World {
 
     /// Whether two bodies that close at a speed, while forces close them by another one in a step, part
     /// again.
-    pub(super) fn bounces(&self, (i, j): (usize, usize), closing: f64, load_speed: f64) -> bool {
+    pub(super) fn bounces(
+        &self,
+        ((i, j), normal): ((usize, usize), DVec3),
+        closing: f64,
+        load_speed: f64,
+    ) -> bool {
         if closing <= 0.0 || self.is_held(i, j) {
             return false;
         }
@@ -274,7 +323,7 @@ impl World {
             return false;
         }
         let leaving = restitution * closing;
-        let is_spent = || leaving * self.settings.dt <= self.position_resolution(i, j);
+        let is_spent = || leaving * self.settings.dt <= self.resolution_along(i, j, normal);
         let is_caught = || {
             let felt = self.settings.dt * self.greatest_push(i, j);
             let bounces = self.bounces_of(i, j);

@@ -91,8 +91,8 @@ impl World {
         }
     }
 
-    /// Position and velocity of a body at a time between its trajectory's start and the end of the
-    /// step, s from the step's start.
+    /// Position and velocity of a body at a time between its trajectory's start and its horizon, s from
+    /// the step's start.
     pub(super) fn motion_at(
         &self,
         body: usize,
@@ -105,7 +105,7 @@ impl World {
             let start = &continuous.start;
             return Ok((start.position[body], start.velocity[body]));
         }
-        if time == self.settings.dt {
+        if time == self.horizon(body) {
             let staggered = continuous.velocity_stagger * continuous.acceleration[body];
             let v = self.current.velocity[body] + staggered;
             return Ok((self.current.position[body], v));
@@ -145,9 +145,15 @@ impl World {
         let Some(plan) = &self.plan else {
             return Ok(());
         };
+        let block = self.block_of(bodies, is_coupled, time);
+        self.step_block(plan, block, to, scratch, None)
+    }
+
+    /// Coupled bodies, or one, from the start of their trajectories to a time.
+    fn block_of(&self, bodies: Range<usize>, is_coupled: bool, time: f64) -> Block<'_> {
         let continuous = &self.continuous;
         let since = continuous.since[bodies.start];
-        let block = Block {
+        Block {
             // Resting contacts push like constant forces.
             acceleration: &continuous.acceleration[bodies.clone()],
             bodies,
@@ -155,8 +161,7 @@ impl World {
             from: &continuous.start,
             since,
             length: time - since,
-        };
-        self.step_block(plan, block, to, scratch)
+        }
     }
 
     /// Lets the trajectory of a body, and of those coupled to it, start again at a time, where they
@@ -204,7 +209,7 @@ impl World {
     }
 
     /// Moves bodies that are stepped together from the start of their trajectories to the end of the
-    /// step.
+    /// step, or to their horizon.
     pub(super) fn finish_trajectories(
         &mut self,
         bodies: Range<usize>,
@@ -221,9 +226,15 @@ impl World {
             Some((bodies, is_coupled)) => {
                 let mut current = mem::take(&mut self.current);
                 let mut scratch = mem::take(&mut self.scratch);
-                let moved = self.step_group(bodies, is_coupled, dt, &mut current, &mut scratch);
+                let moved = match &self.plan {
+                    Some(plan) => {
+                        let block = self.block_of(bodies.clone(), is_coupled, dt);
+                        self.step_to_horizon(plan, block, &mut current, &mut scratch)
+                    }
+                    None => Ok(dt),
+                };
                 (self.current, self.scratch) = (current, scratch);
-                moved?;
+                self.set_horizon(bodies, moved?);
             }
         }
         for body in bodies.clone() {
@@ -242,6 +253,11 @@ impl World {
 
     /// What forces and contacts do to a body where its trajectory starts, m/s².
     pub(super) fn acceleration_there(&self, body: usize) -> DVec3 {
+        self.acceleration_beside(body, &[])
+    }
+
+    /// The same if some bodies were moved from there, each by so much, m.
+    pub(super) fn acceleration_beside(&self, body: usize, moved: &[(usize, DVec3)]) -> DVec3 {
         let continuous = &self.continuous;
         let Some((bodies, is_coupled)) = self.coupled_group(body) else {
             return continuous.acceleration[body];
@@ -261,7 +277,13 @@ impl World {
         let time = self.time() + continuous.since[body];
         let mut all = vec![DVec3::ZERO; bodies.len()];
         let (x, v) = (&continuous.start.position, &continuous.start.velocity);
-        part.accelerations(time, &x[bodies.clone()], &v[bodies.clone()], &mut all);
+        let mut x = x[bodies.clone()].to_vec();
+        for &(other, by) in moved {
+            if bodies.contains(&other) {
+                x[other - bodies.start] += by;
+            }
+        }
+        part.accelerations(time, &x, &v[bodies.clone()], &mut all);
         all[body - bodies.start]
     }
 
@@ -271,7 +293,7 @@ impl World {
     #[inline(always)]
     pub(super) fn chord_deviation(&self, body: usize) -> DVec3 {
         let continuous = &self.continuous;
-        let h = self.settings.dt - continuous.since[body];
+        let h = self.horizon(body) - continuous.since[body];
         if self.coupled_group(body).is_none() {
             return (0.125 * h * h) * continuous.acceleration[body].abs();
         }
@@ -283,18 +305,18 @@ impl World {
     }
 
     /// How far the relative trajectory of two bodies departs from a chord, m, per square of its length,
-    /// s².
-    pub(super) fn deviation_per_time2(&self, i: usize, j: usize) -> f64 {
+    /// s², by component.
+    pub(super) fn deviation_per_time2(&self, i: usize, j: usize) -> DVec3 {
         if self.coupled_group(i).is_none() && self.coupled_group(j).is_none() {
             let push = &self.continuous.acceleration;
             let relative = push[j] - push[i];
-            return 0.125 * relative.length();
+            return 0.125 * relative.abs();
         }
         let of = |body: usize| {
-            let h = self.settings.dt - self.continuous.since[body];
-            let deviation = self.chord_deviation(body).length();
-            if deviation == 0.0 {
-                0.0
+            let h = self.horizon(body) - self.continuous.since[body];
+            let deviation = self.chord_deviation(body);
+            if deviation == DVec3::ZERO {
+                DVec3::ZERO
             } else {
                 deviation / (h * h)
             }

@@ -1,0 +1,234 @@
+//! How far a method is asked for the motion of bodies before it is known what they meet.
+//!
+//! Forces between bodies, and towards a centre, may grow without bound where no body ever comes,
+//! because it meets another one first. A method that was asked for the whole step would go through
+//! there, and fail, or lead anywhere. So it is asked up to a *horizon* only:
+//!
+//! - A method with error control tells each step that it takes within `dt`, and stops after the first
+//!   on whose chord two bodies come together. Each of these steps holds the tolerance, so that it
+//!   does not go past what lies within a body.
+//! - Where a method finds no motion for the whole step, it is asked for a part of it, halved between
+//!   parts on which nothing is met and parts for which there is no motion, until something is met on
+//!   one. If nothing is, the step fails as it did.
+//!
+//! Impacts are sought up to the horizon. There the trajectory starts again, from the motion after the
+//! impacts that there were, and has a new horizon.
+
+use core::mem;
+use glam::DVec3;
+
+use super::super::{
+    World,
+    plan::Plan,
+    state::State,
+    stepping::{Block, Cause},
+};
+use super::{Event, EventKind, Outcome};
+use crate::{
+    Force, Shape,
+    collide::{Contact, first_contact, snap},
+    integrate::Scratch,
+};
+
+/// Halvings of a step in search of a part for which there is a motion, and on which something is met.
+const HALVINGS: u32 = 52;
+
+impl World {
+    /// Until when the trajectory of a body is known, s from the step's start.
+    pub(super) fn horizon(&self, body: usize) -> f64 {
+        let known = self.continuous.horizon.get(body).copied();
+        known.unwrap_or(self.settings.dt)
+    }
+
+    /// Lets every trajectory go to the end of the step.
+    pub(in crate::world) fn clear_horizons(&mut self) {
+        self.continuous.horizon.clear();
+    }
+
+    /// Steps a block as far as contact lets the method be asked, and says how far that is, s from the
+    /// step's start.
+    pub(in crate::world) fn step_to_horizon(
+        &self,
+        plan: &Plan,
+        block: Block<'_>,
+        to: &mut State,
+        scratch: &mut Scratch,
+    ) -> Result<f64, (usize, Cause)> {
+        let (since, length) = (block.since, block.length);
+        if !self.has_horizon(&block) {
+            self.step_block(plan, block, to, scratch, None)?;
+            return Ok(since + length);
+        }
+        let mut reached = length;
+        let mut watch =
+            |time: f64, body: &dyn Fn(usize) -> usize, before: &[DVec3], after: &[DVec3]| {
+                let is_met = self.meets_on_way(since + time, body, before, after);
+                if is_met {
+                    reached = reached.min(time);
+                }
+                is_met
+            };
+        let done = self.step_block(plan, block.clone(), to, scratch, Some(&mut watch));
+        if reached < length {
+            let part = Block {
+                length: reached,
+                ..block
+            };
+            self.step_block(plan, part, to, scratch, None)?;
+            return Ok(since + reached);
+        }
+        let Err(failure) = done else {
+            return Ok(since + length);
+        };
+        let (mut low, mut high) = (0.0, length);
+        for _ in 0..HALVINGS {
+            let part = Block {
+                length: 0.5 * (low + high),
+                ..block.clone()
+            };
+            let time = part.length;
+            if self.step_block(plan, part, to, scratch, None).is_err() {
+                high = time;
+                continue;
+            }
+            let before = &block.from.position[block.bodies.clone()];
+            let after = &to.position[block.bodies.clone()];
+            let first = block.bodies.start;
+            if self.meets_on_way(since + time, &|place| first + place, before, after) {
+                return Ok(since + time);
+            }
+            low = time;
+        }
+        Err(failure)
+    }
+
+    /// Notes how far the trajectories of some bodies are known.
+    pub(in crate::world) fn set_horizon(&mut self, bodies: core::ops::Range<usize>, time: f64) {
+        let (all, dt) = (self.len(), self.settings.dt);
+        let horizon = &mut self.continuous.horizon;
+        if horizon.is_empty() && time == dt {
+            return;
+        }
+        horizon.resize(all, dt);
+        horizon[bodies].fill(time);
+    }
+
+    /// Queues the instants at which trajectories of some bodies have to start again, once for those
+    /// that are stepped together.
+    pub(super) fn queue_horizons(&mut self, bodies: impl Iterator<Item = usize>) {
+        if self.continuous.horizon.is_empty() {
+            return;
+        }
+        let mut events = mem::take(&mut self.continuous.events);
+        for body in bodies {
+            let first = self.coupled_group(body).map_or(body, |(all, _)| all.start);
+            let time = self.horizon(body);
+            if body != first || time >= self.settings.dt {
+                continue;
+            }
+            let version = self.continuous.version[body];
+            events.push(Event {
+                time,
+                bodies: (body, body),
+                versions: (version, version),
+                kind: EventKind::Horizon,
+                outcome: Outcome::Rest,
+                load_speed: 0.0,
+                gap: 0.0,
+                contact: Contact {
+                    time: 0.0,
+                    point: DVec3::ZERO,
+                    normal: DVec3::ZERO,
+                    feature: None,
+                    face: None,
+                },
+            });
+        }
+        self.continuous.events = events;
+    }
+
+    /// Whether forces on these bodies may grow without bound where contact keeps them from going.
+    fn has_horizon(&self, block: &Block<'_>) -> bool {
+        self.settings.collision == crate::Collision::Continuous
+            && self.solid.len() > 1
+            && self.forces.iter().any(|force| match force {
+                Force::Attraction { body, .. } | Force::Body { body, .. } => {
+                    body.is_none_or(|body| block.bodies.contains(&body))
+                }
+                Force::Gravitation { .. } => block.is_coupled,
+                Force::Pair { bodies, .. } => {
+                    bodies.is_none_or(|[first, _]| block.bodies.contains(&first))
+                }
+                _ => false,
+            })
+    }
+
+    /// Whether some of these bodies come to touch each other, or what stands or moves on whatever comes, on
+    /// the chords of their ways to a time, s from the step's start.
+    fn meets_on_way(
+        &self,
+        time: f64,
+        body: &dyn Fn(usize) -> usize,
+        before: &[DVec3],
+        after: &[DVec3],
+    ) -> bool {
+        let ways = || before.iter().zip(after).enumerate();
+        for (place, from) in ways() {
+            let i = body(place);
+            if self.shape[i].is_none() {
+                continue;
+            }
+            let others = ways().skip(place + 1);
+            if others
+                .clone()
+                .any(|(place, to)| self.touch_on_chord((i, body(place)), from, to))
+            {
+                return true;
+            }
+            for &wall in self.solid.iter().filter(|&&body| !self.is_movable(body)) {
+                let at = self.previous.position[wall] + time * self.previous.velocity[wall];
+                if self.touch_on_chord((i, wall), from, (&at, &at))
+                    && ways().all(|(place, _)| body(place) != wall)
+                {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// Whether two bodies come to touch on chords, each from one place to another.
+    fn touch_on_chord(
+        &self,
+        (i, j): (usize, usize),
+        first: (&DVec3, &DVec3),
+        second: (&DVec3, &DVec3),
+    ) -> bool {
+        if i == j || self.shape[j].is_none() {
+            return false;
+        }
+        let (from, to) = (second.0 - first.0, second.1 - first.1);
+        let motion = to - from;
+        let size = |body: usize| match self.shape(body) {
+            Some(Shape::HalfSpace { .. }) => f64::INFINITY,
+            _ => self.extent(body).reach.length(),
+        };
+        let way = motion.length_squared();
+        let part = if way > 0.0 {
+            (-from.dot(motion) / way).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        // Twice, for what is rounded.
+        if (from + part * motion).length() > 2.0 * (size(i) + size(j))
+            || !self.may_collide(i, j)
+            || self.contacts.of_pair(i, j).next().is_some()
+        {
+            return false;
+        }
+        self.need_bvh(i);
+        self.need_bvh(j);
+        let forms = self.form(i).zip(self.form(j));
+        forms.is_some_and(|(a, b)| first_contact(a, b, snap(from), snap(motion)).is_some())
+    }
+}

@@ -1,0 +1,217 @@
+//! Scenes that run for minutes or days, looked at after each step.
+//!
+//! Each scene has an equal part of the time. What must hold after each of its steps is an [`Invariant`];
+//! the first that does not hold ends the soak with an error. A scene that has an end, as one in which
+//! walls close on a body, starts again.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use scene::{SCENES, Scene, shown};
+use sim_core::{Force, StepError, World};
+
+use crate::failure::Failure;
+use crate::headless;
+use crate::interrupt::Interrupt;
+use crate::number;
+use crate::session::{Drift, Reference};
+use crate::stopwatch::Stopwatch;
+
+/// Gain of energy and change of momentum that rounding may make, relative, by the square root of steps.
+const ROUNDING: f64 = 1e-12;
+
+/// What must hold after each step, and what is wrong where it does not.
+struct Invariant {
+    broken: fn(&Scene, &World, &Drift) -> Option<String>,
+}
+
+const INVARIANTS: [Invariant; 4] = [
+    Invariant {
+        broken: |scene, world, _| {
+            let is_lost = |&body: &usize| {
+                !(world.position(body).is_finite() && world.velocity(body).is_finite())
+            };
+            let lost = (0..world.len()).find(is_lost)?;
+            Some(format!(
+                "{} is at {}",
+                name(scene, lost),
+                world.position(lost)
+            ))
+        },
+    },
+    Invariant {
+        broken: |scene, world, _| {
+            let (i, j) = *world.meeting().first()?;
+            Some(format!("{} and {} overlap", name(scene, i), name(scene, j)))
+        },
+    },
+    // Where a method follows a force that varies, it has an error of its own.
+    Invariant {
+        broken: |_, world, drift| {
+            let is_exact = world.settings().method.order > 1
+                && world
+                    .forces()
+                    .iter()
+                    .all(|force| matches!(force, Force::Gravity { .. }));
+            let gained = drift
+                .relative_energy
+                .filter(|_| is_exact && !drift.driven)?;
+            let most = ROUNDING * (world.steps() as f64).sqrt();
+            (gained > most).then(|| format!("energy has grown by {gained:e} of it"))
+        },
+    },
+    Invariant {
+        broken: |_, world, drift| {
+            let error = drift.relative_momentum?;
+            let most = ROUNDING * (world.steps() as f64).sqrt();
+            (error > most).then(|| format!("momentum is off by {error:e} of it"))
+        },
+    },
+];
+
+fn name(scene: &Scene, body: usize) -> String {
+    format!("body {}", shown::name(&scene.bodies[body].name))
+}
+
+/// What a scene has done.
+#[derive(Default)]
+struct Soaked {
+    steps: u64,
+    runs: u64,
+    impacts: u64,
+    energy: f64,
+    momentum: f64,
+    /// Mean time of a step in the first and in the last tenth, s.
+    early: Mean,
+    late: Mean,
+    /// Resident memory after the first tenth and at the end, bytes, where the system tells it.
+    memory: [Option<u64>; 2],
+}
+
+#[derive(Default)]
+struct Mean {
+    sum: f64,
+    count: u64,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1;
+    }
+
+    fn value(&self) -> f64 {
+        self.sum / self.count.max(1) as f64
+    }
+}
+
+/// Runs scenes for so many minutes together, and tells what they have done.
+pub fn run(
+    scenes: &[(String, Scene)],
+    minutes: f64,
+    interrupt: &Interrupt,
+) -> Result<String, Failure> {
+    interrupt
+        .listen()
+        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    let part = Duration::try_from_secs_f64(60.0 * minutes / scenes.len() as f64)
+        .map_err(|_| Failure::Refused("--minutes: must be below 1e17".to_owned()))?;
+    let mut text = format!(
+        "{:<16} {:>11} {:>11} {:>5} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
+        "scene", "steps", "impacts", "runs", "energy", "momentum", "early", "late", "memory"
+    );
+    for (name, scene) in scenes {
+        if interrupt.came() {
+            break;
+        }
+        let soaked = soak(name, scene, part, interrupt)?;
+        let memory = match soaked.memory {
+            [Some(before), Some(after)] => {
+                format!("{:+} KiB", (after as i64 - before as i64) / 1024)
+            }
+            _ => "-".to_owned(),
+        };
+        let _ = writeln!(
+            text,
+            "{name:<16} {:>11} {:>11} {:>5} {:>9} {:>9} {:>9} {:>9} {memory:>9}",
+            soaked.steps,
+            soaked.impacts,
+            soaked.runs,
+            number::error(soaked.energy),
+            number::error(soaked.momentum),
+            number::seconds(soaked.early.value()),
+            number::seconds(soaked.late.value()),
+        );
+    }
+    Ok(text)
+}
+
+/// The scenes of an argument: one, or the whole gallery.
+pub fn gallery() -> Result<Vec<(String, Scene)>, Failure> {
+    let all = SCENES.iter().map(|entry| {
+        let scene = entry.scene().map_err(Failure::refused)?;
+        Ok((entry.name.to_owned(), scene))
+    });
+    all.collect()
+}
+
+fn soak(
+    name: &str,
+    scene: &Scene,
+    part: Duration,
+    interrupt: &Interrupt,
+) -> Result<Soaked, Failure> {
+    let mut soaked = Soaked::default();
+    let stopwatch = Stopwatch::start();
+    while stopwatch.read() < part && !interrupt.came() {
+        let mut world = scene.world().map_err(Failure::refused)?;
+        let reference = Reference::of(&world);
+        soaked.runs += 1;
+        while stopwatch.read() < part && !interrupt.came() {
+            let watch = Stopwatch::start();
+            match world.step() {
+                Ok(()) => {}
+                // What closing walls are there for.
+                Err(StepError::Squeezed { .. }) if world.steps() > 0 => break,
+                Err(error) => return Err(Failure::Run(headless::step_error(scene, &error))),
+            }
+            let seconds = watch.read().as_secs_f64();
+            let drift = reference.drift(&world);
+            for invariant in &INVARIANTS {
+                if let Some(what) = (invariant.broken)(scene, &world, &drift) {
+                    let step = world.steps();
+                    return Err(Failure::Run(format!("{name}: after step {step} {what}")));
+                }
+            }
+            soaked.note(&drift, seconds, stopwatch.read().div_duration_f64(part));
+        }
+        soaked.impacts += world.impacts();
+    }
+    soaked.memory[1] = resident();
+    Ok(soaked)
+}
+
+impl Soaked {
+    /// Notes a step that took some time, at a part of all the time.
+    fn note(&mut self, drift: &Drift, seconds: f64, part: f64) {
+        self.steps += 1;
+        self.energy = self.energy.max(drift.relative_energy.unwrap_or(0.0).abs());
+        self.momentum = self.momentum.max(drift.relative_momentum.unwrap_or(0.0));
+        if part < 0.1 {
+            self.early.add(seconds);
+        } else if self.memory[0].is_none() {
+            self.memory[0] = resident();
+        }
+        if part > 0.9 {
+            self.late.add(seconds);
+        }
+    }
+}
+
+/// Memory of the process that is in use, bytes.
+fn resident() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(1024 * kilobytes)
+}

@@ -1,0 +1,246 @@
+//! What is tried with bytes of any kind, and what must hold: the same by chance in `cargo test` and
+//! guided by coverage in `fuzz/`. Each panics where something does not hold.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use scene::{FORMATS, Scene, mesh_file};
+use sim_core::collide::{naive, touch, tree};
+use sim_core::{Body, Bvh, Collision, DVec3, METHODS, Mesh, Settings, Shape, Vec3, World};
+
+use crate::oracle::segment_meets_triangle;
+
+/// A name and what is done with bytes.
+pub(crate) type Case = (&'static str, fn(&[u8]));
+
+pub(crate) const CASES: [Case; 8] = [
+    ("obj", |bytes| mesh("obj", bytes)),
+    ("collada", |bytes| mesh("dae", bytes)),
+    ("stl", |bytes| mesh("stl", bytes)),
+    ("ply", |bytes| mesh("ply", bytes)),
+    ("scene", scene),
+    ("pair", pair),
+    ("sweep", sweep),
+    ("step", step),
+];
+
+/// Tries bytes in the case of a name.
+#[allow(dead_code)]
+pub(crate) fn try_case(name: &str, bytes: &[u8]) {
+    let case = CASES.into_iter().find(|case| case.0 == name);
+    case.expect("a case of that name").1(bytes);
+}
+
+/// A file of a format: an error, or a mesh of numbers whose report can be told.
+fn mesh(format: &str, bytes: &[u8]) {
+    let format = FORMATS.iter().find(|known| known.name == format);
+    let format = format.expect("a format of that name");
+    match mesh_file::read(format, Path::new("fuzz"), bytes) {
+        Ok(loaded) => {
+            let vertices = loaded.mesh.vertices();
+            assert!(vertices.iter().all(|v| v.is_finite()));
+            let mut corners = loaded.mesh.triangles().iter().flatten();
+            assert!(corners.all(|&corner| (corner as usize) < vertices.len()));
+            assert!(loaded.report().triangles > 0);
+        }
+        Err(error) => assert_message(&error.to_string()),
+    }
+}
+
+/// No message is long, or acts on a terminal.
+fn assert_message(message: &str) {
+    assert!(message.len() < 4096, "{} bytes", message.len());
+    assert!(!message.chars().any(char::is_control), "{message:?}");
+}
+
+/// The text of a scene: an error, or a scene that is the same after it has been written, and whose motion
+/// stays among the numbers.
+fn scene(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return;
+    };
+    let scene = match Scene::parse(text, Path::new("fuzz.toml")) {
+        Ok(scene) => scene,
+        Err(error) => return assert_message(&error.to_string()),
+    };
+    let written = scene.to_toml();
+    let again = Scene::parse(&written, Path::new("fuzz.toml"));
+    let again = again.unwrap_or_else(|error| panic!("{error}: {written}"));
+    assert_eq!(again.to_toml(), written);
+    if scene.bodies.len() > 40 {
+        return;
+    }
+    let Ok(mut world) = scene.world() else {
+        return;
+    };
+    for _ in 0..4 {
+        if world.step().is_err() {
+            break;
+        }
+    }
+    let is_finite =
+        |body: usize| world.position(body).is_finite() && world.velocity(body).is_finite();
+    assert!((0..world.len()).all(is_finite));
+}
+
+/// Numbers from bytes, 0 once there are none left.
+struct Source<'a>(&'a [u8]);
+
+impl Source<'_> {
+    fn byte(&mut self) -> u8 {
+        let Some((&first, rest)) = self.0.split_first() else {
+            return 0;
+        };
+        self.0 = rest;
+        first
+    }
+
+    /// Mostly few values, so that features lie on each other; else of any size.
+    fn number(&mut self) -> f64 {
+        let byte = self.byte();
+        let small = f64::from(byte % 16) - 8.0;
+        match byte / 16 {
+            0..=9 => 0.5 * small,
+            10..=12 => 0.1 * small,
+            13 => small * f64::from(f32::EPSILON),
+            14 => 1.0 + small * f64::EPSILON,
+            _ => {
+                let scale = f64::from(self.byte() % 32) - 16.0;
+                small * 10_f64.powf(scale)
+            }
+        }
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.number(), self.number(), self.number())
+    }
+
+    /// A mesh of a few triangles that share some of a few vertices.
+    fn mesh(&mut self) -> Option<Arc<Mesh>> {
+        let vertices: Vec<Vec3> = (0..3 + self.byte() % 6)
+            .map(|_| self.vector().as_vec3())
+            .collect();
+        let count = vertices.len() as u8;
+        let triangles = (0..1 + self.byte() % 5)
+            .map(|_| [0; 3].map(|_| u32::from(self.byte() % count)))
+            .collect();
+        Mesh::new(vertices, triangles).ok().map(Arc::new)
+    }
+}
+
+/// Whether an edge of a mesh at an offset meets a triangle of another at another, in rational numbers.
+fn edges_meet((a, at): (&Mesh, DVec3), (b, other): (&Mesh, DVec3)) -> bool {
+    let corners = |mesh: &Mesh, face: &[u32; 3], at: DVec3| {
+        face.map(|corner| mesh.vertices()[corner as usize].as_dvec3() + at)
+    };
+    a.triangles().iter().any(|face| {
+        let [p, q, r] = corners(a, face, at);
+        b.triangles().iter().any(|face| {
+            let face = corners(b, face, other);
+            [(p, q), (q, r), (r, p)]
+                .into_iter()
+                .any(|(p, q)| segment_meets_triangle(p, q, face))
+        })
+    })
+}
+
+/// Two meshes somewhere: the trees, the naive search and rational arithmetic agree.
+fn pair(bytes: &[u8]) {
+    let mut source = Source(bytes);
+    let (Some(a), Some(b)) = (source.mesh(), source.mesh()) else {
+        return;
+    };
+    let at = source.vector();
+    let found = tree::intersect(&Bvh::build(&a), &Bvh::build(&b), at);
+    assert_eq!(found, naive::intersect(&a, &b, at), "{a:?} {b:?} {at}");
+    let (a, b) = ((&*a, DVec3::ZERO), (&*b, at));
+    let exact = edges_meet(a, b) || edges_meet(b, a);
+    assert_eq!(found, exact, "{a:?} {b:?}");
+}
+
+/// Two meshes of which one moves: before the first contact they do not meet, and if there is none never.
+fn sweep(bytes: &[u8]) {
+    let mut source = Source(bytes);
+    let (Some(a), Some(b)) = (source.mesh(), source.mesh()) else {
+        return;
+    };
+    let (offset, motion) = (source.vector(), source.vector());
+    let (a, b) = (Bvh::build(&a), Bvh::build(&b));
+    if tree::intersect(&a, &b, offset) {
+        return;
+    }
+    let time = touch::time_of_impact(&a, &b, offset, motion);
+    if let Some(touch) = touch::first_touch(&a, &b, offset, motion) {
+        assert!((0.0..=1.0).contains(&touch.time), "{touch:?}");
+        assert!(
+            time.is_some_and(|time| time <= touch.time),
+            "{time:?} {touch:?}"
+        );
+    }
+    let size = |v: DVec3| v.abs().max_element();
+    let rounding = 64.0 * f64::EPSILON * (size(offset) + size(motion) + 1e3);
+    for part in 0..=32 {
+        let part = f64::from(part) / 32.0;
+        // Where vertices are placed is rounded, so that only what is clearly before counts.
+        let clear = time.map_or(1.0, |time| time - rounding / size(motion));
+        if part < clear && size(motion) > 1e3 * rounding {
+            let there = offset + part * motion;
+            assert!(!tree::intersect(&a, &b, there), "{part} before {time:?}");
+        }
+    }
+}
+
+/// A world of a few bodies: after each step all is finite and apart, elastic impacts give no energy, and
+/// naive and BVH are the same to the bit.
+fn step(bytes: &[u8]) {
+    let mut source = Source(bytes);
+    let settings = Settings {
+        method: METHODS[usize::from(source.byte()) % METHODS.len()],
+        collision: [Collision::Continuous, Collision::Bvh, Collision::Naive]
+            [usize::from(source.byte() % 3)],
+        ..Settings::default()
+    };
+    let Ok(mut world) = World::new(settings) else {
+        return;
+    };
+    for _ in 0..2 + source.byte() % 4 {
+        let kind = source.byte();
+        let shape = match kind % 4 {
+            0 => Some(Shape::Sphere {
+                radius: source.number().abs(),
+            }),
+            1 => Some(Shape::HalfSpace {
+                normal: source.vector(),
+            }),
+            2 => source.mesh().map(Shape::Mesh),
+            _ => source.mesh().map(Shape::Mesh),
+        };
+        let body = Body {
+            shape,
+            position: 4.0 * source.vector(),
+            velocity: 30.0 * source.vector(),
+            mass: if kind % 4 == 1 || kind > 200 {
+                f64::INFINITY
+            } else {
+                1.0 + f64::from(kind % 7)
+            },
+            ..Body::default()
+        };
+        // Immovable bodies that move may give energy.
+        let still = body.mass.is_infinite();
+        let velocity = if still { DVec3::ZERO } else { body.velocity };
+        let _ = world.add(Body { velocity, ..body });
+    }
+    let energy = world.kinetic_energy();
+    for _ in 0..6 {
+        if world.step().is_err() {
+            return;
+        }
+        for body in 0..world.len() {
+            assert!(world.position(body).is_finite() && world.velocity(body).is_finite());
+        }
+        assert_eq!(world.meeting(), [], "overlap after step {}", world.steps());
+        let now = world.kinetic_energy();
+        assert!(now <= energy * (1.0 + 1e-9), "energy {energy} became {now}");
+    }
+}

@@ -1,0 +1,145 @@
+//! Bodies that are long along one axis: the time of an impact along another is as exact as without.
+
+use sim_core::{DVec3, METHODS, Settings, Vec3, World};
+
+use crate::shapes::{cube, cuboid};
+use crate::worlds::{DT, ULP, ball, immovable, mesh_body, run, settings, world_with};
+
+/// A number of its own for each call, from 0 to 1.
+fn random(state: &mut u64) -> f64 {
+    *state = state
+        .wrapping_mul(6364136223846793005)
+        .wrapping_add(1442695040888963407);
+    (*state >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// A plate in the way of a bullet.
+#[derive(Debug)]
+struct Shot {
+    /// Axis of the motion.
+    axis: usize,
+    /// Half extents of the plate, m.
+    half: Vec3,
+    /// From the bullet's centre to the plate's, m, and its speed, m/s.
+    distance: f64,
+    speed: f64,
+    /// Acceleration of the bullet along the plate, m/s².
+    along: f64,
+}
+
+impl Shot {
+    /// Along two axes the plate is of any size from 1e-30 to 1e30 m.
+    fn random(state: &mut u64) -> Shot {
+        let axis = (3.0 * random(state)) as usize;
+        let mut half = Vec3::ZERO;
+        for k in 0..3 {
+            half[k] = 10_f64.powf(60.0 * random(state) - 30.0) as f32;
+        }
+        half[axis] = 10_f64.powf(3.0 * random(state) - 4.0) as f32;
+        Shot {
+            axis,
+            half,
+            distance: 2.0 + 8.0 * random(state),
+            speed: 10_f64.powf(4.0 * random(state)),
+            along: 0.0,
+        }
+    }
+
+    fn world(&self, settings: Settings) -> World {
+        let unit = DVec3::AXES[self.axis];
+        let plate = mesh_body(&cuboid(self.half), self.distance * unit, DVec3::ZERO);
+        let mut bullet = mesh_body(&cube(0.5), DVec3::ZERO, self.speed * unit);
+        bullet.force = self.along * DVec3::AXES[(self.axis + 1) % 3];
+        world_with(settings, &[bullet, immovable(plate)])
+    }
+
+    /// How late the first impact is, s, and how late it may be found.
+    fn error(&self, world: &mut World) -> (f64, f64) {
+        let gap = self.distance - 0.5 - f64::from(self.half[self.axis]);
+        let exact = gap / self.speed;
+        let steps = (exact / world.settings().dt) as u64 + 2;
+        let impacts = run(world, steps);
+        let time = impacts.first().map_or(f64::INFINITY, |impact| impact.time);
+        // Some units in the last place of the time, and of a step.
+        (time - exact, 64.0 * ULP * (exact + DT))
+    }
+}
+
+#[test]
+fn a_plate_that_is_long_another_way_is_hit_in_time() {
+    let mut state = 16;
+    let mut wrong = Vec::new();
+    for _ in 0..400 {
+        let shot = Shot::random(&mut state);
+        let (error, most) = shot.error(&mut shot.world(settings(DT)));
+        if error.is_nan() || error.abs() > most {
+            wrong.push(format!("{error:e} s, more than {most:e}: {shot:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{} wrong: {wrong:#?}", wrong.len());
+}
+
+/// On a way that bends along the plate, which the search goes along in chords.
+#[test]
+fn a_plate_is_hit_in_time_on_a_way_that_bends() {
+    let mut state = 3;
+    let mut wrong = Vec::new();
+    for method in METHODS.into_iter().filter(|method| method.order > 1) {
+        for _ in 0..20 {
+            let mut shot = Shot::random(&mut state);
+            shot.along = 9.81;
+            let side = (shot.axis + 1) % 3;
+            // So long that the bullet does not fall past it.
+            shot.half[side] = 1e3;
+            let other = (shot.axis + 2) % 3;
+            shot.half[other] = shot.half[other].clamp(1e-9, 1e9);
+            let settings = Settings {
+                method,
+                ..settings(DT)
+            };
+            let (error, most) = shot.error(&mut shot.world(settings));
+            if error.is_nan() || error.abs() > most {
+                wrong.push(format!("{}: {error:e} s, {most:e}: {shot:?}", method.name));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} wrong: {wrong:#?}", wrong.len());
+}
+
+/// Between two plates, one of which is long, as between two that are not.
+#[test]
+fn a_bullet_goes_to_and_fro_between_plates_of_any_length() {
+    for length in [3.0, 1e9, 1e15, 1e17, 1e30] {
+        let plate = |x: f64, length: f64| {
+            let half = Vec3::new(0.0005, 1.5, 0.5 * length as f32);
+            immovable(mesh_body(&cuboid(half), x * DVec3::X, DVec3::ZERO))
+        };
+        let bullet = mesh_body(&cube(0.25), DVec3::ZERO, 1000.0 * DVec3::X);
+        let bodies = [plate(-5.0, length), plate(5.0, 3.0), bullet];
+        let mut world = world_with(settings(DT), &bodies);
+        let impacts = run(&mut world, 60);
+        // 9.499 m to and fro in a second.
+        assert_eq!(impacts.len(), 105, "{length:e}");
+        let last = impacts.last().expect("impacts");
+        let room = 9.5 - 2.0 * f64::from(0.0005_f32);
+        let exact = (0.5 * room + 104.0 * room) / 1000.0;
+        let error = last.time - exact;
+        assert!(error.abs() < 1e-12, "{length:e}: {error:e} s");
+    }
+}
+
+/// Two balls of which one is as large as a planet meet where they meet.
+#[test]
+fn a_small_ball_hits_a_large_one_in_time() {
+    for radius in [1.0, 1e3, 1e6, 1e9] {
+        let large = immovable(ball(radius, (radius + 2.0) * DVec3::X, DVec3::ZERO));
+        let small = ball(0.5, DVec3::ZERO, 100.0 * DVec3::X);
+        let mut world = world_with(settings(DT), &[large, small]);
+        let impacts = run(&mut world, 2);
+        let error = impacts[0].time - 0.015;
+        assert!(
+            error.abs() <= 64.0 * ULP * radius / 100.0,
+            "{radius}: {error:e}"
+        );
+    }
+}
