@@ -33,8 +33,9 @@ Figures, by their names in --json; drifts and errors count from the start, and n
                    sum of mass times speed at the start and of force times time since; null where
                    that is 0, and where a force or an immovable body may have changed it from outside
   momentum_error   the same in kg m/s
-  path_error       largest distance of a body from its exact path, m; null after an impact, and
-                   under forces that are not constant
+  path_error       largest distance of a body from its exact place, m, among those whose exact path
+                   is known: under constant forces and bounces off what nothing moves, springs to
+                   points, linear drag, one attraction, until bodies come together
   state_hash       64 bits over motion, time and impacts, in hexadecimal digits: runs of a scene with
                    equal ones are equal to the last bit
   potential_energy, total_energy

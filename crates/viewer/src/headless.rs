@@ -11,7 +11,7 @@ use sim_core::{DVec3, StepError, World};
 use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
 use crate::number;
-use crate::session::{Drift, Reference};
+use crate::session::{Drift, Exact, Reference};
 use crate::stopwatch::Stopwatch;
 
 /// Final state of a run. Numbers are f64 and survive the way through JSON bit for bit.
@@ -95,7 +95,7 @@ pub fn run(
     interrupt: &Interrupt,
 ) -> Result<String, Failure> {
     let mut world = scene.world().map_err(Failure::refused)?;
-    let reference = Reference::of(&world);
+    let (reference, mut exact) = (Reference::of(&world), Exact::of(&world));
     interrupt
         .listen()
         .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
@@ -120,7 +120,7 @@ pub fn run(
         );
     }
     let drift = reference.drift(&world);
-    let report = RunReport::of(scene, &world, &drift);
+    let report = RunReport::of(scene, &world, &drift, exact.error(&world));
     Ok(if json {
         to_json(&report)
     } else {
@@ -210,7 +210,7 @@ fn repairs(repairs: &MeshReport) -> Vec<RepairReport> {
 }
 
 impl<'a> RunReport<'a> {
-    fn of(scene: &'a Scene, world: &World, drift: &Drift) -> Self {
+    fn of(scene: &'a Scene, world: &World, drift: &Drift, path_error: Option<f64>) -> Self {
         Self {
             time: world.time(),
             steps: world.steps(),
@@ -225,7 +225,7 @@ impl<'a> RunReport<'a> {
             driven: drift.driven,
             momentum_drift: drift.relative_momentum,
             momentum_error: drift.momentum,
-            path_error: drift.position,
+            path_error,
             momentum: world.momentum().to_array(),
             last_impact: world.last_impact().map(|impact| ImpactReport {
                 time: impact.time,
@@ -289,11 +289,8 @@ impl<'a> RunReport<'a> {
             ),
             (
                 "Path error",
-                drift.position.map_or_else(
-                    || {
-                        "unknown once bodies have met, or under forces that are not constant"
-                            .to_owned()
-                    },
+                self.path_error.map_or_else(
+                    || "unknown: no exact path is known of a body, or not any more".to_owned(),
                     |away| format!("{} m", number::figure(away)),
                 ),
             ),

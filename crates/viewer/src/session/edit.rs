@@ -6,7 +6,7 @@ use sim_core::{DVec3, WorldError};
 
 use crate::headless;
 
-use super::{Reference, Session, State};
+use super::{Session, State};
 
 impl Session {
     /// Moves the selected body to `position`, m.
@@ -149,8 +149,7 @@ impl Session {
                 if self.state == State::Layout {
                     keep(&mut self.scene.bodies[i]);
                 }
-                self.reference = Reference::of(&self.world);
-                self.playback.begin(&self.world);
+                self.begin_record();
             }
             Err(error) => {
                 let text = headless::with_name(&self.scene, i, &error);

@@ -18,11 +18,13 @@ impl Session {
                 let opening = self.opening.next();
                 let mut compare = std::mem::take(&mut self.compare);
                 compare.forget();
+                let variants = self.variants.edition + 1;
                 display.trails = session.display.trails;
                 *self = session;
                 self.display = display;
                 self.compare = compare;
                 self.edition = edition;
+                self.variants.edition = variants;
                 self.opening = opening;
                 let path = PathBuf::from(name_or_path);
                 self.file = path.extension().is_some().then_some(path);

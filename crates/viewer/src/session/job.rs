@@ -10,7 +10,9 @@ use std::time::Duration;
 use sim_core::{DVec3, StepError, World};
 
 use super::playback::Moment;
-use super::{Impacts, MAX_RATE, MIN_RATE, Remedy, Session, State, Trails, impacts, trails};
+use super::{
+    Exact, Impacts, MAX_RATE, MIN_RATE, Remedy, Sample, Session, State, Trails, impacts, trails,
+};
 use crate::headless;
 
 /// Real time that the steps of one frame may take before the rest of them is given up: leaves
@@ -21,6 +23,7 @@ pub const STEP_BUDGET: Duration = Duration::from_millis(8);
 #[derive(Debug)]
 pub struct Job {
     world: World,
+    exact: Exact,
     steps: u32,
     /// Positions are to be noted after each step.
     traced: bool,
@@ -31,6 +34,7 @@ pub struct Job {
 #[derive(Debug)]
 pub struct Done {
     world: World,
+    exact: Exact,
     due: u32,
     taken: u32,
     time: Duration,
@@ -42,27 +46,38 @@ pub struct Done {
 
 impl Job {
     /// Takes the steps, as many as fit into [`STEP_BUDGET`] and at least one. `stopwatch` reads
-    /// real time.
+    /// real time; what is noted of a step does not count as its cost.
     pub fn run(mut self, stopwatch: impl Fn() -> Duration) -> Done {
         let began = stopwatch();
         let (mut taken, mut time, mut error) = (0, Duration::ZERO, None);
         let (mut trace, mut moments) = (Vec::new(), Vec::new());
-        while taken < self.steps && time <= STEP_BUDGET && error.is_none() {
+        while taken < self.steps && (taken == 0 || stopwatch().saturating_sub(began) <= STEP_BUDGET)
+        {
             let mut impacts = Vec::new();
+            let before = stopwatch();
             error = self.world.step_reporting(&mut impacts).err();
-            impacts.drain(..impacts.len().saturating_sub(impacts::MOST));
-            taken += u32::from(error.is_none());
-            if error.is_none() {
-                let world = self.world.clone();
-                moments.push(Moment { world, impacts });
+            let cost = stopwatch().saturating_sub(before);
+            if error.is_some() {
+                break;
             }
-            if self.traced && error.is_none() {
+            taken += 1;
+            time += cost;
+            let count = impacts.len() as u64;
+            impacts.drain(..impacts.len().saturating_sub(impacts::MOST));
+            let error = self.exact.error(&self.world);
+            let cost = Some(cost.as_secs_f64());
+            moments.push(Moment {
+                sample: Sample::of(&self.world, error, cost, count),
+                world: self.world.clone(),
+                impacts,
+            });
+            if self.traced {
                 trace.extend(trails::positions(&self.world));
             }
-            time = stopwatch().saturating_sub(began);
         }
         Done {
             world: self.world,
+            exact: self.exact,
             due: self.steps,
             taken,
             time,
@@ -106,6 +121,7 @@ impl Session {
             let copy = self.world.clone();
             Job {
                 world: std::mem::replace(&mut self.world, copy),
+                exact: self.exact.clone(),
                 steps,
                 traced: self.display.trails,
                 edition: self.edition,
@@ -121,6 +137,7 @@ impl Session {
         }
         self.under_way = false;
         self.world = done.world;
+        self.exact = done.exact;
         if done.taken > 0 {
             self.figures.cost.add(done.time / done.taken);
         }

@@ -12,6 +12,7 @@
 mod ball;
 mod compare;
 mod edit;
+mod exact;
 mod figures;
 mod files;
 mod forces;
@@ -23,10 +24,12 @@ mod opening;
 mod pick;
 mod picture;
 mod playback;
+mod sample;
 #[cfg(test)]
 mod tests;
 mod ties;
 mod trails;
+mod variants;
 mod walls;
 
 use std::time::Duration;
@@ -36,6 +39,7 @@ use sim_core::{Collision, FixedStep, Method, Settings, World};
 
 use ball::Balls;
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
+pub use exact::Exact;
 pub use figures::{Drift, Figures, Reference};
 use impacts::Impacts;
 pub use job::{Done, Job, STEP_BUDGET};
@@ -44,7 +48,12 @@ use opening::Opening;
 pub use opening::Outlook;
 pub use picture::{BvhView, Display};
 pub use playback::Playback;
+pub use sample::{COLUMNS, Column, Sample, csv_head, csv_line};
 use trails::Trails;
+pub use variants::{
+    Halt, MOST_VARIANTS, PRESETS, Preset, Runner, Snapshot, Variant, VariantJob, Variants,
+    VariantsDone, full_name,
+};
 
 use crate::camera::Camera;
 
@@ -88,6 +97,9 @@ pub struct Session {
     balls: Balls,
     opening: Opening,
     playback: Playback,
+    /// Where bodies would be without errors.
+    exact: Exact,
+    variants: Variants,
     /// Simulated seconds in a real one.
     speed: f64,
     /// Masses of bodies made immovable, kg, by name: what they get back.
@@ -116,6 +128,7 @@ impl Session {
         let clock = clock(scene.dt, 1.0)?;
         let mut session = Self {
             reference: Reference::of(&world),
+            exact: Exact::of(&world),
             scene,
             world,
             clock,
@@ -127,6 +140,7 @@ impl Session {
             balls: Balls::default(),
             opening: Opening::default(),
             playback: Playback::default(),
+            variants: Variants::default(),
             speed: 1.0,
             masses: std::collections::BTreeMap::new(),
             selection: None,
@@ -141,7 +155,7 @@ impl Session {
         // Where paths are curved, they show what a method does; those of a crowd hide it.
         let few = session.world.len() <= MOST_TRAILS;
         session.show_trails(few && !session.scene.forces.is_empty());
-        session.playback.begin(&session.world);
+        session.begin_record();
         session.frame_opening();
         Ok(session)
     }
@@ -169,6 +183,11 @@ impl Session {
     /// How far energy and momentum are from where they should be.
     pub fn drift(&self) -> Drift {
         self.reference.drift(&self.world)
+    }
+
+    /// Largest distance of a body from its exact place, m, among those whose place is known.
+    pub fn path_error(&self) -> Option<f64> {
+        self.playback.sample().and_then(|sample| sample.error)
     }
 
     /// The states kept of this run.
@@ -320,7 +339,7 @@ impl Session {
         if settings.dt != self.clock.dt() {
             self.clock = clock;
         }
-        self.playback.begin(&self.world);
+        self.begin_record();
         Ok(())
     }
 
@@ -334,15 +353,22 @@ impl Session {
     /// Leaves the layout state: physics begins here.
     fn begin(&mut self) {
         self.disown_jobs();
-        self.reference = Reference::of(&self.world);
         self.figures = Figures::default();
         self.compare.forget();
         self.impacts = Impacts::default();
-        self.playback.begin(&self.world);
+        self.begin_record();
         self.notices.dismiss("step");
         if self.display.trails {
             self.trails.begin(&self.world);
         }
+    }
+
+    /// Begins anew what is kept, compared and measured of the run, from the world as it is now.
+    fn begin_record(&mut self) {
+        self.reference = Reference::of(&self.world);
+        self.exact = Exact::of(&self.world);
+        self.playback.begin(&self.world, &mut self.exact);
+        self.variants.begin(&self.world);
     }
 
     /// Takes a world freshly made from the scene.

@@ -71,6 +71,7 @@ impl Session {
         let mut picture = Picture {
             camera: self.camera,
             models: Vec::with_capacity(self.world.len()),
+            ghosts: Vec::new(),
             panes: Vec::new(),
             lines: Vec::new(),
             marks: Vec::new(),
@@ -79,12 +80,7 @@ impl Session {
         };
         for i in 0..self.world.len() {
             let selected = self.selection == Some(i);
-            let mesh = match self.world.shape(i) {
-                Some(Shape::Mesh(mesh)) => Some(mesh.clone()),
-                Some(&Shape::Sphere { radius }) => self.balls.mesh(radius),
-                Some(Shape::HalfSpace { .. }) | None => None,
-            };
-            if let Some(mesh) = mesh {
+            if let Some(mesh) = self.body_mesh(i) {
                 picture.models.push(Model {
                     mesh,
                     position: self.shown_position(i),
@@ -104,6 +100,7 @@ impl Session {
             }
         }
         self.add_dots(&mut picture.lines);
+        self.add_ghosts(&mut picture.ghosts, &mut picture.lines);
         if self.display.ties {
             self.add_ties(&mut picture.lines);
         }
@@ -112,6 +109,15 @@ impl Session {
             self.add_impacts(&mut picture.marks);
         }
         picture
+    }
+
+    /// What body `i` is drawn as, if it is a mesh or a sphere.
+    pub(super) fn body_mesh(&mut self, i: usize) -> Option<std::sync::Arc<sim_core::Mesh>> {
+        match self.world.shape(i) {
+            Some(Shape::Mesh(mesh)) => Some(mesh.clone()),
+            Some(&Shape::Sphere { radius }) => self.balls.mesh(radius),
+            Some(Shape::HalfSpace { .. }) | None => None,
+        }
     }
 
     /// Colour of body `i`, sRGB.

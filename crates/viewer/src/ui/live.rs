@@ -117,10 +117,11 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     field::figure(
         ui,
         "Path error",
-        "Largest distance of a body from its exact path, known until the first collision \
-         and under constant forces only",
-        drift
-            .position
+        "Largest distance of a body from where it would be exactly, of those for which that is known: \
+         under constant forces, off floors and walls too, springs to points, linear drag and one \
+         attraction, until bodies come together",
+        session
+            .path_error()
             .map_or_else(none, |away| format!("{} m", number::figure(away))),
     );
 }

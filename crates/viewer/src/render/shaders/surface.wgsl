@@ -50,6 +50,14 @@ fn fs_plain(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec
     return vec4f(surface(in, front), 1.0);
 }
 
+// What is seen through: faint where it is looked at straight, dense towards its outline.
+@fragment
+fn fs_ghost(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let grazing = 1.0 - abs(dot(normalize(in.normal), normalize(in.position)));
+    let opacity = 0.34 + 0.4 * grazing * grazing;
+    return vec4f(surface(in, front) * opacity, opacity);
+}
+
 const EDGE = vec3f(0.010, 0.014, 0.022);
 // Half the width of an edge, of which each side's triangle draws one, pixels.
 const EDGE_HALF_WIDTH = 0.6;
