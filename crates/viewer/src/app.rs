@@ -14,7 +14,9 @@ use winit::window::{Window, WindowId};
 
 use crate::failure::Failure;
 use crate::gpu::{Gpu, UiFrame};
-use crate::session::{Done, Job, Outlook, STEP_BUDGET, Session, State, Trial, Tried};
+use crate::session::{
+    Done, Job, Outlook, STEP_BUDGET, Session, State, Trial, Tried, VariantJob, VariantsDone,
+};
 use crate::stopwatch::Stopwatch;
 use crate::ui::{self, Ui};
 use crate::worker::Worker;
@@ -33,6 +35,7 @@ pub fn run(scene: Scene) -> Result<(), Failure> {
         ui: Ui::default(),
         worker: None,
         measurer: None,
+        runner: None,
         scout: None,
         stopwatch: Stopwatch::start(),
         proxy: event_loop.create_proxy(),
@@ -58,6 +61,8 @@ struct App {
     worker: Option<Worker<Job, Done>>,
     /// Measures naive against BVH; none while that is off.
     measurer: Option<Worker<Trial, Tried>>,
+    /// Runs the variants; none while there are none.
+    runner: Option<Worker<VariantJob, VariantsDone>>,
     /// Looks ahead for the opening view; none while that is settled.
     scout: Option<Worker<Outlook, Outlook>>,
     stopwatch: Stopwatch,
@@ -173,6 +178,35 @@ impl App {
         }
     }
 
+    /// Lets variants come up with the run, never waiting for them.
+    fn run_variants(&mut self) {
+        if let Some(runner) = &mut self.runner {
+            if let Some(done) = runner.result(Duration::ZERO) {
+                self.session.accept_variants(done);
+            } else if runner.is_gone() {
+                self.runner = None;
+                self.session.drop_variants();
+                let text =
+                    "A variant broke down. This is a fault of the program: please report it.";
+                self.session.notices().error("compare", text.to_owned());
+            }
+        }
+        if self.session.variants().is_empty() {
+            self.runner = None;
+        } else if self.runner.as_ref().is_none_or(|runner| !runner.is_busy())
+            && let Some(job) = self.session.variants_due()
+        {
+            if self.runner.is_none() {
+                let run = |job: VariantJob, time: &Stopwatch| job.run(|| time.read());
+                self.runner = Worker::start("variants", run).ok();
+            }
+            match &mut self.runner {
+                Some(runner) => runner.hand_over(job),
+                None => self.session.drop_variants(),
+            }
+        }
+    }
+
     /// Lets the opening view of a scene just opened come, never waiting for it.
     fn look_ahead(&mut self) {
         if let Some(outlook) = self.session.outlook() {
@@ -198,6 +232,7 @@ impl App {
         let elapsed = now.saturating_sub(self.last_frame);
         self.steps(elapsed);
         self.measure(elapsed);
+        self.run_variants();
         self.look_ahead();
         self.session.notices().pass(elapsed);
         self.last_frame = now;
@@ -234,6 +269,8 @@ impl App {
         let compare = &self.session.compare;
         let measuring = compare.on && (compare.is_under_way() || self.session.wants_trial());
         if self.session.state() == State::Running && shown {
+            self.schedule(now + SHORTEST_FRAME);
+        } else if shown && self.session.awaits_variants() {
             self.schedule(now + SHORTEST_FRAME);
         } else if self.session.state() == State::Running
             || self.session.awaits_steps()

@@ -17,6 +17,20 @@ pub fn figure(value: f64) -> String {
     }
 }
 
+/// Two significant digits, for tables in little room.
+pub fn short(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 {
+        "0".to_owned()
+    } else if !(1e-2..1e3).contains(&size) {
+        format!("{value:.1e}")
+    } else if size < 10.0 {
+        format!("{value:.2}")
+    } else {
+        format!("{value:.0}")
+    }
+}
+
 /// A duration in seconds with the unit that suits it.
 pub fn seconds(value: f64) -> String {
     if value < 1e-3 {

@@ -86,6 +86,38 @@ impl Session {
             Err(error) => self.notices.error("save", error.to_string()),
         }
     }
+
+    /// Writes something that was made of the run beside the program: to a new file of the scene's name
+    /// and this ending, which is told.
+    pub fn export(&mut self, ending: &str, bytes: &[u8]) {
+        let stem: String = self
+            .scene
+            .name
+            .chars()
+            .map(|c| {
+                if c.is_alphanumeric() || "-_ ".contains(c) {
+                    c
+                } else {
+                    '-'
+                }
+            })
+            .collect();
+        let names = std::iter::once(format!("{stem}.{ending}"))
+            .chain((2..).map(|n| format!("{stem}-{n}.{ending}")));
+        let mut free = names.map(PathBuf::from).filter(|path| !path.exists());
+        let Some(path) = free.next() else { return };
+        let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
+        match scene::file::write(&path, bytes) {
+            Ok(()) => {
+                let text = format!("Wrote {}.", shown::path(&whole));
+                self.notices.info("export", text);
+            }
+            Err(error) => {
+                let text = format!("Cannot write {}: {error}", shown::path(&whole));
+                self.notices.error("export", text);
+            }
+        }
+    }
 }
 
 fn is_scene_file(path: &Path) -> bool {

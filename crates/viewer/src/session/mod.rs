@@ -10,6 +10,7 @@
 //! [`Session::due`] for how time comes in and steps are taken.
 
 mod ball;
+mod charts;
 mod compare;
 mod edit;
 mod exact;
@@ -38,6 +39,7 @@ use scene::{Scene, SceneBody};
 use sim_core::{Collision, FixedStep, Method, Settings, World};
 
 use ball::Balls;
+pub use charts::{CHARTS, Chart, Curve, on_dark};
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
 pub use exact::Exact;
 pub use figures::{Drift, Figures, Reference};
@@ -154,7 +156,9 @@ impl Session {
         };
         // Where paths are curved, they show what a method does; those of a crowd hide it.
         let few = session.world.len() <= MOST_TRAILS;
-        session.show_trails(few && !session.scene.forces.is_empty());
+        let pushed = |i| session.world.force(i) != sim_core::DVec3::ZERO;
+        let bent = !session.scene.forces.is_empty() || (0..session.world.len()).any(pushed);
+        session.show_trails(few && bent);
         session.begin_record();
         session.frame_opening();
         Ok(session)

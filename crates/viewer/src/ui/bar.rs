@@ -18,6 +18,7 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
                 ui.toggle_value(&mut state.help, "Keys")
                     .on_hover_text("All keys and mouse gestures (H)");
                 hiding(ui, &mut state.panel_hidden, "Panel", "Side panel (P)");
+                hiding(ui, &mut state.plots_hidden, "Plots", "Curves over time (G)");
                 hiding(ui, &mut state.live_hidden, "Live", "Live figures (L)");
                 ui.add_space(6.0);
                 if !behind(ui, session) {

@@ -14,7 +14,7 @@ struct Shortcut {
     act: fn(&mut Ui, &mut Session, Key),
 }
 
-static SHORTCUTS: [Shortcut; 14] = [
+static SHORTCUTS: [Shortcut; 15] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
@@ -92,6 +92,12 @@ static SHORTCUTS: [Shortcut; 14] = [
         label: "L",
         meaning: "live figures",
         act: |ui, _, _| ui.live_hidden ^= true,
+    },
+    Shortcut {
+        keys: &[Key::G],
+        label: "G",
+        meaning: "plots",
+        act: |ui, _, _| ui.plots_hidden ^= true,
     },
     Shortcut {
         keys: &[Key::H],

@@ -1,6 +1,6 @@
-//! Figures of the running world, over the picture.
+//! Figures of the running world.
 
-use egui::{Align2, Area, Color32, Frame, RichText};
+use egui::RichText;
 
 use super::{field, style};
 use crate::number;
@@ -9,25 +9,12 @@ use crate::session::Session;
 /// Pairs in overlap that are named; more would cover the picture.
 const OVERLAPS: usize = 4;
 
-/// Shows the figures in the lower left corner of the picture.
-pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &Session) {
-    Area::new(egui::Id::unique("live"))
-        .pivot(Align2::LEFT_BOTTOM)
-        .fixed_pos(over.left_bottom() + egui::vec2(10.0, -10.0))
-        .interactable(true)
-        .show(ctx, |ui| {
-            Frame::NONE
-                .fill(Color32::from_black_alpha(185))
-                .corner_radius(6)
-                .inner_margin(egui::Margin::symmetric(10, 8))
-                .show(ui, |ui| {
-                    ui.set_width(330.0_f32.min(over.width() - 40.0));
-                    ui.spacing_mut().item_spacing.y = 1.0;
-                    ui.spacing_mut().interact_size.y = 17.0;
-                    figures(ui, session);
-                    impacts(ui, session);
-                });
-        });
+/// Shows the figures.
+pub(super) fn show(ui: &mut egui::Ui, session: &Session) {
+    ui.spacing_mut().item_spacing.y = 1.0;
+    ui.spacing_mut().interact_size.y = 17.0;
+    figures(ui, session);
+    impacts(ui, session);
 }
 
 fn figures(ui: &mut egui::Ui, session: &Session) {

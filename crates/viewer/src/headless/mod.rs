@@ -1,5 +1,9 @@
 //! Runs and checks without a window, as text or JSON. Needs neither display nor graphics adapter.
 
+mod compare;
+
+pub use compare::{Form, compare};
+
 use std::fmt::{Display, Write};
 use std::io::Write as _;
 use std::path::Path;
@@ -11,7 +15,7 @@ use sim_core::{DVec3, StepError, World};
 use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
 use crate::number;
-use crate::session::{Drift, Exact, Reference};
+use crate::session::{Drift, Exact, Halt, Reference, Runner, csv_head, csv_line};
 use crate::stopwatch::Stopwatch;
 
 /// Final state of a run. Numbers are f64 and survive the way through JSON bit for bit.
@@ -126,6 +130,35 @@ pub fn run(
     } else {
         report.table(scene, &drift, seconds_per_step)
     })
+}
+
+/// Takes `steps` steps of a scene, or as many as there are before an interrupt; the figures of every
+/// state as CSV.
+pub fn run_csv(scene: &Scene, steps: u64, interrupt: &Interrupt) -> Result<String, Failure> {
+    let world = scene.world().map_err(Failure::refused)?;
+    let mut runner = Runner::stepping(&world, *world.settings()).map_err(Failure::refused)?;
+    interrupt
+        .listen()
+        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    let mut text = csv_head(false) + &csv_line(None, &runner.snapshot(None, 0).sample);
+    let mut progress = Progress::new(steps);
+    let stopwatch = Stopwatch::start();
+    for step in 1..=steps {
+        if interrupt.came() {
+            break;
+        }
+        match runner.step(&|| stopwatch.read()) {
+            Ok(snapshot) => text += &csv_line(None, &snapshot.sample),
+            Err(Halt::Step(error)) => {
+                progress.end();
+                return Err(Failure::Run(step_error(scene, &error)));
+            }
+            Err(Halt::Unknown) => break,
+        }
+        progress.at(step);
+    }
+    progress.end();
+    Ok(text)
 }
 
 /// Reads a mesh file; what is in it as JSON or as text.
