@@ -99,3 +99,10 @@ pub const PALETTE: [[f32; 3]; 8] = [
     [0.56, 0.77, 0.90],
     [0.62, 0.63, 0.65],
 ];
+
+/// An image as the bytes of a PNG file.
+pub fn png(image: &image::RgbaImage) -> Result<Vec<u8>, image::ImageError> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::Png)?;
+    Ok(bytes.into_inner())
+}

@@ -192,18 +192,39 @@ pub fn step_error(scene: &Scene, error: &StepError) -> String {
     format!(
         "scene `{}`: {}",
         shown::name(&scene.name),
-        with_name(scene, error.body(), error)
+        with_names(scene, error)
     )
 }
 
-/// An error's message with a body's name in place of its index.
-pub fn with_name(scene: &Scene, body: usize, error: &impl Display) -> String {
-    let name = scene.bodies.get(body).map_or("?", |body| &body.name);
-    error.to_string().replacen(
-        &format!("body {body}"),
-        &format!("body `{}`", shown::name(name)),
-        1,
-    )
+/// An error's message with the names of bodies in place of their indices.
+pub fn with_names(scene: &Scene, error: &impl Display) -> String {
+    let message = error.to_string();
+    let mut words = Vec::new();
+    // Whether the next number is a body, and whether one after it is as well.
+    let (mut one, mut more) = (false, false);
+    for word in message.split(' ') {
+        let end = word
+            .find(|c: char| !c.is_ascii_digit())
+            .unwrap_or(word.len());
+        let body = word[..end].parse::<usize>().ok().filter(|_| one);
+        match body.map(|body| scene.bodies.get(body)) {
+            Some(body) => {
+                let name = body.map_or("?", |body| &body.name);
+                words.push(format!("`{}`{}", shown::name(name), &word[end..]));
+                (one, more) = (more, false);
+            }
+            None => {
+                words.push(word.to_owned());
+                (one, more) = match word {
+                    "body" => (true, false),
+                    "bodies" => (true, true),
+                    "and" => (one, more),
+                    _ => (false, false),
+                };
+            }
+        }
+    }
+    words.join(" ")
 }
 
 fn to_json(report: &impl Serialize) -> String {

@@ -126,6 +126,7 @@ impl Renderer {
             if picture.grid {
                 self.ground.draw(&mut pass, &self.shadow);
             }
+            self.surface.draw_rims(&mut pass, &self.meshes);
             self.panes.draw(&mut pass);
             self.surface.draw_ghosts(&mut pass, &self.meshes);
             self.lines.draw(&mut pass);

@@ -9,6 +9,7 @@ use super::pipeline::{Drawing, shader};
 pub(super) struct Surface {
     opaque: Vec<(Which, wgpu::RenderPipeline)>,
     ghosts: Vec<(Which, wgpu::RenderPipeline)>,
+    rims: Vec<(Which, wgpu::RenderPipeline)>,
 }
 
 impl Surface {
@@ -43,14 +44,41 @@ impl Surface {
             };
             (which, drawing.pipeline(device))
         };
+        let rim = |which: Which, vertex| {
+            let drawing = Drawing {
+                label: "rim of the selection",
+                shader: &module,
+                vertex,
+                fragment: "fs_rim",
+                groups: &[Some(frame.layout())],
+                buffers: &meshes::layouts(),
+                topology: wgpu::PrimitiveTopology::TriangleList,
+                blended: true,
+                culled: which.solid,
+                on_top: false,
+                samples,
+            };
+            (which, drawing.pipeline(device))
+        };
+        let selected = Which::OPAQUE
+            .into_iter()
+            .filter(|w| w.look == Look::Selected);
+        let sides = ["vs_rim0", "vs_rim1", "vs_rim2", "vs_rim3"];
+        let rims = selected.flat_map(|which| sides.map(|side| rim(which, side)));
         Self {
             opaque: Which::OPAQUE.map(pipeline).into(),
             ghosts: Which::GHOSTS.map(pipeline).into(),
+            rims: rims.collect(),
         }
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, meshes: &Meshes) {
         draw(&self.opaque, pass, meshes);
+    }
+
+    /// A rim around what is selected, after all that is opaque.
+    pub(super) fn draw_rims(&self, pass: &mut wgpu::RenderPass<'_>, meshes: &Meshes) {
+        draw(&self.rims, pass, meshes);
     }
 
     /// After everything that is seen through ghosts.

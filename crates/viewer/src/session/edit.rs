@@ -152,7 +152,7 @@ impl Session {
                 self.begin_record();
             }
             Err(error) => {
-                let text = headless::with_name(&self.scene, i, &error);
+                let text = headless::with_names(&self.scene, &error);
                 self.notices.error(field, text);
             }
         }

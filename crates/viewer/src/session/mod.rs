@@ -31,6 +31,7 @@ mod tests;
 mod ties;
 mod trails;
 mod variants;
+mod view;
 mod walls;
 
 use std::time::Duration;
@@ -56,6 +57,7 @@ pub use variants::{
     Halt, MOST_VARIANTS, PRESETS, Preset, Runner, Snapshot, Variant, VariantJob, Variants,
     VariantsDone, full_name,
 };
+pub use view::OutOfView;
 
 use crate::camera::Camera;
 
@@ -102,6 +104,7 @@ pub struct Session {
     /// Where bodies would be without errors.
     exact: Exact,
     variants: Variants,
+    view: view::View,
     /// Simulated seconds in a real one.
     speed: f64,
     /// Masses of bodies made immovable, kg, by name: what they get back.
@@ -143,6 +146,7 @@ impl Session {
             opening: Opening::default(),
             playback: Playback::default(),
             variants: Variants::default(),
+            view: view::View::default(),
             speed: 1.0,
             masses: std::collections::BTreeMap::new(),
             selection: None,
@@ -156,11 +160,10 @@ impl Session {
         };
         // Where paths are curved, they show what a method does; those of a crowd hide it.
         let few = session.world.len() <= MOST_TRAILS;
-        let pushed = |i| session.world.force(i) != sim_core::DVec3::ZERO;
-        let bent = !session.scene.forces.is_empty() || (0..session.world.len()).any(pushed);
-        session.show_trails(few && bent);
+        session.show_trails(few && session.is_pushed());
         session.begin_record();
         session.frame_opening();
+        session.view.home = Some(session.camera);
         Ok(session)
     }
 
@@ -228,6 +231,7 @@ impl Session {
     /// Selects a body, or none; an index without a body selects none.
     pub fn select(&mut self, body: Option<usize>) {
         self.selection = body.filter(|&i| i < self.world.len());
+        self.follow_anew();
     }
 
     /// The selected body as it was set up.
@@ -379,6 +383,7 @@ impl Session {
     fn adopt(&mut self, world: World) {
         self.world = world;
         self.state = State::Layout;
+        self.keep_up();
         self.select(self.selection);
         self.begin();
     }

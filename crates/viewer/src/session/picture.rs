@@ -68,6 +68,7 @@ impl Session {
         if self.display.bvh.shown {
             self.world.build_bvhs();
         }
+        self.keep_up();
         let mut picture = Picture {
             camera: self.camera,
             models: Vec::with_capacity(self.world.len()),

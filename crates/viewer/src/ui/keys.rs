@@ -14,7 +14,7 @@ struct Shortcut {
     act: fn(&mut Ui, &mut Session, Key),
 }
 
-static SHORTCUTS: [Shortcut; 15] = [
+static SHORTCUTS: [Shortcut; 17] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
@@ -50,6 +50,18 @@ static SHORTCUTS: [Shortcut; 15] = [
         label: "F",
         meaning: "frame",
         act: |_, session, _| session.frame(),
+    },
+    Shortcut {
+        keys: &[Key::V],
+        label: "V",
+        meaning: "follow",
+        act: |_, session, _| session.follow(!session.is_following()),
+    },
+    Shortcut {
+        keys: &[Key::Home],
+        label: "Home",
+        meaning: "opening view",
+        act: |_, session, _| session.go_home(),
     },
     Shortcut {
         keys: &[Key::B],

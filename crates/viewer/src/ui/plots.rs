@@ -63,15 +63,19 @@ impl Plots {
             ui.label(RichText::new("Choose a plot above.").weak());
             return;
         }
+        if !session.variants().is_empty() {
+            legend(ui, &session.curves(&CHARTS[0]));
+        }
+        let height = ui.available_height();
         ui.columns(count, |columns| {
             let mut columns = columns.iter_mut();
             if self.precision
                 && let Some(ui) = columns.next_back()
             {
-                precision(ui, session, room.y);
+                precision(ui, session, height);
             }
             for (ui, chart) in columns.zip(chosen) {
-                over_time(ui, chart, session, room.y);
+                over_time(ui, chart, session, height);
             }
         });
     }
@@ -92,14 +96,26 @@ fn heading(ui: &mut egui::Ui, title: &str, unit: &str, meaning: &str, curves: &[
         };
         ui.label(RichText::new(title).strong())
             .on_hover_text(meaning);
-        for curve in curves {
-            ui.label(
-                RichText::new(&curve.name)
-                    .small()
-                    .color(colour(curve.colour)),
-            );
-        }
+        names(ui, curves);
     });
+}
+
+/// The names of all runs, in the colours that they have in every plot.
+fn legend(ui: &mut egui::Ui, curves: &[Curve]) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = egui::vec2(10.0, 0.0);
+        names(ui, curves);
+    });
+}
+
+fn names(ui: &mut egui::Ui, curves: &[Curve]) {
+    for curve in curves {
+        ui.label(
+            RichText::new(&curve.name)
+                .small()
+                .color(colour(curve.colour)),
+        );
+    }
 }
 
 fn plot<'a>(id: &str, height: f32, logarithmic: bool) -> Plot<'a> {
@@ -115,14 +131,16 @@ fn plot<'a>(id: &str, height: f32, logarithmic: bool) -> Plot<'a> {
     if logarithmic {
         plot.y_grid_spacer(powers)
     } else {
-        plot
+        plot.y_grid_spacer(|input| round(input, 5.0))
     }
 }
 
 fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f32) {
     let top = ui.cursor().top();
     let curves = session.curves(chart);
-    heading(ui, chart.title, chart.unit, chart.meaning, &curves);
+    let alone = session.variants().is_empty();
+    let named = if alone { &curves[..] } else { &[] };
+    heading(ui, chart.title, chart.unit, chart.meaning, named);
     let height = height - (ui.cursor().top() - top);
     if curves.iter().all(|curve| curve.points.len() < 2) {
         let why = match session.state() {
@@ -140,6 +158,7 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
     let plot = plot(chart.title, height, logarithmic)
         .link_axis(group, Vec2b::new(true, false))
         .link_cursor(group, Vec2b::new(true, false))
+        .x_grid_spacer(|input| round(input, 3.0))
         .custom_x_axes(vec![
             AxisHints::new_x().formatter(|mark, _| format!("{} s", tidy(mark.value))),
         ])
@@ -196,7 +215,7 @@ fn precision(ui: &mut egui::Ui, session: &Session, height: f32) {
     let top = ui.cursor().top();
     let runs = session.work_precision();
     let meaning = "Down and to the left is better: less error in less time";
-    heading(ui, "Speed against error", "", meaning, &runs);
+    heading(ui, "Speed against error", "", meaning, &[]);
     let height = height - (ui.cursor().top() - top);
     if runs.is_empty() {
         let text = "Needs a run whose exact path is known.";
@@ -206,7 +225,7 @@ fn precision(ui: &mut egui::Ui, session: &Session, height: f32) {
     plot("precision", height, true)
         .custom_x_axes(vec![
             AxisHints::new_x()
-                .label("real time for a simulated second, s")
+                .label("s per simulated second")
                 .formatter(|mark, range| axis_text(mark, range, true)),
         ])
         .y_axis_label("largest error, m")
@@ -240,6 +259,22 @@ fn flat(curves: &[Curve]) -> Option<(f64, f64)> {
     let size = least.abs().max(most.abs());
     let shown = if size > 0.0 { 1e-6 * size } else { 1.0 };
     (most - least < shown).then_some((0.5 * (least + most), shown))
+}
+
+/// At most so many grid lines and one more, at round numbers.
+fn round(input: GridInput, most: f64) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    let least = ((high - low) / most).max(f64::MIN_POSITIVE);
+    let power = 10_f64.powf(least.log10().floor());
+    let times = [1.0, 2.0, 5.0, 10.0].into_iter();
+    let step = times.map(|n| n * power).find(|step| *step >= least);
+    let step_size = step.unwrap_or(least);
+    let first = (low / step_size).ceil();
+    (0..20)
+        .map(|n| (first + f64::from(n)) * step_size)
+        .take_while(|value| *value <= high)
+        .map(|value| GridMark { value, step_size })
+        .collect()
 }
 
 /// Grid lines at whole powers of ten, as many as fit; at 2 and 5 times these too, where there are few.

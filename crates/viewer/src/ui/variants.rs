@@ -125,8 +125,11 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
             ui.end_row();
             let dt = session.world().settings().dt;
             let cost = session.figures().cost.seconds();
-            ui.label(RichText::new(own).strong())
-                .on_hover_text("The run itself");
+            run_name(
+                ui,
+                RichText::new(format!("⏺ {own}")).strong(),
+                "The run itself",
+            );
             figure(ui, metres(session.path_error()), String::new());
             let drift = session.drift();
             let energy = drift.relative_energy.or(drift.energy);
@@ -147,7 +150,7 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
                 let [red, green, blue] = on_dark(variant.colour).map(|part| (255.0 * part) as u8);
                 let text = RichText::new(format!("⏺ {name}"));
                 let text = text.color(egui::Color32::from_rgb(red, green, blue));
-                ui.add(egui::Label::new(text).truncate());
+                run_name(ui, text, name);
                 if let Some(why) = &variant.failure {
                     let text = format!("stopped at {:.3} s", variant.time());
                     ui.label(RichText::new(text).color(super::style::AMBER))
@@ -195,6 +198,17 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
     {
         session.compare_with([]);
     }
+}
+
+/// The name of a run, cut where it is too long.
+fn run_name(ui: &mut egui::Ui, name: RichText, more: &str) {
+    let size = egui::vec2(112.0, ui.spacing().interact_size.y);
+    let left = egui::Layout::left_to_right(egui::Align::Center);
+    ui.allocate_ui_with_layout(size, left, |ui| {
+        ui.set_min_width(size.x);
+        ui.add(egui::Label::new(name).truncate())
+            .on_hover_text(more);
+    });
 }
 
 fn figure(ui: &mut egui::Ui, text: String, more: String) {
