@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use egui::ViewportId;
-use scene::Scene;
+use scene::{Scene, shown};
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::{StartCause, WindowEvent};
@@ -15,7 +15,8 @@ use winit::window::{Window, WindowId};
 use crate::failure::Failure;
 use crate::gpu::{Gpu, UiFrame};
 use crate::session::{
-    Done, Job, Outlook, STEP_BUDGET, Session, State, Trial, Tried, VariantJob, VariantsDone,
+    Done, Job, Leaving, Outlook, STEP_BUDGET, Session, State, Trial, Tried, VariantJob,
+    VariantsDone,
 };
 use crate::stopwatch::Stopwatch;
 use crate::ui::{self, Ui};
@@ -78,6 +79,8 @@ struct App {
 /// A window with all that is needed to draw in it.
 struct Open {
     window: Arc<Window>,
+    /// What stands over the window.
+    title: String,
     egui: egui_winit::State,
     gpu: Gpu,
 }
@@ -104,7 +107,12 @@ impl Open {
             None,
             Some(gpu.max_texture_side()),
         );
-        Ok(Self { window, egui, gpu })
+        Ok(Self {
+            window,
+            title: String::new(),
+            egui,
+            gpu,
+        })
     }
 }
 
@@ -235,6 +243,10 @@ impl App {
         self.run_variants();
         self.look_ahead();
         self.session.notices().pass(elapsed);
+        self.session.settle(elapsed);
+        if self.session.is_closing() {
+            return event_loop.exit();
+        }
         self.last_frame = now;
 
         let Some(open) = &mut self.open else { return };
@@ -255,6 +267,11 @@ impl App {
                 pixels_per_point: output.pixels_per_point,
             };
             let pixels = [pixels.x.round() as u32, pixels.y.round() as u32];
+            let title = title(&self.session);
+            if title != open.title {
+                open.window.set_title(&title);
+                open.title = title;
+            }
             open.gpu.paint(&self.session.picture(), pixels, frame)
         };
         if let Some(error) = open.gpu.take_error() {
@@ -276,6 +293,7 @@ impl App {
             || self.session.awaits_steps()
             || measuring
             || self.scout.is_some()
+            || self.session.is_settling()
             || self.session.notices().is_passing()
         {
             self.schedule(now + UNSEEN_FRAME);
@@ -327,7 +345,10 @@ impl ApplicationHandler<Redraw> for App {
             open.window.request_redraw();
         }
         match event {
-            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::CloseRequested => {
+                self.session.leave(Leaving::Close);
+                open.window.request_redraw();
+            }
             WindowEvent::Resized(_) | WindowEvent::Occluded(false) => open.window.request_redraw(),
             WindowEvent::DroppedFile(path) => {
                 self.session.take_in(&path);
@@ -351,6 +372,12 @@ impl ApplicationHandler<Redraw> for App {
             },
         });
     }
+}
+
+/// What stands over the window: the scene, marked when no file has its edits.
+fn title(session: &Session) -> String {
+    let mark = if session.is_changed() { "*" } else { "" };
+    format!("{}{mark} - Cowbell", shown::name(&session.scene().name))
 }
 
 /// The size of the window at first, in points: as large as is comfortable and the monitor has.

@@ -91,6 +91,7 @@ impl Session {
     pub fn set_colour(&mut self, colour: [f32; 3]) {
         if let Some(body) = self.selection.and_then(|i| self.scene.bodies.get_mut(i)) {
             body.colour = Some(colour);
+            self.edited();
         }
     }
 
@@ -148,6 +149,7 @@ impl Session {
                 self.disown_jobs();
                 if self.state == State::Layout {
                     keep(&mut self.scene.bodies[i]);
+                    self.edited();
                 }
                 self.begin_record();
             }
@@ -186,6 +188,7 @@ impl Session {
         match self.scene.world() {
             Ok(world) => {
                 self.notices.dismiss(about);
+                self.edited();
                 self.adopt(world);
                 true
             }

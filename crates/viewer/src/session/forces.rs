@@ -27,6 +27,7 @@ impl Session {
                 self.disown_jobs();
                 if self.state == State::Layout {
                     self.scene.forces = self.world.forces().to_vec();
+                    self.edited();
                 }
                 self.begin_record();
             }

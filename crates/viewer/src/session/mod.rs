@@ -18,6 +18,7 @@ mod figures;
 mod files;
 mod forces;
 mod framing;
+mod history;
 mod impacts;
 mod job;
 mod notice;
@@ -44,6 +45,7 @@ pub use charts::{CHARTS, Chart, Curve, on_dark};
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
 pub use exact::Exact;
 pub use figures::{Drift, Figures, Reference};
+pub use history::Leaving;
 use impacts::Impacts;
 pub use job::{Done, Job, STEP_BUDGET};
 pub use notice::{Notice, Notices, Remedy};
@@ -105,6 +107,7 @@ pub struct Session {
     exact: Exact,
     variants: Variants,
     view: view::View,
+    history: history::History,
     /// Simulated seconds in a real one.
     speed: f64,
     /// Masses of bodies made immovable, kg, by name: what they get back.
@@ -132,6 +135,7 @@ impl Session {
         let world = scene.world()?;
         let clock = clock(scene.dt, 1.0)?;
         let mut session = Self {
+            history: history::History::begin(&scene),
             reference: Reference::of(&world),
             exact: Exact::of(&world),
             scene,
@@ -336,6 +340,7 @@ impl Session {
         self.scene.method = settings.method;
         self.scene.collision = settings.collision;
         self.scene.tolerance = settings.tolerance;
+        self.edited();
         self.notices.dismiss("settings");
         self.figures = Figures::default();
     }

@@ -1,6 +1,7 @@
 //! Naive against BVH: what an answer costs each way, on the bodies that are near each other now.
 
 use egui::{Grid, RichText};
+use scene::shown;
 
 use super::style;
 use crate::number;
@@ -15,7 +16,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     if !session.compare.on {
         return;
     }
-    let name = |i: usize| session.scene().bodies[i].name.as_str();
+    let name = |i: usize| shown::name(&session.scene().bodies[i].name);
     let now = match session.contest() {
         Contest::NoPair if session.selection().is_some() => {
             "The selected body has no other to meet.".to_owned()
@@ -80,7 +81,8 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
         "now".to_owned()
     };
     let meet = if last.meet { "meet" } else { "do not meet" };
-    let text = format!("{} and {} {meet}, as of {when}.", first.name, second.name);
+    let [first, second] = [first, second].map(|body| shown::name(&body.name));
+    let text = format!("{first} and {second} {meet}, as of {when}.");
     ui.label(RichText::new(text).weak())
         .on_hover_text("Both ways agree. The age is simulated time.");
 }

@@ -1,6 +1,7 @@
 //! The forces of the scene: one block of fields each, and a list of those that can be added.
 
 use egui::{ComboBox, RichText};
+use scene::shown;
 use sim_core::{DVec3, Force};
 
 use super::field;
@@ -26,7 +27,7 @@ fn list(ui: &mut egui::Ui, session: &mut Session) {
         .scene()
         .bodies
         .iter()
-        .map(|b| b.name.clone())
+        .map(|b| shown::name(&b.name))
         .collect();
     for (i, force) in session.world().forces().to_vec().into_iter().enumerate() {
         ui.push_id(i, |ui| {

@@ -1,7 +1,7 @@
 //! Keys: one table that is obeyed, listed below the picture and explained in a window.
 
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Key, Panel, RichText, TextStyle};
+use egui::{Key, Modifiers, Panel, RichText, TextStyle};
 
 use super::Ui;
 use crate::session::Session;
@@ -119,7 +119,23 @@ static SHORTCUTS: [Shortcut; 17] = [
     },
 ];
 
-static GESTURES: [(&str, &str); 6] = [
+/// What is done with the control or command key held.
+const WITH_CTRL: [(Modifiers, Key, fn(&mut Session)); 4] = [
+    // With Shift first, since without it does not look at Shift.
+    (
+        Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        Key::Z,
+        Session::redo,
+    ),
+    (Modifiers::COMMAND, Key::Z, Session::undo),
+    (Modifiers::COMMAND, Key::Y, Session::redo),
+    (Modifiers::COMMAND, Key::S, Session::save_own),
+];
+
+static GESTURES: [(&str, &str); 9] = [
+    ("Ctrl + Z", "take an edit back"),
+    ("Ctrl + Shift + Z, Ctrl + Y", "do it again"),
+    ("Ctrl + S", "save the scene"),
     ("Click", "select a body"),
     ("Drag left or right", "orbit"),
     ("Drag middle, Shift + drag", "pan"),
@@ -132,6 +148,14 @@ static GESTURES: [(&str, &str); 6] = [
 pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session) {
     if ctx.egui_wants_keyboard_input() {
         return;
+    }
+    if session.leaving().is_some() {
+        return;
+    }
+    for (modifiers, key, act) in WITH_CTRL {
+        if ctx.input_mut(|input| input.consume_key(modifiers, key)) {
+            act(session);
+        }
     }
     for shortcut in &SHORTCUTS {
         for &key in shortcut.keys {

@@ -1,6 +1,7 @@
 //! Figures of the running world.
 
 use egui::RichText;
+use scene::shown;
 
 use super::{field, style};
 use crate::number;
@@ -126,7 +127,7 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
             .scene()
             .bodies
             .get(i)
-            .map_or("?", |b| b.name.as_str())
+            .map_or_else(|| "?".to_owned(), |b| shown::name(&b.name))
     };
     if let Some(impact) = world.last_impact() {
         let (a, b) = impact.bodies;

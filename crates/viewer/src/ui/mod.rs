@@ -16,6 +16,7 @@ mod forces;
 mod keys;
 mod live;
 mod plots;
+mod question;
 mod scene;
 mod simulation;
 mod style;
@@ -63,6 +64,7 @@ impl Ui {
         }
         let rect = viewport::show(root, session, picture);
         banner::show(root.ctx(), rect, session);
+        question::show(root.ctx(), session);
         keys::show_help(root.ctx(), &mut self.help);
         rect
     }
