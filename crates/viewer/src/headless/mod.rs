@@ -466,3 +466,27 @@ impl CheckReport {
         text
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::{Scene, with_names};
+
+    #[test]
+    fn errors_name_every_body_and_no_other_number() {
+        let text = "rate = 60\n[[body]]\nname = \"body 1\"\nmesh = \"cube.obj\"\n[[body]]\nname = \"wall\"\nmesh = \"cube.obj\"";
+        let scene = Scene::parse(text, Path::new("s.toml")).expect("a scene");
+        for (message, named) in [
+            (
+                "step 3: body 1 is squeezed between bodies 0 and 1, which nothing stops",
+                "step 3: body `wall` is squeezed between bodies `body 1` and `wall`, which nothing stops",
+            ),
+            ("body 0: mass is 0", "body `body 1`: mass is 0"),
+            ("body 7 in 40 iterations", "body `?` in 40 iterations"),
+            ("nobody 1, and 2 bodies", "nobody 1, and 2 bodies"),
+        ] {
+            assert_eq!(with_names(&scene, &message), named);
+        }
+    }
+}

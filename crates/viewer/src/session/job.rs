@@ -7,13 +7,14 @@
 
 use std::time::Duration;
 
-use sim_core::{DVec3, StepError, World};
+use sim_core::{Collision, DVec3, StepError, World};
 
 use super::playback::Moment;
 use super::{
-    Exact, Impacts, MAX_RATE, MIN_RATE, Remedy, Sample, Session, State, Trails, impacts, trails,
+    Exact, Impacts, MAX_RATE, MIN_RATE, Remedy, Sample, Session, State, Trails, impacts, missed,
+    trails,
 };
-use crate::headless;
+use crate::{headless, number};
 
 /// Real time that the steps of one frame may take before the rest of them is given up: leaves
 /// half of a 60 Hz frame to the drawing.
@@ -63,6 +64,7 @@ impl Job {
             taken += 1;
             time += cost;
             let count = impacts.len() as u64;
+            let missed = missed::missed(&mut self.world, &impacts);
             impacts.drain(..impacts.len().saturating_sub(impacts::MOST));
             let error = self.exact.error(&self.world);
             let cost = Some(cost.as_secs_f64());
@@ -70,6 +72,7 @@ impl Job {
                 sample: Sample::of(&self.world, error, cost, count),
                 world: self.world.clone(),
                 impacts,
+                missed,
             });
             if self.traced {
                 trace.extend(trails::positions(&self.world));
@@ -148,6 +151,7 @@ impl Session {
         for moment in &done.moments {
             self.impacts.extend(&moment.impacts, self.world.time());
         }
+        self.tell_missed(&done.moments);
         self.playback.extend(done.moments);
         match done.error {
             None if self.state == State::Running => {
@@ -166,6 +170,26 @@ impl Session {
                 }
             }
         }
+    }
+
+    /// Says what steps have not seen, and what would see it.
+    fn tell_missed(&mut self, moments: &[Moment]) {
+        let Some(last) = moments.iter().flat_map(|moment| &moment.missed).last() else {
+            return;
+        };
+        let count = moments
+            .iter()
+            .map(|moment| moment.missed.len())
+            .sum::<usize>()
+            + self.playback.missed_times().count();
+        let bodies = &self.scene.bodies;
+        let mut text = last.text(|i| bodies.get(i).map_or_else(String::new, |b| b.name.clone()));
+        if count > 1 {
+            text += &format!(" It is the {} such pass.", number::ordinal(count));
+        }
+        self.notices.error("missed", text);
+        let remedy = Remedy::Collision(Collision::Continuous);
+        self.notices.offer("missed", remedy);
     }
 
     /// Holds still at a state that has been kept.

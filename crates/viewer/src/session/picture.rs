@@ -105,6 +105,13 @@ impl Session {
         if self.display.ties {
             self.add_ties(&mut picture.lines);
         }
+        let Picture {
+            ghosts,
+            lines,
+            marks,
+            ..
+        } = &mut picture;
+        self.add_missed(ghosts, lines, marks);
         self.add_walls(&mut picture);
         if self.display.impacts {
             self.add_impacts(&mut picture.marks);

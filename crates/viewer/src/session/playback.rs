@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 
 use sim_core::{Impact, World};
 
-use super::{Exact, Sample};
+use super::{Exact, Missed, Sample};
 
 /// The most states kept, and the most bodies in all of them together.
 const MOST_STATES: usize = 3600;
@@ -18,6 +18,8 @@ pub(super) struct Moment {
     pub(super) world: World,
     pub(super) impacts: Vec<Impact>,
     pub(super) sample: Sample,
+    /// What its step has not seen.
+    pub(super) missed: Vec<Missed>,
 }
 
 /// The states since the start or the last change, the oldest first, and the one that is looked at.
@@ -36,6 +38,7 @@ impl Playback {
             sample: Sample::of(world, exact.error(world), None, 0),
             world: world.clone(),
             impacts: Vec::new(),
+            missed: Vec::new(),
         });
     }
 
@@ -116,6 +119,12 @@ impl Playback {
             (Some(before), len) if after == len || away(before) <= away(after) => before,
             _ => after,
         }
+    }
+
+    /// Simulated times at which bodies passed through each other unseen, s.
+    pub fn missed_times(&self) -> impl Iterator<Item = f64> {
+        let missed = self.moments.iter().flat_map(|moment| &moment.missed);
+        missed.map(|missed| missed.time)
     }
 
     /// Simulated times at which something hit something, s, in order of the steps.

@@ -9,10 +9,13 @@ use super::{STEP_BUDGET, Session, State};
 
 mod exact;
 mod forces;
+mod history;
+mod missed;
 mod opening;
 mod playback;
 mod shapes;
 mod variants;
+mod view;
 
 const FRAME: Duration = Duration::from_millis(17);
 

@@ -63,7 +63,7 @@ impl Session {
 
     /// Where what is followed is drawn, m.
     fn leader(&self) -> Option<DVec3> {
-        if let Some(selected) = self.selection {
+        if let Some(selected) = self.selection.filter(|&i| i < self.world.len()) {
             return Some(self.shown_position(selected));
         }
         let moving = (0..self.world.len()).filter(|&i| !self.is_static(i));

@@ -94,7 +94,8 @@ fn boxes(ui: &mut egui::Ui, session: &mut Session) {
         ui.add_enabled(
             !view.every_depth,
             Slider::new(&mut view.depth, 0..=levels.saturating_sub(1)),
-        );
+        )
+        .on_hover_text("Depth of the boxes drawn");
         ui.checkbox(&mut view.every_depth, "all");
     });
     tree(ui, session);

@@ -62,6 +62,15 @@ pub(super) fn scalar(
     changed.then_some(value)
 }
 
+/// Tells assistive technology what a list to choose from is about, and what is chosen.
+pub(super) fn named(list: &egui::Response, name: &str, chosen: &str) {
+    list.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, list.enabled(), name);
+        info.current_text_value = Some(chosen.to_owned());
+        info
+    });
+}
+
 /// A row that only shows a value.
 pub(super) fn figure(ui: &mut egui::Ui, name: &str, meaning: &str, value: impl Into<String>) {
     ui.horizontal(|ui| {

@@ -144,7 +144,7 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
     let height = height - (ui.cursor().top() - top);
     if curves.iter().all(|curve| curve.points.len() < 2) {
         let why = match session.state() {
-            State::Layout => "Start, and curves grow here.",
+            _ if session.playback().len() < 2 => "Start, and curves grow here.",
             _ if chart.title == "Path error" => "The exact path is not known here.",
             _ => "Nothing yet.",
         };

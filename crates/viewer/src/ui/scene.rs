@@ -44,7 +44,7 @@ fn gallery(ui: &mut egui::Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         field::label(ui, "Gallery", "Scenes that come with the program");
         let mut chosen = None;
-        ComboBox::from_id_salt("gallery")
+        let list = ComboBox::from_id_salt("gallery")
             .selected_text(shown::name(&session.scene().name))
             .width(ui.available_width() - 8.0)
             .height(340.0)
@@ -55,7 +55,9 @@ fn gallery(ui: &mut egui::Ui, session: &mut Session) {
                         chosen = Some(entry.name);
                     }
                 }
-            });
+            })
+            .response;
+        field::named(&list, "Gallery", &shown::name(&session.scene().name));
         if let Some(name) = chosen {
             session.leave(Leaving::Open(name.into()));
         }

@@ -3,6 +3,7 @@
 use egui::{ComboBox, DragValue, Grid, RichText};
 use sim_core::{Collision, METHODS, Settings};
 
+use super::field;
 use crate::number;
 use crate::session::{MAX_RATE, MIN_RATE, PRESETS, Session, on_dark};
 
@@ -12,7 +13,7 @@ pub(super) struct Choice(Option<Settings>);
 
 pub(super) fn show(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
     let own = *session.world().settings();
-    ComboBox::from_id_salt("presets")
+    let list = ComboBox::from_id_salt("presets")
         .selected_text("Compare…")
         .width(ui.available_width() - 8.0)
         .show_ui(ui, |ui| {
@@ -22,7 +23,9 @@ pub(super) fn show(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session
                     session.compare_with((preset.settings)(&own));
                 }
             }
-        });
+        })
+        .response;
+    field::named(&list, "Compare…", "");
     add(ui, choice, session);
     if session.variants().is_empty() {
         let text = "Variants run beside the scene, as ghosts in the picture and as curves in the \
@@ -40,7 +43,7 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
     settings.tolerance = own.tolerance;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        ComboBox::from_id_salt("variant method")
+        let list = ComboBox::from_id_salt("variant method")
             .selected_text(settings.method.title)
             .width(118.0)
             .height(340.0)
@@ -48,7 +51,9 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
                 for method in METHODS {
                     ui.selectable_value(&mut settings.method, method, method.title);
                 }
-            });
+            })
+            .response;
+        field::named(&list, "Integrator of the variant", settings.method.title);
         let now = 1.0 / settings.dt;
         let mut rate = now;
         let field = DragValue::new(&mut rate)
@@ -64,14 +69,20 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
         {
             settings.dt = 1.0 / rate;
         }
-        ComboBox::from_id_salt("variant collision")
+        let list = ComboBox::from_id_salt("variant collision")
             .selected_text(collision_name(settings.collision))
             .width(62.0)
             .show_ui(ui, |ui| {
                 for how in [Collision::Continuous, Collision::Bvh, Collision::Naive] {
                     ui.selectable_value(&mut settings.collision, how, collision_name(how));
                 }
-            });
+            })
+            .response;
+        field::named(
+            &list,
+            "Collisions of the variant",
+            collision_name(settings.collision),
+        );
         if ui
             .button("Add")
             .on_hover_text("Run the scene in this way too")
