@@ -46,10 +46,12 @@ fn go_on(window: &mut Harness<'_, (Ui, Session)>, time: f64) {
 }
 
 fn click(window: &mut Harness<'_, (Ui, Session)>, label: &str) {
-    let mut named = window.query_all_by_label(label);
-    // Not what only says the same.
-    let button = named.find(|node| node.accesskit_node().role() != Role::Label);
-    button.expect(label).click();
+    {
+        let mut named = window.query_all_by_label(label);
+        // Not what only says the same.
+        let button = named.find(|node| node.accesskit_node().role() != Role::Label);
+        button.expect(label).click();
+    }
     window.run();
 }
 

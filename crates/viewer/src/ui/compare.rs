@@ -62,6 +62,18 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
                 number::count,
             );
             row(ui, last, "Time", TIME, |cost| cost.seconds, number::seconds);
+            ui.label("Spread").on_hover_text(SPREAD);
+            let spread = |cost: &Cost| {
+                let [least, most] = cost.spread;
+                format!(
+                    "±{:.0} %",
+                    50.0 * (most - least) / cost.seconds.max(f64::MIN_POSITIVE)
+                )
+            };
+            ui.monospace(last.naive.as_ref().map_or_else(|| "-".to_owned(), spread));
+            ui.monospace(spread(&last.tree));
+            ui.label("");
+            ui.end_row();
         });
     if last.naive.is_none() {
         ui.label(
@@ -83,14 +95,20 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
     let meet = if last.meet { "meet" } else { "do not meet" };
     let [first, second] = [first, second].map(|body| shown::name(&body.name));
     let text = format!("{first} and {second} {meet}, as of {when}.");
-    ui.label(RichText::new(text).weak())
-        .on_hover_text("Both ways agree. The age is simulated time.");
+    if last.agree {
+        ui.label(RichText::new(text).weak())
+            .on_hover_text("Both ways agree. The age is simulated time.");
+    } else {
+        let text = "The two ways disagree. This is a fault of the program: please report it.";
+        ui.label(RichText::new(text).color(style::RED));
+    }
 }
 
 const TESTS: &str =
     "Naive: an edge with a triangle. BVH: two triangles whose boxes meet. Until the first hit.";
 const BOXES: &str = "Pairs of boxes compared";
-const TIME: &str = "Real time of one answer: the least of up to eight times, of short ones each over up to 200 answers";
+const TIME: &str = "Real time of one answer: the median of up to seven times, of short answers each the mean of up to 200";
+const SPREAD: &str = "Half of what lies between the least and the greatest of these times";
 
 fn row(
     ui: &mut egui::Ui,
