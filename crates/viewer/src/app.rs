@@ -285,11 +285,10 @@ impl App {
         }
         let compare = &self.session.compare;
         let measuring = compare.on && (compare.is_under_way() || self.session.wants_trial());
-        if self.session.state() == State::Running && shown {
+        let moves = self.session.state() == State::Running || self.session.awaits_variants();
+        if moves && shown {
             self.schedule(now + SHORTEST_FRAME);
-        } else if shown && self.session.awaits_variants() {
-            self.schedule(now + SHORTEST_FRAME);
-        } else if self.session.state() == State::Running
+        } else if moves
             || self.session.awaits_steps()
             || measuring
             || self.scout.is_some()

@@ -152,7 +152,7 @@ impl Missed {
     pub(super) fn text(&self, name: impl Fn(usize) -> String) -> String {
         let (still, mover) = self.bodies;
         format!(
-            "{} passed through {} at t = {:.4} s: a step of {} past {}, and no contact at its end.",
+            "{} passed through {} at t = {:.4} s: a step of {} past {}.",
             name(mover),
             name(still),
             self.time,

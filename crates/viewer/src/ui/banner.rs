@@ -35,7 +35,7 @@ pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session)
                                 format!("Reset, and step at {} Hz", number::count(rate))
                             }
                             Some(Remedy::Collision(_)) => {
-                                "Reset, and look for impacts within the step".to_owned()
+                                "Reset, and look within the step".to_owned()
                             }
                         };
                         if ui.button(text).clicked() {

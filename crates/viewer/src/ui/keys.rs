@@ -119,8 +119,11 @@ static SHORTCUTS: [Shortcut; 17] = [
     },
 ];
 
+/// What a key does.
+type Act = fn(&mut Session);
+
 /// What is done with the control or command key held.
-const WITH_CTRL: [(Modifiers, Key, fn(&mut Session)); 4] = [
+const WITH_CTRL: [(Modifiers, Key, Act); 4] = [
     // With Shift first, since without it does not look at Shift.
     (
         Modifiers::COMMAND.plus(Modifiers::SHIFT),

@@ -42,7 +42,7 @@ fn vs_edged(corner: Corner, instance: Instance, @builtin(vertex_index) index: u3
 
 // The same moved aside by some pixels and a little back, so that only a rim is seen beside the body.
 const RIM = 2.0;
-const BACK = 0.985;
+const BACK = 0.95;
 const RIM_COLOUR = vec3f(0.02, 0.14, 0.9);
 
 fn beside(corner: Corner, instance: Instance, side: vec2f) -> Varying {

@@ -21,7 +21,8 @@ pub(super) fn at(
 ) -> Option<(DVec3, DVec3)> {
     let r0 = place.length();
     let turn = place.cross(velocity).length();
-    if !(turn > 1e-12 * r0 * velocity.length()) {
+    let straight = turn <= 1e-12 * r0 * velocity.length();
+    if straight || !turn.is_finite() {
         return None;
     }
     let root = strength.sqrt();

@@ -216,14 +216,16 @@ impl Path {
                 Force::Gravity { acceleration } => push += acceleration,
                 _ if !acts => {}
                 Force::LinearDrag { coefficient, .. } => drag += coefficient,
-                Force::QuadraticDrag { coefficient, .. } if coefficient == 0.0 => {}
+                Force::QuadraticDrag {
+                    coefficient: 0.0, ..
+                } => {}
                 Force::Anchor {
                     anchor,
-                    rest_length,
+                    rest_length: 0.0,
                     stiffness: k,
                     damping,
                     ..
-                } if rest_length == 0.0 => {
+                } => {
                     stiffness += k;
                     pull += k * anchor;
                     drag += damping;
