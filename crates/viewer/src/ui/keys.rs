@@ -35,7 +35,7 @@ static SHORTCUTS: [Shortcut; 17] = [
     },
     Shortcut {
         keys: &[Key::PageDown],
-        label: "Page down",
+        label: "PgDn",
         meaning: "five steps",
         act: |_, session, _| super::time::five_steps(session),
     },
@@ -60,7 +60,7 @@ static SHORTCUTS: [Shortcut; 17] = [
     Shortcut {
         keys: &[Key::Home],
         label: "Home",
-        meaning: "opening view",
+        meaning: "home view",
         act: |_, session, _| session.go_home(),
     },
     Shortcut {
@@ -72,7 +72,7 @@ static SHORTCUTS: [Shortcut; 17] = [
     Shortcut {
         keys: &[Key::OpenBracket, Key::CloseBracket],
         label: "[ ]",
-        meaning: "depth of boxes",
+        meaning: "box depth",
         act: |_, session, key| session.step_depth(if key == Key::OpenBracket { -1 } else { 1 }),
     },
     Shortcut {
@@ -90,7 +90,7 @@ static SHORTCUTS: [Shortcut; 17] = [
     Shortcut {
         keys: &[Key::Escape],
         label: "Esc",
-        meaning: "select nothing",
+        meaning: "deselect",
         act: |_, session, _| session.select(None),
     },
     Shortcut {
@@ -102,7 +102,7 @@ static SHORTCUTS: [Shortcut; 17] = [
     Shortcut {
         keys: &[Key::L],
         label: "L",
-        meaning: "live figures",
+        meaning: "figures",
         act: |ui, _, _| ui.live_hidden ^= true,
     },
     Shortcut {

@@ -1,6 +1,6 @@
 //! The plots under the picture: curves over all kept time, and speed against error.
 
-use egui::{Color32, RichText, Sense, Vec2b};
+use egui::{Color32, Rangef, RichText, Sense, Vec2b};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points, VLine,
 };
@@ -126,13 +126,20 @@ fn plot<'a>(id: &str, height: f32, logarithmic: bool) -> Plot<'a> {
         .set_margin_fraction(egui::vec2(0.01, 0.08))
         .allow_boxed_zoom(false)
         .sense(Sense::click_and_drag())
-        .y_axis_min_width(44.0)
-        .y_axis_formatter(move |mark, range| axis_text(mark, range, logarithmic));
+        .custom_y_axes(vec![y_axis(logarithmic)]);
     if logarithmic {
         plot.y_grid_spacer(powers)
     } else {
         plot.y_grid_spacer(|input| round(input, 5.0))
     }
+}
+
+/// An axis with a number at each of its few lines.
+fn y_axis<'a>(logarithmic: bool) -> AxisHints<'a> {
+    AxisHints::new_y()
+        .min_thickness(44.0)
+        .label_spacing(Rangef::new(12.0, 18.0))
+        .formatter(move |mark, range| axis_text(mark, range, logarithmic))
 }
 
 fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f32) {
@@ -160,7 +167,9 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
         .link_cursor(group, Vec2b::new(true, false))
         .x_grid_spacer(|input| round(input, 3.0))
         .custom_x_axes(vec![
-            AxisHints::new_x().formatter(|mark, _| format!("{} s", tidy(mark.value))),
+            AxisHints::new_x()
+                .label_spacing(Rangef::new(30.0, 45.0))
+                .formatter(|mark, _| format!("{} s", tidy(mark.value))),
         ])
         .include_x(first)
         .include_x(last.max(first + 1e-9))
@@ -228,7 +237,7 @@ fn precision(ui: &mut egui::Ui, session: &Session, height: f32) {
                 .label("s per simulated second")
                 .formatter(|mark, range| axis_text(mark, range, true)),
         ])
-        .y_axis_label("largest error, m")
+        .custom_y_axes(vec![y_axis(true).label("largest error, m")])
         .x_grid_spacer(powers)
         .set_margin_fraction(egui::vec2(0.15, 0.15))
         .label_formatter(|hover| match hover {

@@ -113,7 +113,7 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
     Grid::new("variants")
         .num_columns(5)
         .striped(true)
-        .spacing([8.0, 3.0])
+        .spacing([6.0, 3.0])
         .show(ui, |ui| {
             for (title, meaning) in [
                 ("", ""),
@@ -213,7 +213,7 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
 
 /// The name of a run, cut where it is too long.
 fn run_name(ui: &mut egui::Ui, name: RichText, more: &str) {
-    let size = egui::vec2(112.0, ui.spacing().interact_size.y);
+    let size = egui::vec2(98.0, ui.spacing().interact_size.y);
     let left = egui::Layout::left_to_right(egui::Align::Center);
     ui.allocate_ui_with_layout(size, left, |ui| {
         ui.set_min_width(size.x);

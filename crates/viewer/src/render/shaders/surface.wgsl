@@ -91,7 +91,7 @@ fn fs_plain(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec
 @fragment
 fn fs_ghost(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let grazing = 1.0 - abs(dot(normalize(in.normal), normalize(in.position)));
-    let opacity = 0.34 + 0.4 * grazing * grazing;
+    let opacity = 0.26 + 0.45 * grazing * grazing;
     return vec4f(surface(in, front) * opacity, opacity);
 }
 
