@@ -61,7 +61,7 @@ pub use variants::{
     Halt, MOST_VARIANTS, PRESETS, Preset, Runner, Snapshot, Variant, VariantJob, Variants,
     VariantsDone, full_name,
 };
-pub use view::OutOfView;
+pub use view::{OutOfView, Side};
 
 use crate::camera::Camera;
 

@@ -1,5 +1,7 @@
 //! Where the person looks: following what moves, the way home, and what has left the view.
 
+use std::f64::consts::FRAC_PI_2;
+
 use sim_core::DVec3;
 
 use super::Session;
@@ -15,6 +17,17 @@ pub(super) struct View {
     followed: Option<DVec3>,
     /// The opening view.
     pub(super) home: Option<Camera>,
+}
+
+/// Where to look from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// From `+z`, with `x` to the right.
+    Front,
+    /// From `+x`.
+    Right,
+    /// From `+y`, with `x` to the right.
+    Top,
 }
 
 /// A body whose middle is not in the picture.
@@ -43,6 +56,15 @@ impl Session {
         if let Some(home) = self.view.home {
             self.camera = home;
         }
+    }
+
+    /// Looks from one of the sides, and keeps what is in the middle.
+    pub fn look_from(&mut self, side: Side) {
+        (self.camera.yaw, self.camera.pitch) = match side {
+            Side::Front => (0.0, 0.0),
+            Side::Right => (FRAC_PI_2, 0.0),
+            Side::Top => (0.0, FRAC_PI_2),
+        };
     }
 
     /// Moves the camera with what it follows.

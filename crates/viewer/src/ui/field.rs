@@ -3,6 +3,8 @@
 use egui::{DragValue, RichText};
 use sim_core::DVec3;
 
+use crate::expression;
+
 /// Width of the labels, so that values line up, in points.
 const LABEL: f32 = 76.0;
 
@@ -84,7 +86,7 @@ pub(super) fn figure(ui: &mut egui::Ui, name: &str, meaning: &str, value: impl I
 pub(super) fn take_refused(ctx: &egui::Context) -> Option<String> {
     let typed = ctx.data_mut(|data| data.remove_temp::<String>(refused_id()))?;
     Some(format!(
-        "\"{typed}\" is not a number: write it like 1.5 or -2e-3."
+        "\"{typed}\" is not a number: write it like 1.5, -2e-3 or 1/60."
     ))
 }
 
@@ -104,7 +106,7 @@ fn number(ui: &mut egui::Ui, value: &mut f64, width: f32) -> egui::Response {
             .max_decimals(4)
             .custom_formatter(|value, decimals| shown(value, *decimals.end()))
             .custom_parser(|typed| {
-                let number = parsed(typed);
+                let number = expression::value(typed);
                 if number.is_none() {
                     refused.replace(Some(typed.to_owned()));
                 }
@@ -132,12 +134,6 @@ fn shown(value: f64, decimals: usize) -> String {
     }
 }
 
-/// The number that was typed, if it is one; a minus may be typographic.
-fn parsed(typed: &str) -> Option<f64> {
-    let number: f64 = typed.trim().replace('\u{2212}', "-").parse().ok()?;
-    (!number.is_nan()).then_some(number)
-}
-
 fn titled(name: &str, unit: &str) -> String {
     if unit.is_empty() {
         name.to_owned()
@@ -148,17 +144,7 @@ fn titled(name: &str, unit: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{parsed, shown};
-
-    #[test]
-    fn what_is_typed_is_a_number_or_refused() {
-        assert_eq!(parsed(" 1.5 "), Some(1.5));
-        assert_eq!(parsed("\u{2212}2e-3"), Some(-2e-3));
-        assert_eq!(parsed("inf"), Some(f64::INFINITY));
-        for typed in ["nan", "NaN", "hello", "1,5", "2*3", ""] {
-            assert_eq!(parsed(typed), None, "{typed}");
-        }
-    }
+    use super::shown;
 
     #[test]
     fn fields_show_every_number_in_little_room() {

@@ -4,7 +4,7 @@ use egui::text::{LayoutJob, TextFormat};
 use egui::{Key, Modifiers, Panel, RichText, TextStyle};
 
 use super::Ui;
-use crate::session::Session;
+use crate::session::{Session, Side};
 
 /// A key and what it does.
 struct Shortcut {
@@ -14,7 +14,7 @@ struct Shortcut {
     act: fn(&mut Ui, &mut Session, Key),
 }
 
-static SHORTCUTS: [Shortcut; 17] = [
+static SHORTCUTS: [Shortcut; 18] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
@@ -62,6 +62,18 @@ static SHORTCUTS: [Shortcut; 17] = [
         label: "Home",
         meaning: "home view",
         act: |_, session, _| session.go_home(),
+    },
+    Shortcut {
+        keys: &[Key::Num1, Key::Num2, Key::Num3],
+        label: "1 2 3",
+        meaning: "front, right, top",
+        act: |_, session, key| {
+            session.look_from(match key {
+                Key::Num1 => Side::Front,
+                Key::Num2 => Side::Right,
+                _ => Side::Top,
+            });
+        },
     },
     Shortcut {
         keys: &[Key::B],

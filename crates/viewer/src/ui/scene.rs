@@ -51,7 +51,11 @@ fn gallery(ui: &mut egui::Ui, session: &mut Session) {
             .show_ui(ui, |ui| {
                 for entry in scene::SCENES {
                     let current = entry.name == session.scene().name;
-                    if ui.selectable_label(current, entry.name).clicked() {
+                    let title = entry.title();
+                    if ui
+                        .selectable_label(current, format!("{}: {title}", entry.name))
+                        .clicked()
+                    {
                         chosen = Some(entry.name);
                     }
                 }
@@ -63,7 +67,7 @@ fn gallery(ui: &mut egui::Ui, session: &mut Session) {
         }
     });
     if !session.scene().about.is_empty() {
-        ui.label(RichText::new(shown::part(&session.scene().about)).weak());
+        ui.label(shown::part(&session.scene().about));
     }
 }
 

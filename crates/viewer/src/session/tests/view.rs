@@ -58,3 +58,24 @@ fn the_arrow_of_an_impact_is_on_what_moves() {
         "{marks:?}"
     );
 }
+
+#[test]
+fn sides_look_along_the_axes() {
+    use crate::session::Side;
+    let mut session = session();
+    for (side, forward, right) in [
+        (Side::Front, DVec3::NEG_Z, DVec3::X),
+        (Side::Right, DVec3::NEG_X, DVec3::NEG_Z),
+        (Side::Top, DVec3::NEG_Y, DVec3::X),
+    ] {
+        session.look_from(side);
+        assert!(
+            (session.camera.forward() - forward).length() < 1e-12,
+            "{side:?}"
+        );
+        assert!(
+            (session.camera.axes()[0] - right).length() < 1e-12,
+            "{side:?}"
+        );
+    }
+}
