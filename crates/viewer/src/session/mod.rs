@@ -12,6 +12,7 @@
 mod ball;
 mod charts;
 mod compare;
+mod descent;
 mod edit;
 mod exact;
 mod figures;
@@ -44,6 +45,7 @@ use sim_core::{Collision, FixedStep, Method, Settings, World};
 use ball::Balls;
 pub use charts::{CHARTS, Chart, Curve, on_dark};
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
+pub use descent::{Level, descent};
 pub use exact::Exact;
 pub use figures::{Drift, Figures, Reference};
 pub use history::Leaving;

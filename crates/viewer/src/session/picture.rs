@@ -41,6 +41,8 @@ pub struct Display {
     pub ties: bool,
     /// Points, normals and impulses of late impacts. Off, none are listed.
     pub impacts: bool,
+    /// The level of the descent through two hierarchies that is shown, if one is.
+    pub descent: Option<usize>,
 }
 
 impl Default for Display {
@@ -58,6 +60,7 @@ impl Default for Display {
             trails: false,
             ties: true,
             impacts: true,
+            descent: None,
         }
     }
 }
@@ -112,6 +115,7 @@ impl Session {
             ..
         } = &mut picture;
         self.add_missed(ghosts, lines, marks);
+        self.add_descent(lines);
         self.add_walls(&mut picture);
         if self.display.impacts {
             self.add_impacts(&mut picture.marks);
@@ -234,7 +238,7 @@ fn depth_colour(depth: usize, levels: usize) -> [f32; 4] {
 }
 
 /// The twelve edges of a box.
-fn edges(aabb: Aabb) -> impl Iterator<Item = (DVec3, DVec3)> {
+pub(super) fn edges(aabb: Aabb) -> impl Iterator<Item = (DVec3, DVec3)> {
     let (min, max) = (aabb.min.as_dvec3(), aabb.max.as_dvec3());
     let corner = move |bits: usize| {
         DVec3::new(

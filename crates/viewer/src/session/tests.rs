@@ -7,6 +7,7 @@ use sim_core::{Collision, DVec3, METHODS};
 
 use super::{STEP_BUDGET, Session, State};
 
+mod descent;
 mod exact;
 mod forces;
 mod history;

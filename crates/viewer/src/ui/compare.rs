@@ -13,6 +13,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             "Ask both ways whether the two bodies meet, now and then, on a thread of its own. \
              Off, it costs nothing.",
         );
+    descent(ui, session);
     if !session.compare.on {
         return;
     }
@@ -33,6 +34,46 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         }
         None => {}
     }
+}
+
+/// The descent through both trees, level by level.
+fn descent(ui: &mut egui::Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        let mut shown = session.display.descent.is_some();
+        if ui
+            .checkbox(&mut shown, "Show the descent")
+            .on_hover_text(
+                "Boxes that are compared level by level, in orange those that meet and come into \
+                 question for the next level. Of the two bodies that are measured",
+            )
+            .changed()
+        {
+            session.display.descent = shown.then_some(0);
+        }
+        if shown {
+            if ui.button("◀").on_hover_text("One level up").clicked() {
+                session.step_descent(-1);
+            }
+            if ui.button("▶").on_hover_text("One level down (N)").clicked() {
+                session.step_descent(1);
+            }
+        }
+    });
+    let Some(shown) = session.display.descent else {
+        return;
+    };
+    let levels = session.descent();
+    let last = levels.len().saturating_sub(1);
+    let text = match levels.get(shown.min(last)) {
+        None => "It takes two bodies with meshes.".to_owned(),
+        Some(level) => format!(
+            "Level {} of {last}: {} pairs of boxes compared, {} meet.",
+            shown.min(last),
+            number::count(level.compared as f64),
+            number::count(level.meeting as f64)
+        ),
+    };
+    ui.label(RichText::new(text).weak());
 }
 
 fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {

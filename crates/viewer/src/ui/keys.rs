@@ -14,7 +14,7 @@ struct Shortcut {
     act: fn(&mut Ui, &mut Session, Key),
 }
 
-static SHORTCUTS: [Shortcut; 18] = [
+static SHORTCUTS: [Shortcut; 19] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
@@ -86,6 +86,12 @@ static SHORTCUTS: [Shortcut; 18] = [
         label: "[ ]",
         meaning: "box depth",
         act: |_, session, key| session.step_depth(if key == Key::OpenBracket { -1 } else { 1 }),
+    },
+    Shortcut {
+        keys: &[Key::N],
+        label: "N",
+        meaning: "descent",
+        act: |_, session, _| session.step_descent(1),
     },
     Shortcut {
         keys: &[Key::T],
