@@ -12,7 +12,7 @@ use crate::picture::Line;
 /// Pairs of one level beyond which no further one is looked at.
 const MOST_PAIRS: usize = 20_000;
 const MEET: [f32; 4] = [0.92, 0.35, 0.0, 0.95];
-const APART: [f32; 4] = [0.30, 0.42, 0.60, 0.35];
+const APART: [f32; 4] = [0.20, 0.34, 0.58, 0.65];
 
 /// One level of the descent.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -145,7 +145,7 @@ impl Session {
                     from: origin + from,
                     to: origin + to,
                     colour: if meets { MEET } else { APART },
-                    width: if meets { 2.0 } else { 1.2 },
+                    width: if meets { 2.2 } else { 1.5 },
                 }));
             }
         }

@@ -66,7 +66,7 @@ static SHORTCUTS: [Shortcut; 19] = [
     Shortcut {
         keys: &[Key::Num1, Key::Num2, Key::Num3],
         label: "1 2 3",
-        meaning: "front, right, top",
+        meaning: "sides",
         act: |_, session, key| {
             session.look_from(match key {
                 Key::Num1 => Side::Front,
@@ -198,7 +198,8 @@ pub(super) fn show_line(root: &mut egui::Ui) {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 14.0;
             for shortcut in &SHORTCUTS {
-                ui.label(line(ui, shortcut));
+                // A key stays beside its meaning.
+                ui.add(egui::Label::new(line(ui, shortcut)).extend());
             }
         });
     });
