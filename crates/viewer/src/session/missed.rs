@@ -17,6 +17,8 @@ const MOST: usize = 8;
 /// Simulated time in which one is shown, s, and at least so many steps.
 const SHOWN: f64 = 0.5;
 const SHOWN_STEPS: f64 = 3.0;
+/// Way past each other from which on it is looked for, in thicknesses of the thinner swept box.
+const LEAST_WAY: f64 = 0.01;
 const RED: [f32; 3] = [0.86, 0.08, 0.10];
 
 /// Two bodies that have passed through each other.
@@ -72,7 +74,13 @@ fn may_touch(world: &World, i: usize, j: usize) -> bool {
     let (Some(first), Some(second)) = (swept(i), swept(j)) else {
         return false;
     };
-    way(world, i) != way(world, j) && first.0.cmple(second.1).all() && second.0.cmple(first.1).all()
+    // Who moves less than a small part of the thinner one's thickness passes through no more than that,
+    // and heaps of bodies that hardly move are not worth a search.
+    let thickness = [first, second].map(|(low, high)| (high - low).min_element());
+    let past = (way(world, i) - way(world, j)).length();
+    past > LEAST_WAY * thickness[0].min(thickness[1])
+        && first.0.cmple(second.1).all()
+        && second.0.cmple(first.1).all()
 }
 
 /// A body's box about its position, m; none where it has no inside to pass through, or no end.
