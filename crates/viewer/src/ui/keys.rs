@@ -196,7 +196,8 @@ pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session)
 pub(super) fn show_line(root: &mut egui::Ui) {
     Panel::bottom("keys").show(root, |ui| {
         ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing.x = 14.0;
+            ui.spacing_mut().item_spacing = egui::vec2(14.0, 1.0);
+            ui.spacing_mut().interact_size.y = 12.0;
             for shortcut in &SHORTCUTS {
                 // A key stays beside its meaning.
                 ui.add(egui::Label::new(line(ui, shortcut)).extend());

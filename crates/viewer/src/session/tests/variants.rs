@@ -151,6 +151,11 @@ fn ghosts_are_where_the_variants_were() {
     let own = *session.world().settings();
     session.compare_with([Settings { dt: 0.1, ..own }]);
     run(&mut session, 2.0);
+    session.go_to(0);
+    assert!(
+        session.picture().ghosts.is_empty(),
+        "all are where the body is"
+    );
     session.go_to(5);
     let picture = session.picture();
     assert_eq!(picture.ghosts.len(), 2);

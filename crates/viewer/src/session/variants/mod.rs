@@ -26,6 +26,8 @@ pub const MOST_VARIANTS: usize = 12;
 /// Bodies up to which the paths of variants are drawn, and the states that these go back.
 const MOST_PATHS: usize = 20;
 const LONGEST_PATH: usize = 1200;
+/// Distance below which two places look the same, in half sizes of the body.
+const SAME: f64 = 2e-3;
 /// Colours that are far from each other and from the light background, sRGB.
 const COLOURS: [[f32; 3]; MOST_VARIANTS] = [
     [0.84, 0.37, 0.00],
@@ -353,6 +355,7 @@ impl Session {
     pub(super) fn add_ghosts(&mut self, ghosts: &mut Vec<Ghost>, lines: &mut Vec<Line>) {
         let time = self.shown_time();
         let moves: Vec<bool> = (0..self.world.len()).map(|i| !self.is_static(i)).collect();
+        let mut taken: Vec<Vec<DVec3>> = vec![Vec::new(); moves.len()];
         for n in 0..self.variants.list.len() {
             let variant = &self.variants.list[n];
             let colour = variant.colour;
@@ -363,6 +366,15 @@ impl Session {
                 continue;
             }
             for (i, place) in places.iter().enumerate().filter(|&(i, _)| moves[i]) {
+                // One that cannot be told from the body, or from another ghost, would only tint it.
+                let same = SAME * self.bounds(i).half.max_element();
+                let known = [self.shown_position(i)]
+                    .into_iter()
+                    .chain(taken[i].iter().copied());
+                if known.into_iter().any(|at| at.distance(*place) <= same) {
+                    continue;
+                }
+                taken[i].push(*place);
                 match self.body_mesh(i) {
                     Some(mesh) => ghosts.push(Ghost {
                         mesh,
