@@ -120,6 +120,13 @@ pub struct GalleryScene {
 }
 
 impl GalleryScene {
+    /// Its title for people, as the scene file has it.
+    pub fn title(&self) -> &'static str {
+        let line = self.text.lines().find(|line| line.starts_with("title"));
+        let quoted = line.and_then(|line| line.split('"').nth(1));
+        quoted.unwrap_or(self.name)
+    }
+
     /// The scene, from built-in meshes only: no file is opened.
     pub fn scene(&self) -> Result<Scene, SceneError> {
         scene_file::parse(self.text, Path::new(self.name), MeshSource::builtin_only())

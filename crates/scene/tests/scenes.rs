@@ -642,3 +642,11 @@ proptest! {
         prop_assert_eq!(again, scene);
     }
 }
+
+#[test]
+fn gallery_titles_are_those_of_the_scenes() {
+    for entry in scene::SCENES {
+        let whole = entry.scene().expect("a scene of the gallery");
+        assert_eq!(entry.title(), whole.title);
+    }
+}

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use egui::ViewportId;
-use scene::Scene;
+use scene::{Scene, shown};
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::{StartCause, WindowEvent};
@@ -14,7 +14,10 @@ use winit::window::{Window, WindowId};
 
 use crate::failure::Failure;
 use crate::gpu::{Gpu, UiFrame};
-use crate::session::{Done, Job, Outlook, STEP_BUDGET, Session, State, Trial, Tried};
+use crate::session::{
+    Done, Job, Leaving, Outlook, STEP_BUDGET, Session, State, Trial, Tried, VariantJob,
+    VariantsDone,
+};
 use crate::stopwatch::Stopwatch;
 use crate::ui::{self, Ui};
 use crate::worker::Worker;
@@ -33,6 +36,7 @@ pub fn run(scene: Scene) -> Result<(), Failure> {
         ui: Ui::default(),
         worker: None,
         measurer: None,
+        runner: None,
         scout: None,
         stopwatch: Stopwatch::start(),
         proxy: event_loop.create_proxy(),
@@ -58,6 +62,8 @@ struct App {
     worker: Option<Worker<Job, Done>>,
     /// Measures naive against BVH; none while that is off.
     measurer: Option<Worker<Trial, Tried>>,
+    /// Runs the variants; none while there are none.
+    runner: Option<Worker<VariantJob, VariantsDone>>,
     /// Looks ahead for the opening view; none while that is settled.
     scout: Option<Worker<Outlook, Outlook>>,
     stopwatch: Stopwatch,
@@ -73,6 +79,8 @@ struct App {
 /// A window with all that is needed to draw in it.
 struct Open {
     window: Arc<Window>,
+    /// What stands over the window.
+    title: String,
     egui: egui_winit::State,
     gpu: Gpu,
 }
@@ -99,7 +107,12 @@ impl Open {
             None,
             Some(gpu.max_texture_side()),
         );
-        Ok(Self { window, egui, gpu })
+        Ok(Self {
+            window,
+            title: String::new(),
+            egui,
+            gpu,
+        })
     }
 }
 
@@ -173,6 +186,35 @@ impl App {
         }
     }
 
+    /// Lets variants come up with the run, never waiting for them.
+    fn run_variants(&mut self) {
+        if let Some(runner) = &mut self.runner {
+            if let Some(done) = runner.result(Duration::ZERO) {
+                self.session.accept_variants(done);
+            } else if runner.is_gone() {
+                self.runner = None;
+                self.session.drop_variants();
+                let text =
+                    "A variant broke down. This is a fault of the program: please report it.";
+                self.session.notices().error("compare", text.to_owned());
+            }
+        }
+        if self.session.variants().is_empty() {
+            self.runner = None;
+        } else if self.runner.as_ref().is_none_or(|runner| !runner.is_busy())
+            && let Some(job) = self.session.variants_due()
+        {
+            if self.runner.is_none() {
+                let run = |job: VariantJob, time: &Stopwatch| job.run(|| time.read());
+                self.runner = Worker::start("variants", run).ok();
+            }
+            match &mut self.runner {
+                Some(runner) => runner.hand_over(job),
+                None => self.session.drop_variants(),
+            }
+        }
+    }
+
     /// Lets the opening view of a scene just opened come, never waiting for it.
     fn look_ahead(&mut self) {
         if let Some(outlook) = self.session.outlook() {
@@ -198,8 +240,13 @@ impl App {
         let elapsed = now.saturating_sub(self.last_frame);
         self.steps(elapsed);
         self.measure(elapsed);
+        self.run_variants();
         self.look_ahead();
         self.session.notices().pass(elapsed);
+        self.session.settle(elapsed);
+        if self.session.is_closing() {
+            return event_loop.exit();
+        }
         self.last_frame = now;
 
         let Some(open) = &mut self.open else { return };
@@ -220,6 +267,11 @@ impl App {
                 pixels_per_point: output.pixels_per_point,
             };
             let pixels = [pixels.x.round() as u32, pixels.y.round() as u32];
+            let title = title(&self.session);
+            if title != open.title {
+                open.window.set_title(&title);
+                open.title = title;
+            }
             open.gpu.paint(&self.session.picture(), pixels, frame)
         };
         if let Some(error) = open.gpu.take_error() {
@@ -233,12 +285,14 @@ impl App {
         }
         let compare = &self.session.compare;
         let measuring = compare.on && (compare.is_under_way() || self.session.wants_trial());
-        if self.session.state() == State::Running && shown {
+        let moves = self.session.state() == State::Running || self.session.awaits_variants();
+        if moves && shown {
             self.schedule(now + SHORTEST_FRAME);
-        } else if self.session.state() == State::Running
+        } else if moves
             || self.session.awaits_steps()
             || measuring
             || self.scout.is_some()
+            || self.session.is_settling()
             || self.session.notices().is_passing()
         {
             self.schedule(now + UNSEEN_FRAME);
@@ -290,7 +344,10 @@ impl ApplicationHandler<Redraw> for App {
             open.window.request_redraw();
         }
         match event {
-            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::CloseRequested => {
+                self.session.leave(Leaving::Close);
+                open.window.request_redraw();
+            }
             WindowEvent::Resized(_) | WindowEvent::Occluded(false) => open.window.request_redraw(),
             WindowEvent::DroppedFile(path) => {
                 self.session.take_in(&path);
@@ -314,6 +371,12 @@ impl ApplicationHandler<Redraw> for App {
             },
         });
     }
+}
+
+/// What stands over the window: the scene, marked when no file has its edits.
+fn title(session: &Session) -> String {
+    let mark = if session.is_changed() { "*" } else { "" };
+    format!("{}{mark} - Cowbell", shown::name(&session.scene().name))
 }
 
 /// The size of the window at first, in points: as large as is comfortable and the monitor has.

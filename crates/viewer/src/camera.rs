@@ -69,6 +69,20 @@ impl Camera {
         }
     }
 
+    /// Comes nearer by a factor above zero and keeps what is seen at a point of the picture, at the
+    /// distance of the target, where it is; as [`ray`](Self::ray) has that point.
+    pub fn zoom_at(&mut self, factor: f64, x: f64, y: f64, aspect: f64) {
+        let [right, up, _] = self.axes();
+        let [half_width, half_height] = self.half_extents(aspect);
+        let aside = x * half_width * right + y * half_height * up;
+        let before = self.distance;
+        self.zoom(factor);
+        let moved = self.target + (before - self.distance) * aside;
+        if moved.is_finite() {
+            self.target = moved;
+        }
+    }
+
     /// Looks at a sphere from where all of it is in view, whatever the shape of the picture.
     /// Keeps the direction of view.
     pub fn frame(&mut self, centre: DVec3, radius: f64) {
@@ -219,6 +233,25 @@ mod tests {
                 "{largest} at aspect {aspect}"
             );
         }
+    }
+
+    #[test]
+    fn zoom_keeps_what_the_pointer_is_on() {
+        for (factor, aspect) in [(2.0, 1.6), (0.3, 0.4)] {
+            let mut camera = Camera::default();
+            let [x, y] = [0.6, -0.4];
+            let (eye, direction) = camera.ray(x, y, aspect);
+            // Where the ray passes the target's distance.
+            let at = eye + direction * (camera.distance / direction.dot(camera.forward()));
+            let distance = camera.distance;
+            camera.zoom_at(factor, x, y, aspect);
+            assert!((camera.distance - distance / factor).abs() < 1e-12);
+            let [u, v] = camera.project(at, aspect).expect("in front of the eye");
+            assert!((u - x).abs() < 1e-12 && (v - y).abs() < 1e-12, "{u}, {v}");
+        }
+        let mut camera = Camera::default();
+        camera.zoom_at(f64::NAN, 0.5, 0.5, 1.0);
+        assert_eq!(camera, Camera::default());
     }
 
     #[test]

@@ -33,8 +33,9 @@ Figures, by their names in --json; drifts and errors count from the start, and n
                    sum of mass times speed at the start and of force times time since; null where
                    that is 0, and where a force or an immovable body may have changed it from outside
   momentum_error   the same in kg m/s
-  path_error       largest distance of a body from its exact path, m; null after an impact, and
-                   under forces that are not constant
+  path_error       largest distance of a body from its exact place, m, among those whose exact path
+                   is known: under constant forces and bounces off what nothing moves, springs to
+                   points, linear drag, one attraction, until bodies come together
   overlaps         pairs of bodies in each other at the start, after --separate: depth, m, and the
                    direction in which the second leaves the first; where is_least is false, the depth
                    is an upper bound. They are kept from getting deeper
@@ -45,6 +46,12 @@ Figures, by their names in --json; drifts and errors count from the start, and n
                    equal ones are equal to the last bit
   potential_energy, total_energy
                    J; null at a centre of attraction, where they are unbounded";
+
+/// What `compare` says.
+const COMPARISON: &str = "\
+Every combination of the methods, steps, collisions and tolerances is run from the start of the scene, and
+the exact solution beside them where it is known. Errors are distances from it, energy is its change since
+the start, relative where it can be. In --csv, run names the method, the rate and how collisions are found.";
 
 /// Cowbell simulates colliding triangle meshes. Without a command it opens its window.
 #[derive(Parser)]
@@ -82,8 +89,29 @@ enum Command {
         /// First move bodies that overlap out of each other, by the least that does it
         #[arg(long)]
         separate: bool,
+        /// Print the figures of every state as a table of comma-separated values
+        #[arg(long, conflicts_with = "json")]
+        csv: bool,
         #[command(flatten)]
         settings: SettingArgs,
+    },
+    /// Run a scene in several ways and print what each costs and how far it is off
+    #[command(after_help = COMPARISON)]
+    Compare {
+        /// Name from the gallery or path of a .toml file
+        #[arg(value_name = "NAME|PATH")]
+        scene: PathBuf,
+        /// Simulated time of each run, s
+        #[arg(long, value_name = "SECONDS", default_value = "4", value_parser = positive, allow_negative_numbers = true)]
+        time: f64,
+        /// Print one JSON array instead of a table
+        #[arg(long)]
+        json: bool,
+        /// Print the figures of every state of every run as comma-separated values
+        #[arg(long, conflicts_with = "json")]
+        csv: bool,
+        #[command(flatten)]
+        ways: WayArgs,
     },
     /// Read a mesh file and say what is in it
     Check {
@@ -140,6 +168,26 @@ struct SettingArgs {
     /// How collisions are found
     #[arg(long, value_name = "HOW")]
     collision: Option<CollisionArg>,
+}
+
+/// In which ways to run a scene: every combination of these.
+#[derive(Args)]
+struct WayArgs {
+    /// Integrators, separated by commas; course: the four of the course
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = PossibleValuesParser::new(METHODS.map(|m| m.name).into_iter().chain(["course"])))]
+    method: Vec<String>,
+    /// Lengths of a step, s
+    #[arg(long, value_name = "SECONDS", value_delimiter = ',', value_parser = step_length, allow_negative_numbers = true, conflicts_with = "rate")]
+    dt: Vec<f64>,
+    /// Steps per simulated second, Hz
+    #[arg(long, value_name = "HZ", value_delimiter = ',', value_parser = positive, allow_negative_numbers = true)]
+    rate: Vec<f64>,
+    /// Errors that adaptive methods may make in a step, from 1e-15 to 1
+    #[arg(long, value_name = "ERRORS", value_delimiter = ',', value_parser = tolerance, allow_negative_numbers = true)]
+    tolerance: Vec<f64>,
+    /// How collisions are found
+    #[arg(long, value_name = "HOW", value_delimiter = ',')]
+    collision: Vec<CollisionArg>,
 }
 
 /// What to draw, and where to.
@@ -222,11 +270,31 @@ fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
             scene,
             steps,
             json,
+            csv,
             separate,
             settings,
         }) => {
             let scene = load(&scene, &settings)?;
-            headless::run(&scene, steps, (json, separate), interrupt)
+            match csv {
+                true => headless::run_csv(&scene, steps, interrupt),
+                false => headless::run(&scene, steps, (json, separate), interrupt),
+            }
+        }
+        Some(Command::Compare {
+            scene,
+            time,
+            json,
+            csv,
+            ways,
+        }) => {
+            let scene = Scene::load(&scene).map_err(Failure::refused)?;
+            let form = match (json, csv) {
+                (true, _) => headless::Form::Json,
+                (_, true) => headless::Form::Csv,
+                _ => headless::Form::Table,
+            };
+            let settings = ways.settings(&scene)?;
+            headless::compare(&scene, &settings, time, form, interrupt)
         }
         Some(Command::Check { file, json }) => headless::check(&file, json),
         Some(Command::Soak {
@@ -251,6 +319,76 @@ fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
     }
 }
 
+impl WayArgs {
+    /// Every combination, in the order given; where nothing is given, what the scene says.
+    fn settings(&self, scene: &Scene) -> Result<Vec<Settings>, Failure> {
+        let or = |given: Vec<f64>, own: f64| if given.is_empty() { vec![own] } else { given };
+        let mut methods: Vec<&'static Method> = Vec::new();
+        for name in &self.method {
+            match name.as_str() {
+                "course" => methods.extend(METHODS.iter().take(4)),
+                name => methods.extend(Method::named(name)),
+            }
+        }
+        if methods.is_empty() {
+            methods.push(scene.method);
+        }
+        for rate in &self.rate {
+            check_rate(*rate)?;
+        }
+        let rates = self.rate.iter().map(|rate| 1.0 / rate);
+        let lengths = or(rates.chain(self.dt.iter().copied()).collect(), scene.dt);
+        let tolerances = or(self.tolerance.clone(), scene.tolerance);
+        let collisions: Vec<Collision> = match self.collision.is_empty() {
+            true => vec![scene.collision],
+            false => self.collision.iter().map(|how| (*how).into()).collect(),
+        };
+        let mut all = Vec::new();
+        for &method in &methods {
+            for &dt in &lengths {
+                for &collision in &collisions {
+                    for &tolerance in &tolerances {
+                        let settings = Settings {
+                            method,
+                            dt,
+                            collision,
+                            // Others make no use of it.
+                            tolerance: if method.adaptive {
+                                tolerance
+                            } else {
+                                scene.tolerance
+                            },
+                        };
+                        if !all.contains(&settings) {
+                            all.push(settings);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(all)
+    }
+}
+
+impl From<CollisionArg> for Collision {
+    fn from(how: CollisionArg) -> Collision {
+        match how {
+            CollisionArg::Naive => Collision::Naive,
+            CollisionArg::Bvh => Collision::Bvh,
+            CollisionArg::Continuous => Collision::Continuous,
+        }
+    }
+}
+
+/// The world would speak of a dt that nobody gave.
+fn check_rate(rate: f64) -> Result<(), Failure> {
+    if FixedStep::DT_RANGE.contains(&(1.0 / rate)) {
+        return Ok(());
+    }
+    let what = format!("--rate {rate:e}: must be from 1e-3 to 1e9 Hz");
+    Err(Failure::Refused(what))
+}
+
 /// Reads a scene and overrules what the arguments overrule.
 fn load(name_or_path: &Path, settings: &SettingArgs) -> Result<Scene, Failure> {
     overruled(
@@ -264,23 +402,16 @@ fn overruled(mut scene: Scene, settings: &SettingArgs) -> Result<Scene, Failure>
         scene.method = method;
     }
     if let Some(dt) = settings.dt.or(settings.rate.map(|rate| 1.0 / rate)) {
-        // The world would speak of a dt that nobody gave.
-        if let Some(rate) = settings.rate
-            && !FixedStep::DT_RANGE.contains(&dt)
-        {
-            let what = format!("--rate {rate:e}: must be from 1e-3 to 1e9 Hz");
-            return Err(Failure::Refused(what));
+        if let Some(rate) = settings.rate {
+            check_rate(rate)?;
         }
         scene.dt = dt;
     }
     if let Some(tolerance) = settings.tolerance {
         scene.tolerance = tolerance;
     }
-    match settings.collision {
-        None => {}
-        Some(CollisionArg::Naive) => scene.collision = Collision::Naive,
-        Some(CollisionArg::Bvh) => scene.collision = Collision::Bvh,
-        Some(CollisionArg::Continuous) => scene.collision = Collision::Continuous,
+    if let Some(how) = settings.collision {
+        scene.collision = how.into();
     }
     Ok(scene)
 }
@@ -320,6 +451,13 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("must be a number above 0".to_owned()),
+    }
+}
+
+fn step_length(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if FixedStep::DT_RANGE.contains(&value) => Ok(value),
+        _ => Err("must be a number from 1e-9 to 1e3".to_owned()),
     }
 }
 

@@ -9,6 +9,7 @@
 pub mod app;
 pub mod camera;
 pub mod cli;
+pub mod expression;
 pub mod failure;
 pub mod gpu;
 pub mod headless;

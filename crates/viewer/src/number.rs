@@ -17,6 +17,22 @@ pub fn figure(value: f64) -> String {
     }
 }
 
+/// Two significant digits, for tables in little room.
+pub fn short(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 {
+        "0".to_owned()
+    } else if !(1e-2..1e3).contains(&size) {
+        format!("{value:.1e}")
+    } else if size < 10.0 {
+        format!("{value:.2}")
+    } else if size < 100.0 {
+        format!("{value:.1}")
+    } else {
+        format!("{value:.0}")
+    }
+}
+
 /// A duration in seconds with the unit that suits it.
 pub fn seconds(value: f64) -> String {
     if value < 1e-3 {
@@ -26,6 +42,27 @@ pub fn seconds(value: f64) -> String {
     } else {
         format!("{value:.2} s")
     }
+}
+
+/// A length in metres, or in millimetres where it is short.
+pub fn length(value: f64) -> String {
+    if value == 0.0 || value.abs() >= 0.1 {
+        format!("{} m", short(value))
+    } else {
+        format!("{} mm", short(1000.0 * value))
+    }
+}
+
+/// 1st, 2nd, 3rd, ...
+pub fn ordinal(count: usize) -> String {
+    let ending = match (count % 10, count % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{count}{ending}")
 }
 
 /// A whole number, in groups of three digits.

@@ -14,6 +14,8 @@ pub struct Picture {
     pub camera: Camera,
     /// Meshes, shaded.
     pub models: Vec<Model>,
+    /// Meshes that are seen through, and cast no shadow.
+    pub ghosts: Vec<Ghost>,
     /// Coloured glass.
     pub panes: Vec<Pane>,
     /// Lines of a width in pixels.
@@ -37,6 +39,17 @@ pub struct Model {
     pub colour: [f32; 3],
     /// Whether the mesh's edges are drawn over it.
     pub selected: bool,
+}
+
+/// A mesh at a position, seen through: what is elsewhere or at another time.
+#[derive(Clone)]
+pub struct Ghost {
+    /// The geometry, shared like that of a [`Model`].
+    pub mesh: Arc<Mesh>,
+    /// Where the mesh's origin is, m.
+    pub position: DVec3,
+    /// Colour, sRGB.
+    pub colour: [f32; 3],
 }
 
 /// A flat pane that is seen through.
@@ -86,3 +99,10 @@ pub const PALETTE: [[f32; 3]; 8] = [
     [0.56, 0.77, 0.90],
     [0.62, 0.63, 0.65],
 ];
+
+/// An image as the bytes of a PNG file.
+pub fn png(image: &image::RgbaImage) -> Result<Vec<u8>, image::ImageError> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut bytes, image::ImageFormat::Png)?;
+    Ok(bytes.into_inner())
+}

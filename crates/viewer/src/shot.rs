@@ -1,12 +1,12 @@
 //! A picture of a scene in a PNG file, drawn without a window.
 
-use std::io::Cursor;
 use std::time::Duration;
 
 use scene::{Scene, file, shown};
 
 use crate::cli::{Depth, ShotArgs};
 use crate::failure::Failure;
+use crate::picture;
 use crate::render::offscreen::{self, ShotError};
 use crate::session::Session;
 use crate::stopwatch::Stopwatch;
@@ -49,11 +49,9 @@ pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
         }
     }
     let image = offscreen::shot(&session.picture(), args.size).map_err(failure)?;
-    let mut png = Cursor::new(Vec::new());
-    image
-        .write_to(&mut png, image::ImageFormat::Png)
+    let png = picture::png(&image)
         .map_err(|error| Failure::Run(format!("cannot encode the picture: {error}")))?;
-    file::write(&args.output, png.get_ref()).map_err(|error| {
+    file::write(&args.output, &png).map_err(|error| {
         let path = shown::path(&args.output);
         Failure::Refused(format!("cannot write {path}: {error}"))
     })?;

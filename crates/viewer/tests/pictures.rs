@@ -376,3 +376,80 @@ fn sizes_from_one_pixel_to_the_largest() {
         assert!(error.to_string().contains(" from 1 to "), "{error}");
     }
 }
+
+#[test]
+fn the_selection_has_a_rim_and_nothing_else_changes_outside_of_it() {
+    let mut picture = front();
+    let dark = [0.3, 0.3, 0.3];
+    picture.models.push(model(&cube(), DVec3::ZERO, dark));
+    let Some(plain) = shot(&picture) else { return };
+    picture.models[0].selected = true;
+    let Some(selected) = shot(&picture) else {
+        return;
+    };
+    let is_blue = |pixel: &image::Rgba<u8>| {
+        let [red, green, blue, _] = pixel.0.map(i32::from);
+        blue > red + 60 && blue > green + 40
+    };
+    assert!(!plain.pixels().any(is_blue));
+    let rim = selected.pixels().filter(|pixel| is_blue(pixel)).count();
+    // The outline is some 300 pixels long.
+    assert!((200..1500).contains(&rim), "{rim} pixels");
+    // Far from it all is as it was.
+    for (x, y) in [(5, 5), (160, 195), (315, 100)] {
+        assert_eq!(plain.get_pixel(x, y), selected.get_pixel(x, y));
+    }
+}
+
+#[test]
+fn ghosts_are_seen_through_and_cast_no_shadow() {
+    let mut picture = front();
+    picture.grid = true;
+    let place = DVec3::new(0.0, 1.0, 0.0);
+    let Some(empty) = shot(&picture) else { return };
+    picture.ghosts.push(viewer::picture::Ghost {
+        mesh: cube(),
+        position: place,
+        colour: RED,
+    });
+    let Some(ghost) = shot(&picture) else { return };
+    picture.ghosts.clear();
+    picture.models.push(model(&cube(), place, RED));
+    let Some(solid) = shot(&picture) else { return };
+    // Beside the upright axis.
+    let face = place + DVec3::new(0.25, 0.0, 0.5);
+    let look = |image| seen(image, &picture.camera, face);
+    let (before, through, opaque) = (look(&empty), look(&ghost), look(&solid));
+    assert!(
+        through[0] - through[2] > before[0] - before[2] + 8,
+        "red: {through:?}"
+    );
+    let mixed = |part: usize| {
+        let (low, high) = (
+            before[part].min(opaque[part]),
+            before[part].max(opaque[part]),
+        );
+        (low..=high).contains(&through[part])
+    };
+    assert!(mixed(1) && mixed(2), "{before:?}, {through:?}, {opaque:?}");
+    let below = DVec3::new(0.25, 0.0, 0.2);
+    let ground = |image| seen(image, &picture.camera, below);
+    assert!(difference(ground(&empty), ground(&ghost)) <= 2);
+    assert!(
+        difference(ground(&empty), ground(&solid)) > 8,
+        "a body does"
+    );
+}
+
+#[test]
+fn a_panel_can_be_drawn_without_a_window() {
+    let image = match viewer::render::offscreen::panel([400, 200], |ui| {
+        ui.label("a panel");
+    }) {
+        Err(ShotError::NoAdapter) => return,
+        image => image.expect("a panel"),
+    };
+    assert_eq!((image.width(), image.height()), (400, 200));
+    let bright = image.pixels().filter(|pixel| pixel.0[0] > 120).count();
+    assert!((50..2000).contains(&bright), "{bright} pixels of text");
+}

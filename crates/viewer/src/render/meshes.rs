@@ -12,7 +12,7 @@ use super::growing::Growing;
 use super::linear;
 use super::normals::Vertex;
 use super::triangles::Triangles;
-use crate::picture::Model;
+use crate::picture::{Ghost, Model};
 
 /// One place a mesh is drawn at, as `shaders/surface.wgsl` has it.
 #[repr(C)]
@@ -49,29 +49,35 @@ pub(super) fn layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
 pub(super) struct Which {
     /// Those that have no inside to be seen, or else the others.
     pub solid: bool,
-    /// The selected, with the corners of triangles in order, or else the others.
-    pub selected: bool,
+    pub look: Look,
+}
+
+/// How a mesh is drawn.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Look {
+    Plain,
+    /// With its edges, and so with the corners of triangles in order.
+    Selected,
+    /// Seen through.
+    Ghost,
 }
 
 impl Which {
-    pub(super) const ALL: [Which; 4] = [
-        Which {
-            solid: true,
-            selected: false,
-        },
-        Which {
-            solid: false,
-            selected: false,
-        },
-        Which {
-            solid: true,
-            selected: true,
-        },
-        Which {
-            solid: false,
-            selected: true,
-        },
+    /// What is opaque, and so casts shadows.
+    pub(super) const OPAQUE: [Which; 4] = [
+        Which::new(true, Look::Plain),
+        Which::new(false, Look::Plain),
+        Which::new(true, Look::Selected),
+        Which::new(false, Look::Selected),
     ];
+    pub(super) const GHOSTS: [Which; 2] = [
+        Which::new(true, Look::Ghost),
+        Which::new(false, Look::Ghost),
+    ];
+
+    const fn new(solid: bool, look: Look) -> Which {
+        Which { solid, look }
+    }
 }
 
 /// Meshes known by the address of their [`Arc`].
@@ -99,28 +105,40 @@ impl Meshes {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         models: &[Model],
+        ghosts: &[Ghost],
         eye: DVec3,
     ) {
         self.order.clear();
-        for model in models.iter().filter(|model| model.position.is_finite()) {
-            let address = Arc::as_ptr(&model.mesh).addr();
+        let models = models.iter().map(|model| {
+            let look = match model.selected {
+                true => Look::Selected,
+                false => Look::Plain,
+            };
+            (&model.mesh, model.position, model.colour, look)
+        });
+        let ghosts = ghosts
+            .iter()
+            .map(|ghost| (&ghost.mesh, ghost.position, ghost.colour, Look::Ghost));
+        for (geometry, position, colour, look) in models.chain(ghosts) {
+            if !position.is_finite() {
+                continue;
+            }
+            let address = Arc::as_ptr(geometry).addr();
             let mesh = self
                 .known
                 .entry(address)
-                .or_insert_with(|| DeviceMesh::new(device, &model.mesh));
+                .or_insert_with(|| DeviceMesh::new(device, geometry));
             if mesh.places.iter().all(|places| places.instances.is_empty()) {
                 self.order.push(address);
             }
-            if model.selected && mesh.apart.is_none() {
-                mesh.apart = Some(Triangles::apart(device, &model.mesh));
+            if look == Look::Selected && mesh.apart.is_none() {
+                mesh.apart = Some(Triangles::apart(device, geometry));
             }
-            mesh.places[usize::from(model.selected)]
-                .instances
-                .push(Instance {
-                    offset: (model.position - eye).as_vec3().to_array(),
-                    radius: mesh.radius,
-                    colour: linear(model.colour),
-                });
+            mesh.places[look as usize].instances.push(Instance {
+                offset: (position - eye).as_vec3().to_array(),
+                radius: mesh.radius,
+                colour: linear(colour),
+            });
         }
         self.known.retain(|_, mesh| {
             mesh.places
@@ -159,11 +177,12 @@ impl Meshes {
             .iter()
             .filter_map(|address| self.known.get(address));
         for mesh in meshes.filter(|mesh| mesh.solid == which.solid) {
-            let range = mesh.places[usize::from(which.selected)].range.clone();
+            let range = mesh.places[which.look as usize].range.clone();
             if range.is_empty() {
                 continue;
             }
-            let apart = mesh.apart.as_ref().filter(|_| which.selected);
+            let apart = mesh.apart.as_ref();
+            let apart = apart.filter(|_| which.look == Look::Selected);
             apart.unwrap_or(&mesh.shared).draw(pass, range);
         }
     }
@@ -180,8 +199,8 @@ struct DeviceMesh {
     solid: bool,
     /// Half the diagonal of its bounds, m.
     radius: f32,
-    /// Where it is drawn, not selected and selected.
-    places: [Places; 2],
+    /// Where it is drawn in each [`Look`].
+    places: [Places; 3],
 }
 
 #[derive(Default)]

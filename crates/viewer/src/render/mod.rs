@@ -92,7 +92,8 @@ impl Renderer {
         let frame = Frame::new(&picture.camera, size);
         self.frame.write(queue, &frame);
         let eye = picture.camera.eye();
-        self.meshes.gather(device, queue, &picture.models, eye);
+        let (models, ghosts) = (&picture.models, &picture.ghosts);
+        self.meshes.gather(device, queue, models, ghosts, eye);
         let axis = if picture.grid {
             axes::upright(&picture.camera)
         } else {
@@ -125,7 +126,9 @@ impl Renderer {
             if picture.grid {
                 self.ground.draw(&mut pass, &self.shadow);
             }
+            self.surface.draw_rims(&mut pass, &self.meshes);
             self.panes.draw(&mut pass);
+            self.surface.draw_ghosts(&mut pass, &self.meshes);
             self.lines.draw(&mut pass);
             self.marks.draw(&mut pass);
         }

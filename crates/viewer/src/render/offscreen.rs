@@ -93,6 +93,98 @@ impl Offscreen {
 
     /// One picture of a size in pixels.
     pub fn shot(&mut self, picture: &Picture, size: [u32; 2]) -> Result<RgbaImage, ShotError> {
+        let (device, queue, renderer) = (&self.device, &self.queue, &mut self.renderer);
+        let target = Target {
+            device,
+            queue,
+            format: self.format,
+        };
+        target.taken(size, |encoder, view| {
+            renderer.draw(device, queue, encoder, view, size, picture);
+        })
+    }
+}
+
+/// A part of the control panel, laid out by `contents`, at two pixels a point.
+pub fn panel(
+    size: [u32; 2],
+    mut contents: impl FnMut(&mut egui::Ui),
+) -> Result<RgbaImage, ShotError> {
+    // What egui mixes colours in.
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let Offscreen { device, queue, .. } = Offscreen::with_format(format)?;
+    let context = egui::Context::default();
+    crate::ui::apply_style(&context);
+    let pixels_per_point = 2.0;
+    let [width, height] = size.map(|side| side as f32 / pixels_per_point);
+    let mut painter = egui_wgpu::Renderer::new(&device, format, Default::default());
+    let mut primitives = Vec::new();
+    // The first layout learns the sizes that the second one uses.
+    for _ in 0..2 {
+        let mut input = egui::RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(
+                egui::Pos2::ZERO,
+                egui::vec2(width, height),
+            )),
+            ..Default::default()
+        };
+        if let Some(viewport) = input.viewports.get_mut(&input.viewport_id) {
+            viewport.native_pixels_per_point = Some(pixels_per_point);
+        }
+        let mut output = context.run_ui(input, |root| {
+            egui::CentralPanel::default().show(root, &mut contents);
+        });
+        for (id, deltas) in output.textures_delta.set.drain() {
+            for delta in &deltas {
+                painter.update_texture(&device, &queue, id, delta);
+            }
+        }
+        primitives = context.tessellate(output.shapes, output.pixels_per_point);
+    }
+    let screen = egui_wgpu::ScreenDescriptor {
+        size_in_pixels: size,
+        pixels_per_point,
+    };
+    let target = Target {
+        device: &device,
+        queue: &queue,
+        format,
+    };
+    target.taken(size, |encoder, view| {
+        painter.update_buffers(&device, &queue, encoder, &primitives, &screen);
+        let mut pass = encoder
+            .begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("panel"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                    depth_slice: None,
+                })],
+                ..Default::default()
+            })
+            .forget_lifetime();
+        painter.render(&mut pass, &primitives, &screen);
+    })
+}
+
+/// Where a picture goes that is then read back.
+struct Target<'a> {
+    device: &'a wgpu::Device,
+    queue: &'a wgpu::Queue,
+    format: wgpu::TextureFormat,
+}
+
+impl Target<'_> {
+    /// What `draw` draws on a texture of a size in pixels.
+    fn taken(
+        &self,
+        size: [u32; 2],
+        draw: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::TextureView),
+    ) -> Result<RgbaImage, ShotError> {
         let [width, height] = size;
         let most = self.device.limits().max_texture_dimension_2d;
         if size.contains(&0) || width.max(height) > most {
@@ -105,7 +197,7 @@ impl Offscreen {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
-        let readback = self.draw(picture, size, padded_row, bytes);
+        let readback = self.draw(draw, size, padded_row, bytes);
         for scope in [internal, validation, memory] {
             if let Some(error) = pollster::block_on(scope.pop()) {
                 return Err(ShotError::Drawing(error.to_string()));
@@ -137,8 +229,8 @@ impl Offscreen {
 
     /// Draws, and copies the rows into a buffer that can be read.
     fn draw(
-        &mut self,
-        picture: &Picture,
+        &self,
+        draw: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::TextureView),
         [width, height]: [u32; 2],
         padded_row: u32,
         bytes: u64,
@@ -166,14 +258,7 @@ impl Offscreen {
         });
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let view = texture.create_view(&Default::default());
-        self.renderer.draw(
-            &self.device,
-            &self.queue,
-            &mut encoder,
-            &view,
-            [width, height],
-            picture,
-        );
+        draw(&mut encoder, &view);
         encoder.copy_texture_to_buffer(
             texture.as_image_copy(),
             wgpu::TexelCopyBufferInfo {

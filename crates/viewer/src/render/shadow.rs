@@ -92,7 +92,7 @@ impl Shadow {
             let mut pass = begin(encoder, &self.map);
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, frame.group(), &[]);
-            for which in Which::ALL {
+            for which in Which::OPAQUE {
                 meshes.draw(&mut pass, which);
             }
         }

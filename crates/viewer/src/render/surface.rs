@@ -1,13 +1,15 @@
-//! Shaded meshes, the selected ones with their edges.
+//! Shaded meshes, the selected ones with their edges, and ghosts that are seen through.
 
 use egui_wgpu::wgpu;
 
 use super::frame::FrameBinding;
-use super::meshes::{self, Meshes, Which};
+use super::meshes::{self, Look, Meshes, Which};
 use super::pipeline::{Drawing, shader};
 
 pub(super) struct Surface {
-    pipelines: Vec<(Which, wgpu::RenderPipeline)>,
+    opaque: Vec<(Which, wgpu::RenderPipeline)>,
+    ghosts: Vec<(Which, wgpu::RenderPipeline)>,
+    rims: Vec<(Which, wgpu::RenderPipeline)>,
 }
 
 impl Surface {
@@ -22,20 +24,19 @@ impl Surface {
             let drawing = Drawing {
                 label: "surface",
                 shader: &module,
-                vertex: if which.selected {
-                    "vs_edged"
-                } else {
-                    "vs_plain"
+                vertex: match which.look {
+                    Look::Selected => "vs_edged",
+                    Look::Plain | Look::Ghost => "vs_plain",
                 },
-                fragment: if which.selected {
-                    "fs_edged"
-                } else {
-                    "fs_plain"
+                fragment: match which.look {
+                    Look::Plain => "fs_plain",
+                    Look::Selected => "fs_edged",
+                    Look::Ghost => "fs_ghost",
                 },
                 groups: &[Some(frame.layout())],
                 buffers: &meshes::layouts(),
                 topology: wgpu::PrimitiveTopology::TriangleList,
-                blended: false,
+                blended: which.look == Look::Ghost,
                 // With no inside to be seen, the far half of the faces is not worth drawing.
                 culled: which.solid,
                 on_top: false,
@@ -43,15 +44,56 @@ impl Surface {
             };
             (which, drawing.pipeline(device))
         };
+        let rim = |which: Which, vertex| {
+            let drawing = Drawing {
+                label: "rim of the selection",
+                shader: &module,
+                vertex,
+                fragment: "fs_rim",
+                groups: &[Some(frame.layout())],
+                buffers: &meshes::layouts(),
+                topology: wgpu::PrimitiveTopology::TriangleList,
+                blended: true,
+                culled: which.solid,
+                on_top: false,
+                samples,
+            };
+            (which, drawing.pipeline(device))
+        };
+        let selected = Which::OPAQUE
+            .into_iter()
+            .filter(|w| w.look == Look::Selected);
+        let sides = ["vs_rim0", "vs_rim1", "vs_rim2", "vs_rim3"];
+        let rims = selected.flat_map(|which| sides.map(|side| rim(which, side)));
         Self {
-            pipelines: Which::ALL.map(pipeline).into(),
+            opaque: Which::OPAQUE.map(pipeline).into(),
+            ghosts: Which::GHOSTS.map(pipeline).into(),
+            rims: rims.collect(),
         }
     }
 
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, meshes: &Meshes) {
-        for (which, pipeline) in &self.pipelines {
-            pass.set_pipeline(pipeline);
-            meshes.draw(pass, *which);
-        }
+        draw(&self.opaque, pass, meshes);
+    }
+
+    /// A rim around what is selected, after all that is opaque.
+    pub(super) fn draw_rims(&self, pass: &mut wgpu::RenderPass<'_>, meshes: &Meshes) {
+        draw(&self.rims, pass, meshes);
+    }
+
+    /// After everything that is seen through ghosts.
+    pub(super) fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, meshes: &Meshes) {
+        draw(&self.ghosts, pass, meshes);
+    }
+}
+
+fn draw(
+    pipelines: &[(Which, wgpu::RenderPipeline)],
+    pass: &mut wgpu::RenderPass<'_>,
+    meshes: &Meshes,
+) {
+    for (which, pipeline) in pipelines {
+        pass.set_pipeline(pipeline);
+        meshes.draw(pass, *which);
     }
 }

@@ -17,7 +17,7 @@ const MOST_TESTS: u64 = 2_000_000_000;
 const MEASURED: Duration = Duration::from_micros(100);
 const MOST_ANSWERS: f64 = 200.0;
 /// How often that is done, and the time after which it is not done again.
-const ROUNDS: u32 = 7;
+const ROUNDS: usize = 7;
 const PATIENCE: Duration = Duration::from_millis(500);
 /// The least time between two measurements, and the rest after one, in its own duration.
 const LEAST_REST: Duration = Duration::from_millis(200);
@@ -30,8 +30,10 @@ pub struct Cost {
     pub boxes: u64,
     /// Tests of an edge with a triangle (naive), or of two triangles (BVH).
     pub tests: u64,
-    /// Real time of an answer, s.
+    /// Real time of an answer, s: the median of several means.
     pub seconds: f64,
+    /// The least and the greatest of these, s.
+    pub spread: [f64; 2],
 }
 
 /// Both ways, on one pair of bodies at one moment.
@@ -43,6 +45,8 @@ pub struct Comparison {
     pub time: f64,
     /// Whether their surfaces meet.
     pub meet: bool,
+    /// Whether both ways say so.
+    pub agree: bool,
     /// The naive way; none where it would take too long.
     pub naive: Option<Cost>,
     /// Through hierarchies.
@@ -130,48 +134,55 @@ impl Trial {
         let all_tests = edges_by_faces(first, second) + edges_by_faces(second, first);
         let naive = (all_tests <= MOST_TESTS).then(|| {
             let work = naive::work(first, second, offset);
-            Cost {
+            let (seconds, spread) = time(stopwatch, || naive::intersect(first, second, offset));
+            let cost = Cost {
                 boxes: work.boxes,
                 tests: work.tests,
-                seconds: least(stopwatch, || naive::intersect(first, second, offset)),
-            }
+                seconds,
+                spread,
+            };
+            (cost, work.meet)
         });
         let work = tree::work(first_tree, second_tree, offset);
+        let (seconds, spread) = time(stopwatch, || {
+            tree::intersect(first_tree, second_tree, offset)
+        });
         Some(Comparison {
             pair: self.pair,
             time: self.world.time(),
             meet: work.meet,
-            naive,
+            agree: naive.is_none_or(|(_, meet)| meet == work.meet),
+            naive: naive.map(|(cost, _)| cost),
             tree: Cost {
                 boxes: work.boxes,
                 tests: work.tests,
-                seconds: least(stopwatch, || {
-                    tree::intersect(first_tree, second_tree, offset)
-                }),
+                seconds,
+                spread,
             },
             offset,
         })
     }
 }
 
-/// Time of an answer, s: the least of several means, since what disturbs one only adds to it.
-fn least(stopwatch: &impl Fn() -> Duration, answer: impl Fn() -> bool) -> f64 {
-    // What comes first pays for cold caches.
+/// Time of an answer, s: the median of several means, and the least and the greatest of them.
+fn time(stopwatch: &impl Fn() -> Duration, answer: impl Fn() -> bool) -> (f64, [f64; 2]) {
+    // What comes first pays for cold caches, and counts only where there is time for no other.
     let (began, first) = timed(stopwatch, &answer, 1);
-    let mut best = first;
     let answers = if first < MEASURED {
         let fits = MEASURED.as_secs_f64() / first.as_secs_f64().max(1e-9);
         fits.clamp(1.0, MOST_ANSWERS) as u32
     } else {
         1
     };
-    for _ in 0..ROUNDS {
-        if stopwatch().saturating_sub(began) > PATIENCE {
-            break;
-        }
-        best = best.min(timed(stopwatch, &answer, answers).1);
+    let mut means = Vec::new();
+    while means.len() < ROUNDS && stopwatch().saturating_sub(began) <= PATIENCE {
+        means.push(timed(stopwatch, &answer, answers).1.as_secs_f64());
     }
-    best.as_secs_f64()
+    means.sort_by(f64::total_cmp);
+    match (means.first(), means.last()) {
+        (Some(&least), Some(&most)) => (means[means.len() / 2], [least, most]),
+        _ => (first.as_secs_f64(), [first.as_secs_f64(); 2]),
+    }
 }
 
 /// When some answers began, and the mean time of each.

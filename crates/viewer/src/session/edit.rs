@@ -6,7 +6,7 @@ use sim_core::{DVec3, WorldError};
 
 use crate::headless;
 
-use super::{Reference, Session, State};
+use super::{Session, State};
 
 impl Session {
     /// Moves the selected body to `position`, m.
@@ -91,6 +91,7 @@ impl Session {
     pub fn set_colour(&mut self, colour: [f32; 3]) {
         if let Some(body) = self.selection.and_then(|i| self.scene.bodies.get_mut(i)) {
             body.colour = Some(colour);
+            self.edited();
         }
     }
 
@@ -148,12 +149,12 @@ impl Session {
                 self.disown_jobs();
                 if self.state == State::Layout {
                     keep(&mut self.scene.bodies[i]);
+                    self.edited();
                 }
-                self.reference = Reference::of(&self.world);
-                self.playback.begin(&self.world);
+                self.begin_record();
             }
             Err(error) => {
-                let text = headless::with_name(&self.scene, i, &error);
+                let text = headless::with_names(&self.scene, &error);
                 self.notices.error(field, text);
             }
         }
@@ -187,6 +188,7 @@ impl Session {
         match self.scene.world() {
             Ok(world) => {
                 self.notices.dismiss(about);
+                self.edited();
                 self.adopt(world);
                 true
             }

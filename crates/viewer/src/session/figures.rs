@@ -58,8 +58,7 @@ impl Figures {
 
 /// The state of a world at the moment that drift is counted from.
 ///
-/// What constant forces and weight do is known: the work `F . dx`, the impulse `F t`, and between
-/// collisions the path `x + v t + F t^2 / 2m`. What other forces do is known where they have a
+/// What constant forces and weight do is known: the work `F . dx` and the impulse `F t`. What other forces do is known where they have a
 /// potential, to the energy, and where they act between movable bodies, to the momentum. Drift is
 /// what remains after that is taken away, the error of method and collisions.
 #[derive(Clone, Debug)]
@@ -74,8 +73,8 @@ pub struct Reference {
     impacts: u64,
     /// Steps that ended with bodies in contact.
     contact_steps: u64,
-    /// Position and velocity of each body.
-    motion: Vec<(DVec3, DVec3)>,
+    /// Position and speed of each body.
+    motion: Vec<(DVec3, f64)>,
 }
 
 /// Errors since a [`Reference`]. Relative ones are relative to what was there at the start and to
@@ -98,9 +97,6 @@ pub struct Drift {
     /// The same relative to the sum of `m |v|` at the start and of the constant forces' `|F| t`
     /// since; none where that is 0.
     pub relative_momentum: Option<f64>,
-    /// Largest distance of a body from its exact path, m; known as long as nothing collides and
-    /// no force but constant ones acts.
-    pub position: Option<f64>,
 }
 
 impl Reference {
@@ -115,7 +111,7 @@ impl Reference {
             impacts: world.impacts(),
             contact_steps: world.contact_steps(),
             motion: (0..world.len())
-                .map(|i| (world.position(i), world.velocity(i)))
+                .map(|i| (world.position(i), world.velocity(i).length()))
                 .collect(),
         }
     }
@@ -127,16 +123,12 @@ impl Reference {
         let mut work = 0.0;
         let mut impulse = DVec3::ZERO;
         let mut pushes = 0.0;
-        let mut away: f64 = 0.0;
         for i in movable(world) {
-            let (start, velocity) = self.motion[i];
+            let (start, speed) = self.motion[i];
             let force = world.force(i) + world.mass(i) * weight;
             work += force.dot(world.position(i) - start);
             impulse += force * elapsed;
-            pushes += world.mass(i) * velocity.length() + force.length() * elapsed;
-            let bend = force / world.mass(i) * (0.5 * elapsed * elapsed);
-            let exact = start + velocity * elapsed + bend;
-            away = away.max((world.position(i) - exact).length());
+            pushes += world.mass(i) * speed + force.length() * elapsed;
         }
         let energy = (world.kinetic_energy() - self.energy - work)
             + (varying_potential(world) - self.potential);
@@ -161,7 +153,6 @@ impl Reference {
             driven: pushed || forces.iter().any(|force| drives(world, force)),
             momentum,
             relative_momentum: momentum.and_then(|error| ratio(error, pushes)),
-            position: (!has_met && forces.iter().all(is_weight)).then_some(away),
         }
     }
 }

@@ -18,11 +18,13 @@ impl Session {
                 let opening = self.opening.next();
                 let mut compare = std::mem::take(&mut self.compare);
                 compare.forget();
+                let variants = self.variants.edition + 1;
                 display.trails = session.display.trails;
                 *self = session;
                 self.display = display;
                 self.compare = compare;
                 self.edition = edition;
+                self.variants.edition = variants;
                 self.opening = opening;
                 let path = PathBuf::from(name_or_path);
                 self.file = path.extension().is_some().then_some(path);
@@ -50,15 +52,6 @@ impl Session {
         self.add_body(SceneBody::new(name.to_owned(), shape));
     }
 
-    /// Opens a scene or adds a mesh, by the name's ending.
-    pub fn take_in(&mut self, path: &Path) {
-        if is_scene_file(path) {
-            self.open(path);
-        } else {
-            self.import(path);
-        }
-    }
-
     /// Writes the set-up to a scene file; `.toml` is added where it is missing. A file that is
     /// not the scene's own is overwritten only with `overwrite`.
     pub fn save(&mut self, path: &Path, overwrite: bool) {
@@ -80,13 +73,44 @@ impl Session {
                 self.notices
                     .info("save", format!("Saved {}.", shown::path(&path)));
                 self.file = Some(path);
+                self.mark_saved();
             }
             Err(error) => self.notices.error("save", error.to_string()),
         }
     }
+
+    /// The path of a file beside the program that does not exist, named after the scene.
+    pub(super) fn new_file(&self, ending: &str) -> PathBuf {
+        let plain = |c: char| match c.is_alphanumeric() || "-_ ".contains(c) {
+            true => c,
+            false => '-',
+        };
+        let stem: String = self.scene.name.chars().take(60).map(plain).collect();
+        let names = std::iter::once(format!("{stem}.{ending}"))
+            .chain((2..).map(|n| format!("{stem}-{n}.{ending}")));
+        let mut free = names.map(PathBuf::from).filter(|path| !path.exists());
+        free.next().unwrap_or_default()
+    }
+
+    /// Writes something that was made of the run beside the program: to a new file of the scene's name
+    /// and this ending, which is told.
+    pub fn export(&mut self, ending: &str, bytes: &[u8]) {
+        let path = self.new_file(ending);
+        let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
+        match scene::file::write(&path, bytes) {
+            Ok(()) => {
+                let text = format!("Wrote {}.", shown::path(&whole));
+                self.notices.info("export", text);
+            }
+            Err(error) => {
+                let text = format!("Cannot write {}: {error}", shown::path(&whole));
+                self.notices.error("export", text);
+            }
+        }
+    }
 }
 
-fn is_scene_file(path: &Path) -> bool {
+pub(super) fn is_scene_file(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }

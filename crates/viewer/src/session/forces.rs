@@ -2,7 +2,7 @@
 
 use sim_core::{Force, WorldError};
 
-use super::{Reference, Session, State};
+use super::{Session, State};
 
 impl Session {
     /// Puts a force in the place of another.
@@ -27,9 +27,9 @@ impl Session {
                 self.disown_jobs();
                 if self.state == State::Layout {
                     self.scene.forces = self.world.forces().to_vec();
+                    self.edited();
                 }
-                self.reference = Reference::of(&self.world);
-                self.playback.begin(&self.world);
+                self.begin_record();
             }
             Err(error) => self.notices.error("forces", error.to_string()),
         }

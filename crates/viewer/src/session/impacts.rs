@@ -35,8 +35,8 @@ impl Impacts {
 }
 
 impl Session {
-    /// Each point as a dot, its normal as a thin line, and on it the impulse on the second body as
-    /// an arrow, as long as it is strong. The bodies do not hide them.
+    /// Each point as a dot, its normal as a thin line, and on it the impulse on the second body, or on
+    /// the first where nothing moves that, as an arrow, as long as it is strong. The bodies do not hide them.
     pub(super) fn add_impacts(&self, marks: &mut Vec<Line>) {
         let impacts = &self.impacts.0;
         let strongest = impacts.iter().map(|impact| impact.impulse);
@@ -58,6 +58,11 @@ impl Session {
                 });
             };
             let along = self.normal_length(impact) * impact.normal;
+            // On what can move: from an immovable second body back to the first.
+            let along = match self.world.mass(impact.bodies.1).is_finite() {
+                true => along,
+                false => -along,
+            };
             line(impact.point, impact.point + along, 1.0);
             let arrow = STRONGEST * strength * along;
             let tip = impact.point + arrow;

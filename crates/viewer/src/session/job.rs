@@ -7,11 +7,14 @@
 
 use std::time::Duration;
 
-use sim_core::{DVec3, StepError, World};
+use sim_core::{Collision, DVec3, StepError, World};
 
 use super::playback::Moment;
-use super::{Impacts, MAX_RATE, MIN_RATE, Remedy, Session, State, Trails, impacts, trails};
-use crate::headless;
+use super::{
+    Exact, Impacts, MAX_RATE, MIN_RATE, Remedy, Sample, Session, State, Trails, impacts, missed,
+    trails,
+};
+use crate::{headless, number};
 
 /// Real time that the steps of one frame may take before the rest of them is given up: leaves
 /// half of a 60 Hz frame to the drawing.
@@ -21,6 +24,7 @@ pub const STEP_BUDGET: Duration = Duration::from_millis(8);
 #[derive(Debug)]
 pub struct Job {
     world: World,
+    exact: Exact,
     steps: u32,
     /// Positions are to be noted after each step.
     traced: bool,
@@ -31,6 +35,7 @@ pub struct Job {
 #[derive(Debug)]
 pub struct Done {
     world: World,
+    exact: Exact,
     due: u32,
     taken: u32,
     time: Duration,
@@ -42,27 +47,40 @@ pub struct Done {
 
 impl Job {
     /// Takes the steps, as many as fit into [`STEP_BUDGET`] and at least one. `stopwatch` reads
-    /// real time.
+    /// real time; what is noted of a step does not count as its cost.
     pub fn run(mut self, stopwatch: impl Fn() -> Duration) -> Done {
         let began = stopwatch();
         let (mut taken, mut time, mut error) = (0, Duration::ZERO, None);
         let (mut trace, mut moments) = (Vec::new(), Vec::new());
-        while taken < self.steps && time <= STEP_BUDGET && error.is_none() {
+        while taken < self.steps && (taken == 0 || stopwatch().saturating_sub(began) <= STEP_BUDGET)
+        {
             let mut impacts = Vec::new();
+            let before = stopwatch();
             error = self.world.step_reporting(&mut impacts).err();
-            impacts.drain(..impacts.len().saturating_sub(impacts::MOST));
-            taken += u32::from(error.is_none());
-            if error.is_none() {
-                let world = self.world.clone();
-                moments.push(Moment { world, impacts });
+            let cost = stopwatch().saturating_sub(before);
+            if error.is_some() {
+                break;
             }
-            if self.traced && error.is_none() {
+            taken += 1;
+            time += cost;
+            let count = impacts.len() as u64;
+            let missed = missed::missed(&mut self.world, &impacts);
+            impacts.drain(..impacts.len().saturating_sub(impacts::MOST));
+            let error = self.exact.error(&self.world);
+            let cost = Some(cost.as_secs_f64());
+            moments.push(Moment {
+                sample: Sample::of(&self.world, error, cost, count),
+                world: self.world.clone(),
+                impacts,
+                missed,
+            });
+            if self.traced {
                 trace.extend(trails::positions(&self.world));
             }
-            time = stopwatch().saturating_sub(began);
         }
         Done {
             world: self.world,
+            exact: self.exact,
             due: self.steps,
             taken,
             time,
@@ -106,6 +124,7 @@ impl Session {
             let copy = self.world.clone();
             Job {
                 world: std::mem::replace(&mut self.world, copy),
+                exact: self.exact.clone(),
                 steps,
                 traced: self.display.trails,
                 edition: self.edition,
@@ -121,6 +140,7 @@ impl Session {
         }
         self.under_way = false;
         self.world = done.world;
+        self.exact = done.exact;
         if done.taken > 0 {
             self.figures.cost.add(done.time / done.taken);
         }
@@ -131,6 +151,7 @@ impl Session {
         for moment in &done.moments {
             self.impacts.extend(&moment.impacts, self.world.time());
         }
+        self.tell_missed(&done.moments);
         self.playback.extend(done.moments);
         match done.error {
             None if self.state == State::Running => {
@@ -149,6 +170,26 @@ impl Session {
                 }
             }
         }
+    }
+
+    /// Says what steps have not seen, and what would see it.
+    fn tell_missed(&mut self, moments: &[Moment]) {
+        let Some(last) = moments.iter().flat_map(|moment| &moment.missed).last() else {
+            return;
+        };
+        let count = moments
+            .iter()
+            .map(|moment| moment.missed.len())
+            .sum::<usize>()
+            + self.playback.missed_times().count();
+        let bodies = &self.scene.bodies;
+        let mut text = last.text(|i| bodies.get(i).map_or_else(String::new, |b| b.name.clone()));
+        if count > 1 {
+            text += &format!(" It is the {} such pass.", number::ordinal(count));
+        }
+        self.notices.error("missed", text);
+        let remedy = Remedy::Collision(Collision::Continuous);
+        self.notices.offer("missed", remedy);
     }
 
     /// Holds still at a state that has been kept.

@@ -10,24 +10,32 @@
 //! [`Session::due`] for how time comes in and steps are taken.
 
 mod ball;
+mod charts;
 mod compare;
+mod descent;
 mod edit;
+mod exact;
 mod figures;
 mod files;
 mod forces;
 mod framing;
+mod history;
 mod impacts;
 mod job;
+mod missed;
 mod notice;
 mod opening;
 mod overlaps;
 mod pick;
 mod picture;
 mod playback;
+mod sample;
 #[cfg(test)]
 mod tests;
 mod ties;
 mod trails;
+mod variants;
+mod view;
 mod walls;
 
 use std::time::Duration;
@@ -36,17 +44,28 @@ use scene::{Scene, SceneBody};
 use sim_core::{Collision, FixedStep, Method, Settings, World};
 
 use ball::Balls;
+pub use charts::{CHARTS, Chart, Curve, on_dark};
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
+pub use descent::{Level, descent};
+pub use exact::Exact;
 pub use figures::{Drift, Figures, Reference};
+pub use history::Leaving;
 use impacts::Impacts;
 pub use job::{Done, Job, STEP_BUDGET};
+pub use missed::Missed;
 pub use notice::{Notice, Notices, Remedy};
 use opening::Opening;
 pub use opening::Outlook;
 use overlaps::Overlaps;
 pub use picture::{BvhView, Display};
 pub use playback::Playback;
+pub use sample::{COLUMNS, Column, Sample, csv_head, csv_line};
 use trails::Trails;
+pub use variants::{
+    Halt, MOST_VARIANTS, PRESETS, Preset, Runner, Snapshot, Variant, VariantJob, Variants,
+    VariantsDone, full_name,
+};
+pub use view::{OutOfView, Side};
 
 use crate::camera::Camera;
 
@@ -91,6 +110,11 @@ pub struct Session {
     opening: Opening,
     overlaps: Overlaps,
     playback: Playback,
+    /// Where bodies would be without errors.
+    exact: Exact,
+    variants: Variants,
+    view: view::View,
+    history: history::History,
     /// Simulated seconds in a real one.
     speed: f64,
     /// Masses of bodies made immovable, kg, by name: what they get back.
@@ -118,7 +142,9 @@ impl Session {
         let world = scene.world()?;
         let clock = clock(scene.dt, 1.0)?;
         let mut session = Self {
+            history: history::History::begin(&scene),
             reference: Reference::of(&world),
+            exact: Exact::of(&world),
             scene,
             world,
             clock,
@@ -131,6 +157,8 @@ impl Session {
             opening: Opening::default(),
             overlaps: Overlaps::default(),
             playback: Playback::default(),
+            variants: Variants::default(),
+            view: view::View::default(),
             speed: 1.0,
             masses: std::collections::BTreeMap::new(),
             selection: None,
@@ -144,9 +172,10 @@ impl Session {
         };
         // Where paths are curved, they show what a method does; those of a crowd hide it.
         let few = session.world.len() <= MOST_TRAILS;
-        session.show_trails(few && !session.scene.forces.is_empty());
-        session.playback.begin(&session.world);
+        session.show_trails(few && session.is_pushed());
+        session.begin_record();
         session.frame_opening();
+        session.view.home = Some(session.camera);
         Ok(session)
     }
 
@@ -173,6 +202,11 @@ impl Session {
     /// How far energy and momentum are from where they should be.
     pub fn drift(&self) -> Drift {
         self.reference.drift(&self.world)
+    }
+
+    /// Largest distance of a body from its exact place, m, among those whose place is known.
+    pub fn path_error(&self) -> Option<f64> {
+        self.playback.sample().and_then(|sample| sample.error)
     }
 
     /// The states kept of this run.
@@ -209,6 +243,7 @@ impl Session {
     /// Selects a body, or none; an index without a body selects none.
     pub fn select(&mut self, body: Option<usize>) {
         self.selection = body.filter(|&i| i < self.world.len());
+        self.follow_anew();
     }
 
     /// The selected body as it was set up.
@@ -313,6 +348,7 @@ impl Session {
         self.scene.method = settings.method;
         self.scene.collision = settings.collision;
         self.scene.tolerance = settings.tolerance;
+        self.edited();
         self.notices.dismiss("settings");
         self.figures = Figures::default();
     }
@@ -324,7 +360,7 @@ impl Session {
         if settings.dt != self.clock.dt() {
             self.clock = clock;
         }
-        self.playback.begin(&self.world);
+        self.begin_record();
         Ok(())
     }
 
@@ -338,22 +374,30 @@ impl Session {
     /// Leaves the layout state: physics begins here.
     fn begin(&mut self) {
         self.disown_jobs();
-        self.reference = Reference::of(&self.world);
         self.figures = Figures::default();
         self.compare.forget();
         self.impacts = Impacts::default();
         self.overlaps = Overlaps::default();
-        self.playback.begin(&self.world);
+        self.begin_record();
         self.notices.dismiss("step");
         if self.display.trails {
             self.trails.begin(&self.world);
         }
     }
 
+    /// Begins anew what is kept, compared and measured of the run, from the world as it is now.
+    fn begin_record(&mut self) {
+        self.reference = Reference::of(&self.world);
+        self.exact = Exact::of(&self.world);
+        self.playback.begin(&self.world, &mut self.exact);
+        self.variants.begin(&self.world);
+    }
+
     /// Takes a world freshly made from the scene.
     fn adopt(&mut self, world: World) {
         self.world = world;
         self.state = State::Layout;
+        self.keep_up();
         self.select(self.selection);
         self.begin();
     }

@@ -23,6 +23,8 @@ pub struct Notice {
 pub enum Remedy {
     /// Steps per second of simulated time.
     Rate(f64),
+    /// How collisions are found.
+    Collision(sim_core::Collision),
 }
 
 /// The messages still shown, newest last.

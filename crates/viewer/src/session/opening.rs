@@ -62,7 +62,8 @@ impl Outlook {
     pub fn run(mut self, stopwatch: impl Fn() -> Duration) -> Self {
         let began = stopwatch();
         let has_weight = |force: &Force| matches!(force, Force::Gravity { .. });
-        let falls = self.world.forces().iter().any(has_weight);
+        let sinks = |i| self.world.force(i).y < 0.0;
+        let falls = self.world.forces().iter().any(has_weight) || (0..self.world.len()).any(sinks);
         let size = (self.high - self.low).max_element();
         let least = self.low - OPENING_REACH * size;
         let most = self.high + OPENING_REACH * size;
@@ -98,25 +99,29 @@ impl Session {
             return self.frame();
         };
         let (centre, radius) = self.room();
-        if self.world.len() > 1 || !self.world.forces().is_empty() {
+        if self.world.len() > 1 || self.is_pushed() {
             return self.camera.frame(centre, 1.2 * radius);
         }
         let velocity = self.world.velocity(body);
-        let acceleration = self.world.force(body) / self.world.mass(body);
         let (mut min, mut max) = (centre - radius, centre + radius);
         for time in [0.5, 1.0, 1.5, 2.0, 2.5, 3.0] {
-            let way = velocity * time + acceleration * (0.5 * time * time);
-            let there = centre + way.clamp_length_max(OPENING_REACH * radius);
+            let there = centre + (velocity * time).clamp_length_max(OPENING_REACH * radius);
             (min, max) = (min.min(there - radius), max.max(there + radius));
         }
         let ball = (max - min).length() / 2.0;
         self.camera.frame((min + max) / 2.0, ball);
     }
 
+    /// Whether any force acts, so that paths bend.
+    pub(super) fn is_pushed(&self) -> bool {
+        let pushed = |i| self.world.force(i) != DVec3::ZERO;
+        !self.world.forces().is_empty() || (0..self.world.len()).any(pushed)
+    }
+
     /// The look ahead that the opening view waits for, once.
     pub fn outlook(&mut self) -> Option<Outlook> {
         let begun = std::mem::replace(&mut self.opening.begun, true);
-        if begun || self.world.forces().is_empty() || self.state != State::Layout {
+        if begun || !self.is_pushed() || self.state != State::Layout {
             return None;
         }
         let (low, high) = self.world_box()?;
@@ -169,6 +174,7 @@ impl Session {
             radius = radius.max(1.1 * self.room().1);
         }
         self.camera.frame(middle, radius);
+        self.view.home = Some(self.camera);
     }
 
     /// Looks ahead now, for as long as it takes: for pictures without a window.

@@ -4,7 +4,7 @@ use scene::shown;
 use sim_core::{DVec3, Overlap, Shape};
 
 use super::framing::Bounds;
-use super::{Reference, Session, State};
+use super::{Session, State};
 use crate::headless;
 use crate::picture::Line;
 
@@ -51,9 +51,9 @@ impl Session {
             for &body in &moved {
                 self.scene.bodies[body].position = self.world.position(body);
             }
+            self.edited();
         }
-        self.reference = Reference::of(&self.world);
-        self.playback.begin(&self.world);
+        self.begin_record();
         if self.display.trails {
             self.trails.begin(&self.world);
         }

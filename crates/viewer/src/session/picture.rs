@@ -42,6 +42,8 @@ pub struct Display {
     pub ties: bool,
     /// Points, normals and impulses of late impacts. Off, none are listed.
     pub impacts: bool,
+    /// The level of the descent through two hierarchies that is shown, if one is.
+    pub descent: Option<usize>,
 }
 
 impl Default for Display {
@@ -59,6 +61,7 @@ impl Default for Display {
             trails: false,
             ties: true,
             impacts: true,
+            descent: None,
         }
     }
 }
@@ -69,9 +72,11 @@ impl Session {
         if self.display.bvh.shown {
             self.world.build_bvhs();
         }
+        self.keep_up();
         let mut picture = Picture {
             camera: self.camera,
             models: Vec::with_capacity(self.world.len()),
+            ghosts: Vec::new(),
             panes: Vec::new(),
             lines: Vec::new(),
             marks: Vec::new(),
@@ -80,12 +85,7 @@ impl Session {
         };
         for i in 0..self.world.len() {
             let selected = self.selection == Some(i);
-            let mesh = match self.world.shape(i) {
-                Some(Shape::Mesh(mesh)) => Some(mesh.clone()),
-                Some(&Shape::Sphere { radius }) => self.balls.mesh(radius),
-                Some(Shape::HalfSpace { .. }) | None => None,
-            };
-            if let Some(mesh) = mesh {
+            if let Some(mesh) = self.body_mesh(i) {
                 picture.models.push(Model {
                     mesh,
                     position: self.shown_position(i),
@@ -105,15 +105,33 @@ impl Session {
             }
         }
         self.add_dots(&mut picture.lines);
+        self.add_ghosts(&mut picture.ghosts, &mut picture.lines);
         if self.display.ties {
             self.add_ties(&mut picture.lines);
         }
+        let Picture {
+            ghosts,
+            lines,
+            marks,
+            ..
+        } = &mut picture;
+        self.add_missed(ghosts, lines, marks);
+        self.add_descent(lines);
         self.add_walls(&mut picture);
         if self.display.impacts {
             self.add_impacts(&mut picture.marks);
         }
         self.add_overlaps(&mut picture.marks);
         picture
+    }
+
+    /// What body `i` is drawn as, if it is a mesh or a sphere.
+    pub(super) fn body_mesh(&mut self, i: usize) -> Option<std::sync::Arc<sim_core::Mesh>> {
+        match self.world.shape(i) {
+            Some(Shape::Mesh(mesh)) => Some(mesh.clone()),
+            Some(&Shape::Sphere { radius }) => self.balls.mesh(radius),
+            Some(Shape::HalfSpace { .. }) | None => None,
+        }
     }
 
     /// Colour of body `i`, sRGB.

@@ -6,15 +6,20 @@ use std::collections::VecDeque;
 
 use sim_core::{Impact, World};
 
+use super::{Exact, Missed, Sample};
+
 /// The most states kept, and the most bodies in all of them together.
 const MOST_STATES: usize = 3600;
 const MOST_BODIES: usize = 200_000;
 
-/// A world after a step, and the impacts of that step.
+/// A world after a step, the impacts of that step, and its figures.
 #[derive(Clone, Debug)]
 pub(super) struct Moment {
     pub(super) world: World,
     pub(super) impacts: Vec<Impact>,
+    pub(super) sample: Sample,
+    /// What its step has not seen.
+    pub(super) missed: Vec<Missed>,
 }
 
 /// The states since the start or the last change, the oldest first, and the one that is looked at.
@@ -26,12 +31,30 @@ pub struct Playback {
 
 impl Playback {
     /// Begins afresh with a world.
-    pub(super) fn begin(&mut self, world: &World) {
+    pub(super) fn begin(&mut self, world: &World, exact: &mut Exact) {
         self.moments.clear();
         self.now = 0;
-        let impacts = Vec::new();
-        let world = world.clone();
-        self.moments.push_back(Moment { world, impacts });
+        self.moments.push_back(Moment {
+            sample: Sample::of(world, exact.error(world), None, 0),
+            world: world.clone(),
+            impacts: Vec::new(),
+            missed: Vec::new(),
+        });
+    }
+
+    /// The oldest state.
+    pub(super) fn first(&self) -> Option<&World> {
+        self.moments.front().map(|moment| &moment.world)
+    }
+
+    /// The figures of all states, the oldest first.
+    pub fn samples(&self) -> impl ExactSizeIterator<Item = &Sample> + Clone {
+        self.moments.iter().map(|moment| &moment.sample)
+    }
+
+    /// The figures of the state looked at.
+    pub fn sample(&self) -> Option<&Sample> {
+        self.moments.get(self.now).map(|moment| &moment.sample)
     }
 
     /// Takes in what came after the state looked at; what was there after it goes, and so does the
@@ -98,6 +121,12 @@ impl Playback {
         }
     }
 
+    /// Simulated times at which bodies passed through each other unseen, s.
+    pub fn missed_times(&self) -> impl Iterator<Item = f64> {
+        let missed = self.moments.iter().flat_map(|moment| &moment.missed);
+        missed.map(|missed| missed.time)
+    }
+
     /// Simulated times at which something hit something, s, in order of the steps.
     pub fn impact_times(&self) -> impl Iterator<Item = f64> {
         let impacts = self.moments.iter().flat_map(|moment| &moment.impacts);
@@ -105,6 +134,6 @@ impl Playback {
     }
 }
 
-fn capacity(bodies: usize) -> usize {
+pub(super) fn capacity(bodies: usize) -> usize {
     (MOST_BODIES / bodies.max(1)).clamp(2, MOST_STATES)
 }

@@ -7,11 +7,17 @@ use sim_core::{Collision, DVec3, METHODS};
 
 use super::{STEP_BUDGET, Session, State};
 
+mod descent;
+mod exact;
 mod forces;
+mod history;
+mod missed;
 mod opening;
 mod overlaps;
 mod playback;
 mod shapes;
+mod variants;
+mod view;
 
 const FRAME: Duration = Duration::from_millis(17);
 
@@ -475,7 +481,7 @@ fn drift_counts_errors_and_not_what_forces_do() {
     let drift = session.drift();
     assert!(drift.energy.is_some_and(|change| change.abs() < 1e-12));
     assert!(drift.momentum.is_some_and(|change| change < 1e-12));
-    assert!(drift.position.is_some_and(|away| away < 1e-12));
+    assert!(session.path_error().is_some_and(|away| away < 1e-12));
     session.reset();
     session.set_method(METHODS[0]);
     session.start();
@@ -490,7 +496,7 @@ fn drift_counts_errors_and_not_what_forces_do() {
     // Forward Euler leaves out a half of F/m dt in each of its steps.
     let world = session.world();
     let missed = 0.5 * world.time() / 60.0;
-    let away = session.drift().position.unwrap_or(f64::NAN);
+    let away = session.path_error().unwrap_or(f64::NAN);
     assert!((away - missed).abs() < 1e-12, "{away} instead of {missed}");
 }
 

@@ -29,19 +29,27 @@ pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session)
                             }
                             ui.add(egui::Label::new(&notice.text).wrap());
                         });
-                        if let Some(Remedy::Rate(rate)) = notice.remedy {
-                            let text = format!("Reset, and step at {} Hz", number::count(rate));
-                            let button = ui.button(text);
-                            if button.clicked() {
-                                agreed = notice.remedy;
+                        let text = match notice.remedy {
+                            None => return,
+                            Some(Remedy::Rate(rate)) => {
+                                format!("Reset, and step at {} Hz", number::count(rate))
                             }
+                            Some(Remedy::Collision(_)) => {
+                                "Reset, and look within the step".to_owned()
+                            }
+                        };
+                        if ui.button(text).clicked() {
+                            agreed = notice.remedy;
                         }
                     });
             }
         });
-    if let Some(Remedy::Rate(rate)) = agreed {
+    if let Some(remedy) = agreed {
         session.reset();
-        session.set_rate(rate);
+        match remedy {
+            Remedy::Rate(rate) => session.set_rate(rate),
+            Remedy::Collision(how) => session.set_collision(how),
+        }
     }
     if let Some(about) = dismissed {
         session.notices().dismiss(about);

@@ -1,6 +1,7 @@
 //! The bar on top: what runs, and the buttons that start, hold and reset it.
 
 use egui::{Button, Panel, RichText};
+use scene::shown;
 
 use super::{Ui, style};
 use crate::number;
@@ -18,12 +19,15 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
                 ui.toggle_value(&mut state.help, "Keys")
                     .on_hover_text("All keys and mouse gestures (H)");
                 hiding(ui, &mut state.panel_hidden, "Panel", "Side panel (P)");
+                hiding(ui, &mut state.plots_hidden, "Plots", "Curves over time (G)");
                 hiding(ui, &mut state.live_hidden, "Live", "Live figures (L)");
                 ui.add_space(6.0);
                 if !behind(ui, session) {
-                    let title = RichText::new(&session.scene().title).weak();
+                    let mark = if session.is_changed() { " *" } else { "" };
+                    let title = shown::part(&session.scene().title) + mark;
+                    let title = RichText::new(title);
                     ui.add(egui::Label::new(title).truncate())
-                        .on_hover_text(&session.scene().about);
+                        .on_hover_text(shown::part(&session.scene().about));
                 }
             });
         });
@@ -56,6 +60,24 @@ fn buttons(ui: &mut egui::Ui, session: &mut Session) {
         .clicked()
     {
         session.reset();
+    }
+    let undo = Button::new("⮪").min_size(egui::vec2(26.0, 26.0));
+    if ui
+        .add_enabled(session.can_undo(), undo)
+        .on_hover_text("Take the last edit of the set-up back (Ctrl+Z)")
+        .on_disabled_hover_text("There is nothing to take back")
+        .clicked()
+    {
+        session.undo();
+    }
+    let redo = Button::new("⮫").min_size(egui::vec2(26.0, 26.0));
+    if ui
+        .add_enabled(session.can_redo(), redo)
+        .on_hover_text("Do again what was taken back (Ctrl+Shift+Z or Ctrl+Y)")
+        .on_disabled_hover_text("Nothing was taken back")
+        .clicked()
+    {
+        session.redo();
     }
 }
 

@@ -1,7 +1,7 @@
 //! The selected body: its place in the set-up and its physics.
 
 use egui::{RichText, Slider};
-use scene::SceneShape;
+use scene::{SceneShape, shown};
 use sim_core::DVec3;
 
 use super::field;
@@ -146,11 +146,11 @@ fn heading(ui: &mut egui::Ui, session: &mut Session, i: usize) {
             session.set_colour(colour.map(|part| f32::from(part) / 255.0));
         }
         let body = &session.scene().bodies[i];
-        ui.add(egui::Label::new(RichText::new(&body.name).strong()).truncate());
+        ui.add(egui::Label::new(RichText::new(shown::name(&body.name)).strong()).truncate());
         let about = match &body.shape {
             SceneShape::Mesh(mesh) => {
                 let triangles = mesh.mesh().triangles().len();
-                format!("{}, {triangles} triangles", mesh.name())
+                format!("{}, {triangles} triangles", shown::name(mesh.name()))
             }
             SceneShape::Sphere { .. } => "sphere".to_owned(),
             SceneShape::HalfSpace { .. } => "half-space".to_owned(),

@@ -1,6 +1,7 @@
 //! Naive against BVH: what an answer costs each way, on the bodies that are near each other now.
 
 use egui::{Grid, RichText};
+use scene::shown;
 
 use super::style;
 use crate::number;
@@ -12,10 +13,11 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             "Ask both ways whether the two bodies meet, now and then, on a thread of its own. \
              Off, it costs nothing.",
         );
+    descent(ui, session);
     if !session.compare.on {
         return;
     }
-    let name = |i: usize| session.scene().bodies[i].name.as_str();
+    let name = |i: usize| shown::name(&session.scene().bodies[i].name);
     let now = match session.contest() {
         Contest::NoPair if session.selection().is_some() => {
             "The selected body has no other to meet.".to_owned()
@@ -32,6 +34,46 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         }
         None => {}
     }
+}
+
+/// The descent through both trees, level by level.
+fn descent(ui: &mut egui::Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        let mut shown = session.display.descent.is_some();
+        if ui
+            .checkbox(&mut shown, "Show the descent")
+            .on_hover_text(
+                "Boxes that are compared level by level, in orange those that meet and come into \
+                 question for the next level. Of the two bodies that are measured",
+            )
+            .changed()
+        {
+            session.display.descent = shown.then_some(0);
+        }
+        if shown {
+            if ui.button("◀").on_hover_text("One level up").clicked() {
+                session.step_descent(-1);
+            }
+            if ui.button("▶").on_hover_text("One level down (N)").clicked() {
+                session.step_descent(1);
+            }
+        }
+    });
+    let Some(shown) = session.display.descent else {
+        return;
+    };
+    let levels = session.descent();
+    let last = levels.len().saturating_sub(1);
+    let text = match levels.get(shown.min(last)) {
+        None => "It takes two bodies with meshes.".to_owned(),
+        Some(level) => format!(
+            "Level {} of {last}: {} pairs of boxes compared, {} meet.",
+            shown.min(last),
+            number::count(level.compared as f64),
+            number::count(level.meeting as f64)
+        ),
+    };
+    ui.label(RichText::new(text).weak());
 }
 
 fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
@@ -61,6 +103,18 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
                 number::count,
             );
             row(ui, last, "Time", TIME, |cost| cost.seconds, number::seconds);
+            ui.label("Spread").on_hover_text(SPREAD);
+            let spread = |cost: &Cost| {
+                let [least, most] = cost.spread;
+                format!(
+                    "±{:.0} %",
+                    50.0 * (most - least) / cost.seconds.max(f64::MIN_POSITIVE)
+                )
+            };
+            ui.monospace(last.naive.as_ref().map_or_else(|| "-".to_owned(), spread));
+            ui.monospace(spread(&last.tree));
+            ui.label("");
+            ui.end_row();
         });
     if last.naive.is_none() {
         ui.label(
@@ -80,15 +134,22 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
         "now".to_owned()
     };
     let meet = if last.meet { "meet" } else { "do not meet" };
-    let text = format!("{} and {} {meet}, as of {when}.", first.name, second.name);
-    ui.label(RichText::new(text).weak())
-        .on_hover_text("Both ways agree. The age is simulated time.");
+    let [first, second] = [first, second].map(|body| shown::name(&body.name));
+    let text = format!("{first} and {second} {meet}, as of {when}.");
+    if last.agree {
+        ui.label(RichText::new(text).weak())
+            .on_hover_text("Both ways agree. The age is simulated time.");
+    } else {
+        let text = "The two ways disagree. This is a fault of the program: please report it.";
+        ui.label(RichText::new(text).color(style::RED));
+    }
 }
 
 const TESTS: &str =
     "Naive: an edge with a triangle. BVH: two triangles whose boxes meet. Until the first hit.";
 const BOXES: &str = "Pairs of boxes compared";
-const TIME: &str = "Real time of one answer: the least of up to eight times, of short ones each over up to 200 answers";
+const TIME: &str = "Real time of one answer: the median of up to seven times, of short answers each the mean of up to 200";
+const SPREAD: &str = "Half of what lies between the least and the greatest of these times";
 
 fn row(
     ui: &mut egui::Ui,

@@ -15,6 +15,23 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         {
             session.frame();
         }
+        if ui
+            .button("Home")
+            .on_hover_text("Look as when the scene was opened (Home)")
+            .clicked()
+        {
+            session.go_home();
+        }
+        let mut following = session.is_following();
+        if ui
+            .checkbox(&mut following, "Follow")
+            .on_hover_text(
+                "Let the camera go along with the selected body, or with all that moves (V)",
+            )
+            .changed()
+        {
+            session.follow(following);
+        }
         ui.checkbox(&mut session.display.grid, "Ground grid");
     });
     ui.horizontal(|ui| {
@@ -77,7 +94,8 @@ fn boxes(ui: &mut egui::Ui, session: &mut Session) {
         ui.add_enabled(
             !view.every_depth,
             Slider::new(&mut view.depth, 0..=levels.saturating_sub(1)),
-        );
+        )
+        .on_hover_text("Depth of the boxes drawn");
         ui.checkbox(&mut view.every_depth, "all");
     });
     tree(ui, session);

@@ -3,6 +3,8 @@
 use egui::{DragValue, RichText};
 use sim_core::DVec3;
 
+use crate::expression;
+
 /// Width of the labels, so that values line up, in points.
 const LABEL: f32 = 76.0;
 
@@ -62,6 +64,15 @@ pub(super) fn scalar(
     changed.then_some(value)
 }
 
+/// Tells assistive technology what a list to choose from is about, and what is chosen.
+pub(super) fn named(list: &egui::Response, name: &str, chosen: &str) {
+    list.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, list.enabled(), name);
+        info.current_text_value = Some(chosen.to_owned());
+        info
+    });
+}
+
 /// A row that only shows a value.
 pub(super) fn figure(ui: &mut egui::Ui, name: &str, meaning: &str, value: impl Into<String>) {
     ui.horizontal(|ui| {
@@ -75,7 +86,7 @@ pub(super) fn figure(ui: &mut egui::Ui, name: &str, meaning: &str, value: impl I
 pub(super) fn take_refused(ctx: &egui::Context) -> Option<String> {
     let typed = ctx.data_mut(|data| data.remove_temp::<String>(refused_id()))?;
     Some(format!(
-        "\"{typed}\" is not a number: write it like 1.5 or -2e-3."
+        "\"{typed}\" is not a number: write it like 1.5, -2e-3 or 1/60."
     ))
 }
 
@@ -95,7 +106,7 @@ fn number(ui: &mut egui::Ui, value: &mut f64, width: f32) -> egui::Response {
             .max_decimals(4)
             .custom_formatter(|value, decimals| shown(value, *decimals.end()))
             .custom_parser(|typed| {
-                let number = parsed(typed);
+                let number = expression::value(typed);
                 if number.is_none() {
                     refused.replace(Some(typed.to_owned()));
                 }
@@ -123,12 +134,6 @@ fn shown(value: f64, decimals: usize) -> String {
     }
 }
 
-/// The number that was typed, if it is one; a minus may be typographic.
-fn parsed(typed: &str) -> Option<f64> {
-    let number: f64 = typed.trim().replace('\u{2212}', "-").parse().ok()?;
-    (!number.is_nan()).then_some(number)
-}
-
 fn titled(name: &str, unit: &str) -> String {
     if unit.is_empty() {
         name.to_owned()
@@ -139,17 +144,7 @@ fn titled(name: &str, unit: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{parsed, shown};
-
-    #[test]
-    fn what_is_typed_is_a_number_or_refused() {
-        assert_eq!(parsed(" 1.5 "), Some(1.5));
-        assert_eq!(parsed("\u{2212}2e-3"), Some(-2e-3));
-        assert_eq!(parsed("inf"), Some(f64::INFINITY));
-        for typed in ["nan", "NaN", "hello", "1,5", "2*3", ""] {
-            assert_eq!(parsed(typed), None, "{typed}");
-        }
-    }
+    use super::shown;
 
     #[test]
     fn fields_show_every_number_in_little_room() {

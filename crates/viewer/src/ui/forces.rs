@@ -1,6 +1,7 @@
 //! The forces of the scene: one block of fields each, and a list of those that can be added.
 
 use egui::{ComboBox, RichText};
+use scene::shown;
 use sim_core::{DVec3, Force};
 
 use super::field;
@@ -26,7 +27,7 @@ fn list(ui: &mut egui::Ui, session: &mut Session) {
         .scene()
         .bodies
         .iter()
-        .map(|b| b.name.clone())
+        .map(|b| shown::name(&b.name))
         .collect();
     for (i, force) in session.world().forces().to_vec().into_iter().enumerate() {
         ui.push_id(i, |ui| {
@@ -160,7 +161,7 @@ fn choose(
     let name = |i: usize| names.get(i).map_or("?", String::as_str);
     ui.horizontal(|ui| {
         field::label(ui, title, "The body that the force acts on");
-        ComboBox::from_id_salt(title)
+        let list = ComboBox::from_id_salt(title)
             .selected_text(body.map_or(all.unwrap_or("?"), name))
             .width(ui.available_width() - 8.0)
             .height(340.0)
@@ -171,7 +172,9 @@ fn choose(
                 for i in 0..names.len() {
                     ui.selectable_value(body, Some(i), name(i));
                 }
-            });
+            })
+            .response;
+        field::named(&list, title, body.map_or(all.unwrap_or("?"), name));
     });
     *body != before
 }
@@ -225,7 +228,7 @@ fn add(ui: &mut egui::Ui, session: &mut Session) {
             "Add",
             "A new force, for the selected body where it needs one",
         );
-        ComboBox::from_id_salt("add force")
+        let list = ComboBox::from_id_salt("add force")
             .selected_text("a force…")
             .width(ui.available_width() - 8.0)
             .height(340.0)
@@ -236,7 +239,9 @@ fn add(ui: &mut egui::Ui, session: &mut Session) {
                         chosen = Some(force);
                     }
                 }
-            });
+            })
+            .response;
+        field::named(&list, "Add force", "a force…");
     });
     if let Some(force) = chosen {
         session.add_force(force);

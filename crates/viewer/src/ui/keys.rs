@@ -1,10 +1,10 @@
 //! Keys: one table that is obeyed, listed below the picture and explained in a window.
 
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Key, Panel, RichText, TextStyle};
+use egui::{Key, Modifiers, Panel, RichText, TextStyle};
 
 use super::Ui;
-use crate::session::Session;
+use crate::session::{Session, Side};
 
 /// A key and what it does.
 struct Shortcut {
@@ -14,7 +14,7 @@ struct Shortcut {
     act: fn(&mut Ui, &mut Session, Key),
 }
 
-static SHORTCUTS: [Shortcut; 14] = [
+static SHORTCUTS: [Shortcut; 19] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
@@ -35,7 +35,7 @@ static SHORTCUTS: [Shortcut; 14] = [
     },
     Shortcut {
         keys: &[Key::PageDown],
-        label: "Page down",
+        label: "PgDn",
         meaning: "five steps",
         act: |_, session, _| super::time::five_steps(session),
     },
@@ -52,6 +52,30 @@ static SHORTCUTS: [Shortcut; 14] = [
         act: |_, session, _| session.frame(),
     },
     Shortcut {
+        keys: &[Key::V],
+        label: "V",
+        meaning: "follow",
+        act: |_, session, _| session.follow(!session.is_following()),
+    },
+    Shortcut {
+        keys: &[Key::Home],
+        label: "Home",
+        meaning: "home view",
+        act: |_, session, _| session.go_home(),
+    },
+    Shortcut {
+        keys: &[Key::Num1, Key::Num2, Key::Num3],
+        label: "1 2 3",
+        meaning: "sides",
+        act: |_, session, key| {
+            session.look_from(match key {
+                Key::Num1 => Side::Front,
+                Key::Num2 => Side::Right,
+                _ => Side::Top,
+            });
+        },
+    },
+    Shortcut {
         keys: &[Key::B],
         label: "B",
         meaning: "BVH boxes",
@@ -60,8 +84,14 @@ static SHORTCUTS: [Shortcut; 14] = [
     Shortcut {
         keys: &[Key::OpenBracket, Key::CloseBracket],
         label: "[ ]",
-        meaning: "depth of boxes",
+        meaning: "box depth",
         act: |_, session, key| session.step_depth(if key == Key::OpenBracket { -1 } else { 1 }),
+    },
+    Shortcut {
+        keys: &[Key::N],
+        label: "N",
+        meaning: "descent",
+        act: |_, session, _| session.step_descent(1),
     },
     Shortcut {
         keys: &[Key::T],
@@ -78,7 +108,7 @@ static SHORTCUTS: [Shortcut; 14] = [
     Shortcut {
         keys: &[Key::Escape],
         label: "Esc",
-        meaning: "select nothing",
+        meaning: "deselect",
         act: |_, session, _| session.select(None),
     },
     Shortcut {
@@ -90,8 +120,14 @@ static SHORTCUTS: [Shortcut; 14] = [
     Shortcut {
         keys: &[Key::L],
         label: "L",
-        meaning: "live figures",
+        meaning: "figures",
         act: |ui, _, _| ui.live_hidden ^= true,
+    },
+    Shortcut {
+        keys: &[Key::G],
+        label: "G",
+        meaning: "plots",
+        act: |ui, _, _| ui.plots_hidden ^= true,
     },
     Shortcut {
         keys: &[Key::H],
@@ -101,7 +137,26 @@ static SHORTCUTS: [Shortcut; 14] = [
     },
 ];
 
-static GESTURES: [(&str, &str); 6] = [
+/// What a key does.
+type Act = fn(&mut Session);
+
+/// What is done with the control or command key held.
+const WITH_CTRL: [(Modifiers, Key, Act); 4] = [
+    // With Shift first, since without it does not look at Shift.
+    (
+        Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        Key::Z,
+        Session::redo,
+    ),
+    (Modifiers::COMMAND, Key::Z, Session::undo),
+    (Modifiers::COMMAND, Key::Y, Session::redo),
+    (Modifiers::COMMAND, Key::S, Session::save_own),
+];
+
+static GESTURES: [(&str, &str); 9] = [
+    ("Ctrl + Z", "take an edit back"),
+    ("Ctrl + Shift + Z, Ctrl + Y", "do it again"),
+    ("Ctrl + S", "save the scene"),
     ("Click", "select a body"),
     ("Drag left or right", "orbit"),
     ("Drag middle, Shift + drag", "pan"),
@@ -114,6 +169,14 @@ static GESTURES: [(&str, &str); 6] = [
 pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session) {
     if ctx.egui_wants_keyboard_input() {
         return;
+    }
+    if session.leaving().is_some() {
+        return;
+    }
+    for (modifiers, key, act) in WITH_CTRL {
+        if ctx.input_mut(|input| input.consume_key(modifiers, key)) {
+            act(session);
+        }
     }
     for shortcut in &SHORTCUTS {
         for &key in shortcut.keys {
@@ -133,9 +196,11 @@ pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session)
 pub(super) fn show_line(root: &mut egui::Ui) {
     Panel::bottom("keys").show(root, |ui| {
         ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing.x = 14.0;
+            ui.spacing_mut().item_spacing = egui::vec2(14.0, 1.0);
+            ui.spacing_mut().interact_size.y = 12.0;
             for shortcut in &SHORTCUTS {
-                ui.label(line(ui, shortcut));
+                // A key stays beside its meaning.
+                ui.add(egui::Label::new(line(ui, shortcut)).extend());
             }
         });
     });

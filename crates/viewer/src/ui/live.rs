@@ -1,6 +1,6 @@
-//! Figures of the running world, over the picture.
+//! Figures of the running world.
 
-use egui::{Align2, Area, Color32, Frame, RichText};
+use egui::RichText;
 use scene::shown;
 use sim_core::Overlap;
 
@@ -11,26 +11,13 @@ use crate::session::Session;
 /// Pairs in overlap that are named; more would cover the picture.
 const OVERLAPS: usize = 4;
 
-/// Shows the figures in the lower left corner of the picture.
-pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session) {
-    Area::new(egui::Id::unique("live"))
-        .pivot(Align2::LEFT_BOTTOM)
-        .fixed_pos(over.left_bottom() + egui::vec2(10.0, -10.0))
-        .interactable(true)
-        .show(ctx, |ui| {
-            Frame::NONE
-                .fill(Color32::from_black_alpha(185))
-                .corner_radius(6)
-                .inner_margin(egui::Margin::symmetric(10, 8))
-                .show(ui, |ui| {
-                    ui.set_width(330.0_f32.min(over.width() - 40.0));
-                    ui.spacing_mut().item_spacing.y = 1.0;
-                    ui.spacing_mut().interact_size.y = 17.0;
-                    figures(ui, session);
-                    impacts(ui, session);
-                    overlaps(ui, session);
-                });
-        });
+/// Shows the figures.
+pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
+    ui.spacing_mut().item_spacing.y = 1.0;
+    ui.spacing_mut().interact_size.y = 17.0;
+    figures(ui, session);
+    impacts(ui, session);
+    overlaps(ui, session);
 }
 
 fn figures(ui: &mut egui::Ui, session: &Session) {
@@ -120,10 +107,11 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     field::figure(
         ui,
         "Path error",
-        "Largest distance of a body from its exact path, known until the first collision \
-         and under constant forces only",
-        drift
-            .position
+        "Largest distance of a body from where it would be exactly, of those for which that is known: \
+         under constant forces, off floors and walls too, springs to points, linear drag and one \
+         attraction, until bodies come together",
+        session
+            .path_error()
             .map_or_else(none, |away| format!("{} m", number::figure(away))),
     );
 }
@@ -141,7 +129,7 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
             .scene()
             .bodies
             .get(i)
-            .map_or("?", |b| b.name.as_str())
+            .map_or_else(|| "?".to_owned(), |b| shown::name(&b.name))
     };
     if let Some(impact) = world.last_impact() {
         let (a, b) = impact.bodies;

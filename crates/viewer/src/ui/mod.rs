@@ -9,14 +9,19 @@ mod body;
 mod compare;
 mod dialog;
 mod display;
+mod dock;
+mod export;
 mod field;
 mod forces;
 mod keys;
 mod live;
+mod plots;
+mod question;
 mod scene;
 mod simulation;
 mod style;
 mod time;
+mod variants;
 mod viewport;
 
 use egui::{CollapsingHeader, Panel, RichText, ScrollArea};
@@ -31,6 +36,9 @@ pub struct Ui {
     help: bool,
     panel_hidden: bool,
     live_hidden: bool,
+    plots_hidden: bool,
+    plots: plots::Plots,
+    variants: variants::Choice,
     files: scene::Files,
 }
 
@@ -50,14 +58,13 @@ impl Ui {
         if !self.panel_hidden {
             self.side_panel(root, session);
         }
+        dock::show(root, self, session);
         if let Some(text) = field::take_refused(root.ctx()) {
             session.notices().error("number", text);
         }
         let rect = viewport::show(root, session, picture);
-        if !self.live_hidden {
-            live::show(root.ctx(), rect, session);
-        }
         banner::show(root.ctx(), rect, session);
+        question::show(root.ctx(), session);
         keys::show_help(root.ctx(), &mut self.help);
         rect
     }
@@ -73,6 +80,9 @@ impl Ui {
                     .show(ui, |ui| {
                         section(ui, "Scene", |ui| scene::show(ui, &mut self.files, session));
                         section(ui, "Simulation", |ui| simulation::show(ui, session));
+                        section(ui, "Compare", |ui| {
+                            variants::show(ui, &mut self.variants, session);
+                        });
                         section(ui, "Selected body", |ui| body::show(ui, session));
                         section(ui, "Forces", |ui| forces::show(ui, session));
                         section(ui, "Display", |ui| display::show(ui, session));

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use egui::{ComboBox, RichText, TextEdit};
-use scene::{MeshRef, SceneShape};
+use scene::{MeshRef, SceneShape, shown};
 use sim_core::DVec3;
 
 use super::dialog::{Answer, Dialog, Purpose};
 use super::field;
-use crate::session::Session;
+use crate::session::{Leaving, Session};
 
 /// The path typed, and the dialog opened instead.
 #[derive(Default)]
@@ -44,24 +44,30 @@ fn gallery(ui: &mut egui::Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         field::label(ui, "Gallery", "Scenes that come with the program");
         let mut chosen = None;
-        ComboBox::from_id_salt("gallery")
-            .selected_text(&session.scene().name)
+        let list = ComboBox::from_id_salt("gallery")
+            .selected_text(shown::name(&session.scene().name))
             .width(ui.available_width() - 8.0)
             .height(340.0)
             .show_ui(ui, |ui| {
                 for entry in scene::SCENES {
                     let current = entry.name == session.scene().name;
-                    if ui.selectable_label(current, entry.name).clicked() {
+                    let title = entry.title();
+                    if ui
+                        .selectable_label(current, format!("{}: {title}", entry.name))
+                        .clicked()
+                    {
                         chosen = Some(entry.name);
                     }
                 }
-            });
+            })
+            .response;
+        field::named(&list, "Gallery", &shown::name(&session.scene().name));
         if let Some(name) = chosen {
-            session.open(name);
+            session.leave(Leaving::Open(name.into()));
         }
     });
     if !session.scene().about.is_empty() {
-        ui.label(RichText::new(&session.scene().about).weak());
+        ui.label(shown::part(&session.scene().about));
     }
 }
 
@@ -155,7 +161,7 @@ fn bodies(ui: &mut egui::Ui, session: &mut Session) {
                         text.append(what, 0.0, format);
                     };
                     part("⏺ ", egui::Color32::from_rgb(r, g, b));
-                    part(&body.name, ui.visuals().strong_text_color());
+                    part(&shown::name(&body.name), ui.visuals().strong_text_color());
                     if ui.selectable_label(selected, text).clicked() {
                         chosen = Some((!selected).then_some(i));
                     }

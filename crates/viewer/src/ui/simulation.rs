@@ -15,7 +15,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             "Integrator",
             "How velocities and positions go from step to step",
         );
-        ComboBox::from_id_salt("integrator")
+        let list = ComboBox::from_id_salt("integrator")
             .selected_text(now.method.title)
             .width(ui.available_width() - 8.0)
             .height(340.0)
@@ -32,6 +32,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             })
             .response
             .on_hover_text(about(now.method));
+        field::named(&list, "Integrator", now.method.title);
     });
     if now.method.adaptive {
         tolerance(ui, session, now.tolerance);

@@ -11,8 +11,11 @@ pub(super) const RED: Color32 = Color32::from_rgb(240, 120, 110);
 /// The selection, like the edges drawn over it.
 pub(super) const BLUE: Color32 = Color32::from_rgb(110, 168, 254);
 
-/// Sets the style of a new egui context: dark, quiet, with room around things.
+/// Sets the style of a new egui context: dark, quiet, with room around things, and with the system's
+/// fonts for writing that egui's own fonts lack.
 pub fn apply(ctx: &egui::Context) {
+    let fonts = egui_system_font_provider::SystemFontProvider::new();
+    ctx.add_font_provider(std::sync::Arc::new(fonts));
     ctx.set_theme(egui::Theme::Dark);
     ctx.all_styles_mut(|style| {
         style.text_styles = [

@@ -82,6 +82,10 @@ fn line(ui: &mut egui::Ui, session: &mut Session) {
     for time in session.playback().impact_times().take(MARKS) {
         painter.vline(place(time), rect.shrink(3.0).y_range(), mark);
     }
+    let unseen = Stroke::new(1.5, style::RED);
+    for time in session.playback().missed_times().take(MARKS) {
+        painter.vline(place(time), rect.shrink(3.0).y_range(), unseen);
+    }
     let hand = Stroke::new(2.0, ui.visuals().strong_text_color());
     painter.vline(place(now), rect.y_range(), hand);
     let pointed = response.interact_pointer_pos().or(response.hover_pos());
@@ -100,7 +104,8 @@ fn line(ui: &mut egui::Ui, session: &mut Session) {
     let kept = session.playback();
     response.on_hover_text(format!(
         "{} states kept, from {first:.3} to {last:.3} s, at most {}: the run since the start or the \
-         last change. Click or drag to go there; impacts are orange.",
+         last change. Click or drag to go there; impacts are orange, and red is where \
+         bodies passed through each other between two steps.",
         number::count(kept.len() as f64),
         number::count(kept.capacity() as f64),
     ));

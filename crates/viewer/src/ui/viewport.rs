@@ -2,6 +2,8 @@
 
 use egui::{Align2, Color32, CornerRadius, PointerButton, Pos2, Rect, Sense, TextureId};
 
+use scene::shown;
+
 use super::style;
 use crate::session::Session;
 
@@ -34,9 +36,17 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session, picture: TextureId)
     if response.hovered() {
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let factor = (ZOOM * f64::from(scroll)).exp() * f64::from(pinch);
-        session.camera.zoom(factor);
+        // Nothing is to be drawn anew while the wheel stands still.
+        if factor != 1.0
+            && let Some(at) = response.hover_pos()
+        {
+            let at = (at - rect.center()) / rect.size();
+            let [x, y] = [2.0 * f64::from(at.x), -2.0 * f64::from(at.y)];
+            session.camera.zoom_at(factor, x, y, aspect);
+        }
     }
     name_selected(ui, rect, aspect, session);
+    point_out(ui, rect, aspect, session);
     offer_drop(ui, rect);
     rect
 }
@@ -70,7 +80,7 @@ fn name_selected(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
     let at = rect.center() + 0.5 * egui::vec2(x as f32, -y as f32) * rect.size();
     let painter = ui.painter().with_clip_rect(rect);
     let font = egui::TextStyle::Body.resolve(ui.style());
-    let text = painter.layout_no_wrap(body.name.clone(), font, style::BLUE);
+    let text = painter.layout_no_wrap(shown::name(&body.name), font, style::BLUE);
     let place = Align2::CENTER_BOTTOM.anchor_size(at - egui::vec2(0.0, 6.0), text.size());
     painter.rect_filled(
         place.expand2(egui::vec2(5.0, 1.0)),
@@ -78,6 +88,41 @@ fn name_selected(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
         Color32::from_black_alpha(150),
     );
     painter.galley(place.min, text, style::BLUE);
+}
+
+/// Points from the border to bodies that are out of view, by their names.
+fn point_out(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let painter = ui.painter().with_clip_rect(rect);
+    let mut taken: Vec<Rect> = Vec::new();
+    for out in session.out_of_view(aspect) {
+        let [x, y] = out.towards.map(|part| part as f32);
+        let way = egui::vec2(x, -y);
+        // To the border from the middle, a little inside.
+        let half = 0.5 * rect.size() - egui::vec2(16.0, 16.0);
+        let tip = rect.center() + way * (half.x / way.x.abs()).min(half.y / way.y.abs());
+        let along = (way * rect.size()).normalized();
+        let across = along.rot90();
+        let [red, green, blue] = session.colour(out.body).map(|part| (255.0 * part) as u8);
+        let colour = Color32::from_rgb(red, green, blue);
+        painter.add(egui::Shape::convex_polygon(
+            vec![tip + 9.0 * along, tip + 7.0 * across, tip - 7.0 * across],
+            colour,
+            egui::Stroke::new(1.0, Color32::from_gray(60)),
+        ));
+        let body = &session.scene().bodies[out.body];
+        let text = painter.layout_no_wrap(shown::name(&body.name), font.clone(), Color32::WHITE);
+        let middle = tip - along * (12.0 + 0.5 * text.size().x * along.x.abs());
+        let place = Align2::CENTER_CENTER.anchor_size(middle, text.size());
+        let place = place.translate(rect.shrink(4.0).intersect(place).center() - place.center());
+        if taken.iter().any(|other| other.intersects(place)) {
+            continue;
+        }
+        taken.push(place);
+        let back = place.expand2(egui::vec2(4.0, 1.0));
+        painter.rect_filled(back, CornerRadius::same(4), Color32::from_black_alpha(170));
+        painter.galley(place.min, text, Color32::WHITE);
+    }
 }
 
 /// Says what happens to files that hang over the window.

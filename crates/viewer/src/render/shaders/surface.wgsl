@@ -40,6 +40,43 @@ fn vs_edged(corner: Corner, instance: Instance, @builtin(vertex_index) index: u3
     return placed(corner, instance, parts);
 }
 
+// The same moved aside by some pixels and a little back, so that only a rim is seen beside the body.
+const RIM = 2.0;
+const BACK = 0.95;
+const RIM_COLOUR = vec3f(0.02, 0.14, 0.9);
+
+fn beside(corner: Corner, instance: Instance, side: vec2f) -> Varying {
+    var out = placed(corner, instance, vec3f(1.0));
+    let shift = RIM * side / frame.half_size * out.clip.w;
+    out.clip = vec4f(out.clip.xy + shift, out.clip.z * BACK, out.clip.w);
+    return out;
+}
+
+@vertex
+fn vs_rim0(corner: Corner, instance: Instance) -> Varying {
+    return beside(corner, instance, vec2f(0.7, 0.7));
+}
+
+@vertex
+fn vs_rim1(corner: Corner, instance: Instance) -> Varying {
+    return beside(corner, instance, vec2f(-0.7, 0.7));
+}
+
+@vertex
+fn vs_rim2(corner: Corner, instance: Instance) -> Varying {
+    return beside(corner, instance, vec2f(-0.7, -0.7));
+}
+
+@vertex
+fn vs_rim3(corner: Corner, instance: Instance) -> Varying {
+    return beside(corner, instance, vec2f(0.7, -0.7));
+}
+
+@fragment
+fn fs_rim(in: Varying) -> @location(0) vec4f {
+    return vec4f(RIM_COLOUR, 1.0);
+}
+
 fn surface(in: Varying, front: bool) -> vec3f {
     // Both sides are drawn: an open mesh has an inside to look at.
     return lit(in.colour, in.position, normalize(select(-in.normal, in.normal, front)));
@@ -48,6 +85,14 @@ fn surface(in: Varying, front: bool) -> vec3f {
 @fragment
 fn fs_plain(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     return vec4f(surface(in, front), 1.0);
+}
+
+// What is seen through: faint where it is looked at straight, dense towards its outline.
+@fragment
+fn fs_ghost(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let grazing = 1.0 - abs(dot(normalize(in.normal), normalize(in.position)));
+    let opacity = 0.26 + 0.45 * grazing * grazing;
+    return vec4f(surface(in, front) * opacity, opacity);
 }
 
 const EDGE = vec3f(0.010, 0.014, 0.022);

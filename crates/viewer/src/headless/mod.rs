@@ -1,5 +1,9 @@
 //! Runs and checks without a window, as text or JSON. Needs neither display nor graphics adapter.
 
+mod compare;
+
+pub use compare::{Form, compare};
+
 use std::fmt::{Display, Write};
 use std::io::Write as _;
 use std::path::Path;
@@ -11,7 +15,7 @@ use sim_core::{DVec3, Overlap, SeparateError, StepError, World};
 use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
 use crate::number;
-use crate::session::{Drift, Reference};
+use crate::session::{Drift, Exact, Halt, Reference, Runner, csv_head, csv_line};
 use crate::stopwatch::Stopwatch;
 
 /// Final state of a run. Numbers are f64 and survive the way through JSON bit for bit.
@@ -146,7 +150,7 @@ pub fn run(
         overlaps: world.overlaps().into_iter().map(overlap).collect(),
         separated: separated.into_iter().map(name).collect(),
     };
-    let reference = Reference::of(&world);
+    let (reference, mut exact) = (Reference::of(&world), Exact::of(&world));
     interrupt
         .listen()
         .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
@@ -171,12 +175,41 @@ pub fn run(
         );
     }
     let drift = reference.drift(&world);
-    let report = RunReport::of(scene, &world, start, &drift);
+    let report = RunReport::of(scene, &world, start, (&drift, exact.error(&world)));
     Ok(if json {
         to_json(&report)
     } else {
         report.table(scene, &drift, seconds_per_step)
     })
+}
+
+/// Takes `steps` steps of a scene, or as many as there are before an interrupt; the figures of every
+/// state as CSV.
+pub fn run_csv(scene: &Scene, steps: u64, interrupt: &Interrupt) -> Result<String, Failure> {
+    let world = scene.world().map_err(Failure::refused)?;
+    let mut runner = Runner::stepping(&world, *world.settings()).map_err(Failure::refused)?;
+    interrupt
+        .listen()
+        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    let mut text = csv_head(false) + &csv_line(None, &runner.snapshot(None, 0).sample);
+    let mut progress = Progress::new(steps);
+    let stopwatch = Stopwatch::start();
+    for step in 1..=steps {
+        if interrupt.came() {
+            break;
+        }
+        match runner.step(&|| stopwatch.read()) {
+            Ok(snapshot) => text += &csv_line(None, &snapshot.sample),
+            Err(Halt::Step(error)) => {
+                progress.end();
+                return Err(Failure::Run(step_error(scene, &error)));
+            }
+            Err(Halt::Unknown) => break,
+        }
+        progress.at(step);
+    }
+    progress.end();
+    Ok(text)
 }
 
 /// Reads a mesh file; what is in it as JSON or as text.
@@ -210,7 +243,7 @@ pub fn step_error(scene: &Scene, error: &StepError) -> String {
     format!(
         "scene `{}`: {}",
         shown::name(&scene.name),
-        with_name(scene, error.body(), error)
+        with_names(scene, error)
     )
 }
 
@@ -237,14 +270,35 @@ pub fn separate_error(scene: &Scene, error: &SeparateError) -> String {
     }
 }
 
-/// An error's message with a body's name in place of its index.
-pub fn with_name(scene: &Scene, body: usize, error: &impl Display) -> String {
-    let name = scene.bodies.get(body).map_or("?", |body| &body.name);
-    error.to_string().replacen(
-        &format!("body {body}"),
-        &format!("body `{}`", shown::name(name)),
-        1,
-    )
+/// An error's message with the names of bodies in place of their indices.
+pub fn with_names(scene: &Scene, error: &impl Display) -> String {
+    let message = error.to_string();
+    let mut words = Vec::new();
+    // Whether the next number is a body, and whether one after it is as well.
+    let (mut one, mut more) = (false, false);
+    for word in message.split(' ') {
+        let end = word
+            .find(|c: char| !c.is_ascii_digit())
+            .unwrap_or(word.len());
+        let body = word[..end].parse::<usize>().ok().filter(|_| one);
+        match body.map(|body| scene.bodies.get(body)) {
+            Some(body) => {
+                let name = body.map_or("?", |body| &body.name);
+                words.push(format!("`{}`{}", shown::name(name), &word[end..]));
+                (one, more) = (more, false);
+            }
+            None => {
+                words.push(word.to_owned());
+                (one, more) = match word {
+                    "body" => (true, false),
+                    "bodies" => (true, true),
+                    "and" => (one, more),
+                    _ => (false, false),
+                };
+            }
+        }
+    }
+    words.join(" ")
 }
 
 fn to_json(report: &impl Serialize) -> String {
@@ -284,7 +338,12 @@ fn repairs(repairs: &MeshReport) -> Vec<RepairReport> {
 }
 
 impl<'a> RunReport<'a> {
-    fn of(scene: &'a Scene, world: &World, start: Start<'a>, drift: &Drift) -> Self {
+    fn of(
+        scene: &'a Scene,
+        world: &World,
+        start: Start<'a>,
+        (drift, path_error): (&Drift, Option<f64>),
+    ) -> Self {
         let name = |body: usize| scene.bodies[body].name.as_str();
         Self {
             time: world.time(),
@@ -300,7 +359,7 @@ impl<'a> RunReport<'a> {
             driven: drift.driven,
             momentum_drift: drift.relative_momentum,
             momentum_error: drift.momentum,
-            path_error: drift.position,
+            path_error,
             momentum: world.momentum().to_array(),
             last_impact: world.last_impact().map(|impact| ImpactReport {
                 time: impact.time,
@@ -377,11 +436,8 @@ impl<'a> RunReport<'a> {
             ),
             (
                 "Path error",
-                drift.position.map_or_else(
-                    || {
-                        "unknown once bodies have met, or under forces that are not constant"
-                            .to_owned()
-                    },
+                self.path_error.map_or_else(
+                    || "unknown: no exact path is known of a body, or not any more".to_owned(),
                     |away| format!("{} m", number::figure(away)),
                 ),
             ),
@@ -563,5 +619,29 @@ impl CheckReport {
             let _ = writeln!(text, "Repaired   {}: {}", repair.kind, repair.count);
         }
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::{Scene, with_names};
+
+    #[test]
+    fn errors_name_every_body_and_no_other_number() {
+        let text = "rate = 60\n[[body]]\nname = \"body 1\"\nmesh = \"cube.obj\"\n[[body]]\nname = \"wall\"\nmesh = \"cube.obj\"";
+        let scene = Scene::parse(text, Path::new("s.toml")).expect("a scene");
+        for (message, named) in [
+            (
+                "step 3: body 1 is squeezed between bodies 0 and 1, which nothing stops",
+                "step 3: body `wall` is squeezed between bodies `body 1` and `wall`, which nothing stops",
+            ),
+            ("body 0: mass is 0", "body `body 1`: mass is 0"),
+            ("body 7 in 40 iterations", "body `?` in 40 iterations"),
+            ("nobody 1, and 2 bodies", "nobody 1, and 2 bodies"),
+        ] {
+            assert_eq!(with_names(&scene, &message), named);
+        }
     }
 }

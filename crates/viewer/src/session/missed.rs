@@ -1,0 +1,235 @@
+//! What the discrete modes do not see: bodies that have passed through each other within a step.
+//!
+//! Between two sampled states the bodies are taken to move straight; whether they touch on that way is
+//! answered exactly, as in the continuous mode.
+
+use sim_core::collide::{ball_touch, touch};
+use sim_core::{Aabb, Collision, DVec3, Impact, Shape, World};
+
+use super::Session;
+use crate::number;
+use crate::picture::{Ghost, Line};
+
+/// Bodies up to which it is looked for.
+const MOST_BODIES: usize = 64;
+/// The most that are told of one step.
+const MOST: usize = 8;
+/// Simulated time in which one is shown, s, and at least so many steps.
+const SHOWN: f64 = 0.5;
+const SHOWN_STEPS: f64 = 3.0;
+/// Way past each other from which on it is looked for, in thicknesses of the thinner swept box.
+const LEAST_WAY: f64 = 0.01;
+const RED: [f32; 3] = [0.86, 0.08, 0.10];
+
+/// Two bodies that have passed through each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Missed {
+    /// The bodies; the second one is the one that moved farther.
+    pub bodies: (usize, usize),
+    /// When they touched, s.
+    pub time: f64,
+    /// Where the second one was before the step, at the contact, and after the step, m.
+    pub places: [DVec3; 3],
+    /// Where they touched, m.
+    pub point: DVec3,
+    /// Way of the second body past the first in the step, m.
+    pub way: f64,
+    /// How thick the thinner of them is along that way, m.
+    pub thickness: f64,
+}
+
+/// All that the last step of `world` has missed, with the impacts that it did find.
+pub(super) fn missed(world: &mut World, impacts: &[Impact]) -> Vec<Missed> {
+    let discrete = world.settings().collision != Collision::Continuous;
+    if !discrete || world.len() > MOST_BODIES {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for i in 0..world.len() {
+        for j in i + 1..world.len() {
+            let known = world.overlapping().contains(&(i, j))
+                || impacts.iter().any(|impact| impact.bodies == (i, j));
+            if known || !may_touch(world, i, j) || found.len() == MOST {
+                continue;
+            }
+            world.build_bvhs();
+            found.extend(passed(world, i, j));
+        }
+    }
+    found
+}
+
+/// Way of a body in the last step, m.
+fn way(world: &World, i: usize) -> DVec3 {
+    world.position(i) - world.previous_position(i)
+}
+
+/// Whether the boxes swept in the last step meet.
+fn may_touch(world: &World, i: usize, j: usize) -> bool {
+    let swept = |i: usize| {
+        let (low, high) = extent(world, i)?;
+        let (from, to) = (world.previous_position(i), world.position(i));
+        Some((from.min(to) + low, from.max(to) + high))
+    };
+    let (Some(first), Some(second)) = (swept(i), swept(j)) else {
+        return false;
+    };
+    // Who moves less than a small part of the thinner one's thickness passes through no more than that,
+    // and heaps of bodies that hardly move are not worth a search.
+    let thickness = [first, second].map(|(low, high)| (high - low).min_element());
+    let past = (way(world, i) - way(world, j)).length();
+    past > LEAST_WAY * thickness[0].min(thickness[1])
+        && first.0.cmple(second.1).all()
+        && second.0.cmple(first.1).all()
+}
+
+/// A body's box about its position, m; none where it has no inside to pass through, or no end.
+fn extent(world: &World, i: usize) -> Option<(DVec3, DVec3)> {
+    match world.shape(i)? {
+        Shape::Mesh(mesh) => {
+            let Aabb { min, max } = mesh.bounds();
+            Some((min.as_dvec3(), max.as_dvec3()))
+        }
+        &Shape::Sphere { radius } => Some((DVec3::splat(-radius), DVec3::splat(radius))),
+        Shape::HalfSpace { .. } => None,
+    }
+}
+
+/// The first contact on the way, if there is one.
+fn passed(world: &World, i: usize, j: usize) -> Option<Missed> {
+    // The one that moves farther is the one that passes.
+    let farther = way(world, j).length() >= way(world, i).length();
+    let (still, mover) = if farther { (i, j) } else { (j, i) };
+    let offset = world.previous_position(mover) - world.previous_position(still);
+    let motion = way(world, mover) - way(world, still);
+    let (part, point) = match (world.shape(still)?, world.shape(mover)?) {
+        (Shape::Mesh(_), Shape::Mesh(_)) => {
+            let touch = touch::first_touch(world.bvh(still)?, world.bvh(mover)?, offset, motion)?;
+            (touch.time, touch.point)
+        }
+        (Shape::Mesh(_), &Shape::Sphere { radius }) => {
+            let touch = ball_touch(world.bvh(still)?, offset, radius, motion)?;
+            (touch.time, touch.point)
+        }
+        (&Shape::Sphere { radius }, Shape::Mesh(_)) => {
+            let touch = ball_touch(world.bvh(mover)?, -offset, radius, -motion)?;
+            (touch.time, offset + touch.time * motion + touch.point)
+        }
+        (&Shape::Sphere { radius: a }, &Shape::Sphere { radius: b }) => {
+            let part = balls_touch(offset, motion, a + b)?;
+            let apart = offset + part * motion;
+            (part, apart * (a / (a + b)))
+        }
+        _ => return None,
+    };
+    let dt = world.settings().dt;
+    let direction = motion.normalize();
+    let thickness = |i: usize| {
+        let (low, high) = extent(world, i)?;
+        Some((high - low).dot(direction.abs()))
+    };
+    let before = world.previous_position(mover);
+    Some(Missed {
+        bodies: (still, mover),
+        time: world.time() - (1.0 - part) * dt,
+        places: [
+            before,
+            before + part * way(world, mover),
+            world.position(mover),
+        ],
+        point: world.previous_position(still) + part * way(world, still) + point,
+        way: motion.length(),
+        thickness: thickness(still)?.min(thickness(mover)?),
+    })
+}
+
+/// The part of a motion at which two points come as near as `reach` from outside.
+fn balls_touch(offset: DVec3, motion: DVec3, reach: f64) -> Option<f64> {
+    let (speed, closing) = (motion.length_squared(), offset.dot(motion));
+    let gap = offset.length_squared() - reach * reach;
+    let under = closing * closing - speed * gap;
+    if closing >= 0.0 || gap < 0.0 || under < 0.0 {
+        return None;
+    }
+    let part = gap / (-closing + under.sqrt());
+    (part <= 1.0).then_some(part)
+}
+
+impl Missed {
+    /// In words, with the names of the bodies.
+    pub(super) fn text(&self, name: impl Fn(usize) -> String) -> String {
+        let (still, mover) = self.bodies;
+        format!(
+            "{} passed through {} at t = {:.4} s: a step of {} past {}.",
+            name(mover),
+            name(still),
+            self.time,
+            number::length(self.way),
+            number::length(self.thickness),
+        )
+    }
+}
+
+impl Session {
+    /// What has been missed of late: where the body was before and after the step, the way between,
+    /// and the contact on it.
+    pub(super) fn add_missed(
+        &mut self,
+        ghosts: &mut Vec<Ghost>,
+        lines: &mut Vec<Line>,
+        marks: &mut Vec<Line>,
+    ) {
+        let now = self.world.time();
+        let shown = SHOWN.max(SHOWN_STEPS * self.world.settings().dt);
+        let late: Vec<Missed> = self
+            .playback
+            .past()
+            .rev()
+            .take_while(|moment| now - moment.world.time() < shown)
+            .flat_map(|moment| moment.missed.iter().cloned())
+            .take(MOST)
+            .collect();
+        for missed in late {
+            let [red, green, blue] = RED;
+            let colour = [red, green, blue, 1.0];
+            let [from, at, to] = missed.places;
+            if let Some(mesh) = self.body_mesh(missed.bodies.1) {
+                ghosts.extend(missed.places.map(|position| Ghost {
+                    mesh: mesh.clone(),
+                    position,
+                    colour: RED,
+                }));
+            }
+            if let Some((low, high)) = extent(&self.world, missed.bodies.1) {
+                // The box swept on the way, by its edges along the motion.
+                for corner in 0..8 {
+                    let pick = |bit: usize, low: f64, high: f64| match corner >> bit & 1 {
+                        0 => low,
+                        _ => high,
+                    };
+                    let corner = DVec3::new(
+                        pick(0, low.x, high.x),
+                        pick(1, low.y, high.y),
+                        pick(2, low.z, high.z),
+                    );
+                    lines.push(Line {
+                        from: from + corner,
+                        to: to + corner,
+                        colour: [red, green, blue, 0.7],
+                        width: 1.3,
+                    });
+                }
+            }
+            let mut mark = |from, to, width| {
+                marks.push(Line {
+                    from,
+                    to,
+                    colour,
+                    width,
+                })
+            };
+            mark(missed.point, missed.point, 11.0);
+            mark(from, at, 2.0);
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! What is noted of a world after each step: the curves of the plots and the columns of their tables.
+
+use std::fmt::Write;
+
+use sim_core::{DVec3, World};
+
+/// The figures of one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Simulated time, s.
+    pub time: f64,
+    /// Steps since the start of the world.
+    pub steps: u64,
+    /// Kinetic energy, J.
+    pub kinetic: f64,
+    /// Potential energy, J; not finite at a centre of attraction.
+    pub potential: f64,
+    /// Momentum, kg m/s.
+    pub momentum: DVec3,
+    /// Largest distance of a body from its exact place, m, where that is known.
+    pub error: Option<f64>,
+    /// Real time that the step took, s; none of a state that no step led to.
+    pub cost: Option<f64>,
+    /// Contacts that last.
+    pub contacts: usize,
+    /// Impacts in the step.
+    pub impacts: u64,
+}
+
+impl Sample {
+    /// Of the present state of a world.
+    pub fn of(world: &World, error: Option<f64>, cost: Option<f64>, impacts: u64) -> Self {
+        Self {
+            time: world.time(),
+            steps: world.steps(),
+            kinetic: world.kinetic_energy(),
+            potential: world.potential_energy(),
+            momentum: world.momentum(),
+            error,
+            cost,
+            contacts: world.contacts().count(),
+            impacts,
+        }
+    }
+}
+
+/// A figure over time.
+pub struct Column {
+    /// Its name in tables for programs, with the unit.
+    pub name: &'static str,
+    /// Its value, where it has one.
+    pub value: fn(&Sample) -> Option<f64>,
+}
+
+/// Every figure, in the order of the tables.
+pub static COLUMNS: [Column; 12] = [
+    Column {
+        name: "time_s",
+        value: |s| Some(s.time),
+    },
+    Column {
+        name: "step",
+        value: |s| Some(s.steps as f64),
+    },
+    Column {
+        name: "kinetic_energy_J",
+        value: |s| Some(s.kinetic),
+    },
+    Column {
+        name: "potential_energy_J",
+        value: |s| Some(s.potential),
+    },
+    Column {
+        name: "total_energy_J",
+        value: |s| Some(s.kinetic + s.potential),
+    },
+    Column {
+        name: "momentum_x_kg_m_s",
+        value: |s| Some(s.momentum.x),
+    },
+    Column {
+        name: "momentum_y_kg_m_s",
+        value: |s| Some(s.momentum.y),
+    },
+    Column {
+        name: "momentum_z_kg_m_s",
+        value: |s| Some(s.momentum.z),
+    },
+    Column {
+        name: "path_error_m",
+        value: |s| s.error,
+    },
+    Column {
+        name: "step_cost_s",
+        value: |s| s.cost,
+    },
+    Column {
+        name: "contacts",
+        value: |s| Some(s.contacts as f64),
+    },
+    Column {
+        name: "impacts",
+        value: |s| Some(s.impacts as f64),
+    },
+];
+
+/// The first line of a table: `run`, if the runs have names, and the columns.
+pub fn csv_head(named: bool) -> String {
+    let names = COLUMNS.iter().map(|column| column.name);
+    let names: Vec<&str> = named.then_some("run").into_iter().chain(names).collect();
+    names.join(",") + "\n"
+}
+
+/// A line of a table: numbers to the last bit, nothing where a figure is not known.
+pub fn csv_line(run: Option<&str>, sample: &Sample) -> String {
+    let mut line = String::new();
+    if let Some(run) = run {
+        line += &quoted(run);
+        line.push(',');
+    }
+    for (n, column) in COLUMNS.iter().enumerate() {
+        if n > 0 {
+            line.push(',');
+        }
+        if let Some(value) = (column.value)(sample).filter(|value| value.is_finite()) {
+            // Writing to a String cannot fail.
+            let _ = write!(line, "{value}");
+        }
+    }
+    line.push('\n');
+    line
+}
+
+/// A field of a table, in quotation marks where it has to be.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}

@@ -1,0 +1,48 @@
+//! The descent that is shown level by level.
+
+use super::*;
+
+fn cow() -> Session {
+    let mut session =
+        Session::new(Scene::load("cube-cow").expect("in the gallery")).expect("a world");
+    session.select(Some(1));
+    session
+}
+
+#[test]
+fn boxes_apart_take_one_comparison() {
+    let mut session = cow();
+    let levels = session.descent();
+    assert_eq!(
+        (levels.len(), levels[0].compared, levels[0].meeting),
+        (1, 1, 0)
+    );
+}
+
+#[test]
+fn the_last_level_has_the_leaves_that_the_query_tests() {
+    let mut session = cow();
+    // Into the cow.
+    session.set_position(session.world().position(0) + DVec3::new(0.0, 0.5, 0.0));
+    let levels = session.descent();
+    assert!(levels.len() > 3 && levels[0].meeting == 1);
+    for pair in levels.windows(2) {
+        assert!(pair[1].compared >= pair[0].meeting.min(1));
+        // A box of up to four by a box of up to four.
+        assert!(pair[1].compared <= 16 * pair[0].meeting);
+    }
+    let all: usize = levels.iter().map(|level| level.compared).sum();
+    let (a, b) = (session.world().mesh(0), session.world().mesh(1));
+    let naive = a.map_or(0, |m| m.triangles().len()) * b.map_or(0, |m| m.triangles().len());
+    assert!(all < naive / 10, "{all} of {naive}");
+    let plain = session.picture().lines.len();
+    for level in 0..levels.len() {
+        session.step_descent(1);
+        assert_eq!(session.display.descent, Some(level));
+        assert!(session.picture().lines.len() > plain);
+    }
+    session.step_descent(1);
+    assert_eq!(session.display.descent, Some(levels.len() - 1), "it ends");
+    session.step_descent(-1);
+    assert_eq!(session.display.descent, Some(levels.len() - 2));
+}

@@ -1,0 +1,122 @@
+//! Undo, redo, and the question before edits are lost.
+
+use std::path::PathBuf;
+
+use super::*;
+use crate::session::Leaving;
+
+const LONG: Duration = Duration::from_secs(1);
+
+fn edited() -> Session {
+    let mut session = session();
+    session.select(Some(0));
+    for mass in [2.0, 3.0, 4.0] {
+        // A drag: changes that follow each other at once.
+        session.set_mass(mass);
+        session.settle(FRAME);
+    }
+    session.settle(LONG);
+    session.set_velocity(DVec3::Y);
+    session.settle(LONG);
+    session
+}
+
+#[test]
+fn edits_are_taken_back_and_done_again_one_by_one() {
+    let mut session = edited();
+    let state = |session: &Session| (session.world().mass(0), session.world().velocity(0));
+    let begin = (1.0, DVec3::new(2.0, 0.0, 0.0));
+    assert_eq!(state(&session), (4.0, DVec3::Y));
+    session.undo();
+    assert_eq!(state(&session), (4.0, begin.1));
+    session.undo();
+    assert_eq!(state(&session), begin, "a drag is one edit");
+    assert!(!session.can_undo() && session.can_redo());
+    session.undo();
+    assert_eq!(state(&session), begin);
+    session.redo();
+    session.redo();
+    assert_eq!(state(&session), (4.0, DVec3::Y));
+    assert!(!session.can_redo());
+    session.undo();
+    session.set_restitution(0.5);
+    assert!(
+        !session.can_redo(),
+        "another edit leaves nothing to do again"
+    );
+    session.undo();
+    assert_eq!(
+        session.world().restitution(0),
+        1.0,
+        "one under way is taken back too"
+    );
+}
+
+#[test]
+fn bodies_forces_and_settings_come_back() {
+    let mut session = session();
+    let before = session.scene().clone();
+    session.add("ball", scene::SceneShape::Sphere { radius: 0.5 });
+    session.settle(LONG);
+    session.set_rate(240.0);
+    session.settle(LONG);
+    session.select(Some(0));
+    session.delete_selected();
+    session.settle(LONG);
+    session.add_force(sim_core::Force::Gravity {
+        acceleration: -DVec3::Y,
+    });
+    session.settle(LONG);
+    session.start();
+    advance(&mut session, FRAME, free());
+    for _ in 0..4 {
+        session.undo();
+    }
+    assert_eq!(*session.scene(), before);
+    assert_eq!(session.world().len(), 2);
+    assert_eq!(session.world().settings().dt, before.dt);
+    assert_eq!(
+        (session.state(), session.world().steps()),
+        (State::Layout, 0)
+    );
+    session.start();
+    advance(&mut session, Duration::from_millis(100), free());
+    assert_eq!(session.world().steps(), 6, "the clock has the old step");
+}
+
+#[test]
+fn edits_are_not_lost_without_a_question() {
+    let mut untouched = session();
+    untouched.leave(Leaving::Open(PathBuf::from("parabola")));
+    assert_eq!(untouched.scene().name, "parabola");
+    untouched.leave(Leaving::Close);
+    assert!(untouched.is_closing());
+
+    let mut session = edited();
+    assert!(session.is_changed());
+    session.leave(Leaving::Open(PathBuf::from("parabola")));
+    assert!(session.leaving().is_some() && session.scene().name != "parabola");
+    session.stay();
+    assert_eq!((session.leaving(), session.world().mass(0)), (None, 4.0));
+    session.leave(Leaving::Close);
+    assert!(!session.is_closing());
+    session.leave_unsaved();
+    assert!(session.is_closing());
+
+    let folder = std::env::temp_dir().join(format!("cowbell-history-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder for temporary files");
+    let mut session = edited();
+    session.save(&folder.join("mine.toml"), false);
+    assert!(!session.is_changed());
+    session.set_velocity(DVec3::X);
+    assert!(session.is_changed(), "at once, not only when it is done");
+    session.leave(Leaving::Open(PathBuf::from("parabola")));
+    session.save_and_leave();
+    assert_eq!(session.scene().name, "parabola");
+    session.open(folder.join("mine.toml"));
+    assert_eq!(session.world().velocity(0), DVec3::X);
+    session.set_mass(9.0);
+    session.undo();
+    assert!(!session.is_changed(), "back at what was saved");
+    std::fs::remove_dir_all(&folder).expect("the folder is still there");
+}

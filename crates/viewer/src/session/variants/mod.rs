@@ -1,0 +1,482 @@
+//! Variants of one scene, run beside it: other methods, steps and ways to collide, and the exact
+//! solution where it is known.
+//!
+//! They begin where the run's record begins, and follow its time on a thread of their own: the session
+//! hands out a piece of work ([`VariantJob`]) and takes in what came of it.
+
+mod presets;
+mod runner;
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use sim_core::{Collision, DVec3, Settings, World};
+
+pub use presets::{PRESETS, Preset};
+pub use runner::{Halt, Runner, Snapshot};
+
+use super::figures::Drift;
+use super::playback;
+use super::{STEP_BUDGET, Session, State};
+use crate::headless;
+use crate::picture::{Ghost, Line};
+
+/// The most variants beside the run.
+pub const MOST_VARIANTS: usize = 12;
+/// Bodies up to which the paths of variants are drawn, and the states that these go back.
+const MOST_PATHS: usize = 20;
+const LONGEST_PATH: usize = 1200;
+/// Distance below which two places look the same, in half sizes of the body.
+const SAME: f64 = 2e-3;
+/// Colours that are far from each other and from the light background, sRGB.
+const COLOURS: [[f32; 3]; MOST_VARIANTS] = [
+    [0.84, 0.37, 0.00],
+    [0.00, 0.45, 0.70],
+    [0.80, 0.40, 0.70],
+    [0.65, 0.55, 0.00],
+    [0.30, 0.65, 0.90],
+    [0.55, 0.10, 0.15],
+    [0.40, 0.30, 0.75],
+    [0.90, 0.60, 0.10],
+    [0.10, 0.50, 0.50],
+    [0.60, 0.40, 0.25],
+    [0.95, 0.45, 0.50],
+    [0.35, 0.40, 0.10],
+];
+/// The exact solution.
+const EXACT: [f32; 3] = [0.05, 0.62, 0.35];
+
+/// A way to run the scene, and what came of it.
+#[derive(Debug)]
+pub struct Variant {
+    /// How it steps; none for the exact solution.
+    pub settings: Option<Settings>,
+    /// Its colour in the picture and in the plots, sRGB.
+    pub colour: [f32; 3],
+    /// Why it goes no farther, if it does not.
+    pub failure: Option<String>,
+    /// What has drifted since the start.
+    pub drift: Option<Drift>,
+    /// Real time of all its steps, s, and their number.
+    pub cost: (f64, u64),
+    /// The largest error of the path so far, m.
+    pub worst: Option<f64>,
+    record: VecDeque<Snapshot>,
+    /// Away while steps are being taken.
+    runner: Option<Runner>,
+}
+
+/// All variants.
+#[derive(Debug, Default)]
+pub struct Variants {
+    list: Vec<Variant>,
+    under_way: bool,
+    /// Counts what makes results of earlier jobs outdated.
+    pub(super) edition: u64,
+}
+
+/// Variants that are to come up to a time.
+#[derive(Debug)]
+pub struct VariantJob {
+    runners: Vec<(usize, Runner)>,
+    until: f64,
+    edition: u64,
+}
+
+/// What came of it.
+#[derive(Debug)]
+pub struct VariantsDone {
+    runs: Vec<(usize, Runner, Vec<Snapshot>, Option<Halt>)>,
+    edition: u64,
+}
+
+impl VariantJob {
+    /// Lets whoever is farthest behind take steps, for as long as one frame's steps may take.
+    /// `stopwatch` reads real time.
+    pub fn run(self, stopwatch: impl Fn() -> Duration) -> VariantsDone {
+        let began = stopwatch();
+        let mut runs: Vec<_> = self
+            .runners
+            .into_iter()
+            .map(|(n, runner)| (n, runner, Vec::new(), None))
+            .collect();
+        loop {
+            let behind = runs
+                .iter_mut()
+                .filter(|(_, runner, _, halt)| halt.is_none() && runner.time() < self.until)
+                .min_by(|a, b| a.1.time().total_cmp(&b.1.time()));
+            let Some((_, runner, snapshots, halt)) = behind else {
+                break;
+            };
+            match runner.step(&stopwatch) {
+                Ok(snapshot) => snapshots.push(snapshot),
+                Err(why) => *halt = Some(why),
+            }
+            if stopwatch().saturating_sub(began) > STEP_BUDGET {
+                break;
+            }
+        }
+        VariantsDone {
+            runs,
+            edition: self.edition,
+        }
+    }
+}
+
+impl Variant {
+    fn new(world: &World, settings: Option<Settings>, colour: [f32; 3]) -> Option<Self> {
+        let runner = match settings {
+            Some(settings) => Runner::stepping(world, settings).ok(),
+            None => Runner::exact(world),
+        };
+        let mut variant = Self {
+            settings,
+            colour,
+            failure: None,
+            drift: None,
+            cost: (0.0, 0),
+            worst: None,
+            record: VecDeque::new(),
+            runner: Some(runner?),
+        };
+        variant.begin();
+        Some(variant)
+    }
+
+    /// Notes the state that it begins in.
+    fn begin(&mut self) {
+        let first = self.runner.as_mut().map(|runner| runner.snapshot(None, 0));
+        self.record.extend(first);
+    }
+
+    /// The states kept, the oldest first.
+    pub fn record(&self) -> impl ExactSizeIterator<Item = &Snapshot> {
+        self.record.iter()
+    }
+
+    /// Where its bodies were in each state kept, m.
+    #[cfg(test)]
+    pub(super) fn last_places(&self) -> &[DVec3] {
+        self.record.back().map_or(&[], |last| &last.places)
+    }
+
+    /// Simulated time reached, s.
+    pub fn time(&self) -> f64 {
+        self.record.back().map_or(0.0, |last| last.sample.time)
+    }
+
+    /// Real time for a simulated second, s, once it is known.
+    pub fn load(&self) -> Option<f64> {
+        let (seconds, steps) = self.cost;
+        let dt = self.settings?.dt;
+        (steps > 0).then(|| seconds / (steps as f64 * dt))
+    }
+
+    fn take_in(&mut self, snapshots: Vec<Snapshot>) {
+        for snapshot in snapshots {
+            let sample = &snapshot.sample;
+            if let Some(cost) = sample.cost {
+                self.cost = (self.cost.0 + cost, self.cost.1 + 1);
+            }
+            self.worst = match (self.worst, sample.error) {
+                (Some(worst), Some(error)) => Some(worst.max(error)),
+                (worst, error) => worst.or(error),
+            };
+            self.record.push_back(snapshot);
+        }
+        let bodies = self.record.back().map_or(0, |last| last.places.len());
+        let beyond = self.record.len().saturating_sub(playback::capacity(bodies));
+        self.record.drain(..beyond);
+    }
+
+    /// Where its bodies were at a time, s: between the states before and after; where it is now if it
+    /// has not come so far.
+    fn places(&self, time: f64) -> Option<Vec<DVec3>> {
+        let after = self.record.partition_point(|s| s.sample.time < time);
+        let next = match self.record.get(after) {
+            Some(next) => next,
+            None => return Some(self.record.back()?.places.to_vec()),
+        };
+        let Some(last) = after.checked_sub(1).map(|n| &self.record[n]) else {
+            return Some(next.places.to_vec());
+        };
+        let part = (time - last.sample.time) / (next.sample.time - last.sample.time);
+        let both = last.places.iter().zip(&next.places);
+        Some(
+            both.map(|(a, b)| a.lerp(*b, part.clamp(0.0, 1.0)))
+                .collect(),
+        )
+    }
+}
+
+impl Variants {
+    /// All of them, the exact solution last.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Variant> {
+        self.list.iter()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Begins each anew from the present state of a world.
+    pub(super) fn begin(&mut self, world: &World) {
+        self.disown();
+        let settings: Vec<Settings> = self.list.iter().filter_map(|v| v.settings).collect();
+        self.list.clear();
+        for (settings, colour) in settings.into_iter().zip(COLOURS) {
+            self.list
+                .extend(Variant::new(world, Some(settings), colour));
+        }
+        if !self.list.is_empty() {
+            self.list.extend(Variant::new(world, None, EXACT));
+        }
+    }
+
+    fn disown(&mut self) {
+        self.edition += 1;
+        self.under_way = false;
+    }
+
+    /// Whether one has still to come up to a time, s.
+    fn is_behind(&self, time: f64) -> bool {
+        let behind = |v: &Variant| v.failure.is_none() && v.time() < time;
+        self.list.iter().any(behind)
+    }
+}
+
+impl Session {
+    /// The variants that are run beside the scene.
+    pub fn variants(&self) -> &Variants {
+        &self.variants
+    }
+
+    /// Runs the scene in these ways beside it, from where its record begins, and no others; equal ones
+    /// and those that are the run's own only once.
+    pub fn compare_with(&mut self, settings: impl IntoIterator<Item = Settings>) {
+        let mut kept: Vec<Settings> = Vec::new();
+        for settings in settings {
+            if settings != *self.world.settings() && !kept.contains(&settings) {
+                kept.push(settings);
+            }
+        }
+        kept.truncate(MOST_VARIANTS);
+        let world = match self.playback.first() {
+            Some(first) => first.clone(),
+            None => self.world.clone(),
+        };
+        self.variants.disown();
+        self.variants.list = kept
+            .into_iter()
+            .zip(COLOURS)
+            .filter_map(|(settings, colour)| Variant::new(&world, Some(settings), colour))
+            .collect();
+        if !self.variants.list.is_empty() {
+            let exact = Variant::new(&world, None, EXACT);
+            self.variants.list.extend(exact);
+        }
+    }
+
+    /// Ways to run the scene that are compared now, besides its own.
+    pub fn compared(&self) -> Vec<Settings> {
+        self.variants.iter().filter_map(|v| v.settings).collect()
+    }
+
+    /// The steps that variants lack, if they lack any.
+    pub fn variants_due(&mut self) -> Option<VariantJob> {
+        let until = self.world.time();
+        if self.variants.under_way || !self.variants.is_behind(until) {
+            return None;
+        }
+        self.variants.under_way = true;
+        let list = self.variants.list.iter_mut().enumerate();
+        let runners = list.filter(|(_, variant)| variant.failure.is_none());
+        let runners = runners.filter_map(|(n, variant)| Some((n, variant.runner.take()?)));
+        Some(VariantJob {
+            runners: runners.collect(),
+            until,
+            edition: self.variants.edition,
+        })
+    }
+
+    /// Takes in what came of it; of variants that have begun anew since, nothing.
+    pub fn accept_variants(&mut self, done: VariantsDone) {
+        if done.edition != self.variants.edition {
+            return;
+        }
+        self.variants.under_way = false;
+        for (n, runner, snapshots, halt) in done.runs {
+            let Some(variant) = self.variants.list.get_mut(n) else {
+                continue;
+            };
+            if variant.settings.is_some() {
+                variant.drift = Some(runner.drift());
+            }
+            variant.take_in(snapshots);
+            variant.failure = halt.map(|halt| match halt {
+                Halt::Step(error) => headless::step_error(&self.scene, &error),
+                Halt::Unknown => "not known from here on".to_owned(),
+            });
+            variant.runner = Some(runner);
+        }
+    }
+
+    /// Gives up the steps under way, and all variants.
+    pub fn drop_variants(&mut self) {
+        self.variants.disown();
+        self.variants.list.clear();
+    }
+
+    /// Whether variants have not come up with the run.
+    pub fn awaits_variants(&self) -> bool {
+        self.variants.under_way || self.variants.is_behind(self.world.time())
+    }
+
+    /// Short names of the run and of the variants: what sets them apart.
+    pub fn variant_names(&self) -> (String, Vec<String>) {
+        let own = *self.world.settings();
+        let all: Vec<Settings> = std::iter::once(own).chain(self.compared()).collect();
+        let differs = |same: fn(&Settings, &Settings) -> bool| all.iter().any(|s| !same(s, &own));
+        let parts = Parts {
+            method: differs(|a, b| a.method == b.method),
+            dt: differs(|a, b| a.dt == b.dt),
+            collision: differs(|a, b| a.collision == b.collision),
+            tolerance: differs(|a, b| a.tolerance == b.tolerance),
+        };
+        let names = self.variants.iter().map(|variant| match &variant.settings {
+            Some(settings) => name(settings, parts),
+            None => "Exact".to_owned(),
+        });
+        (name(&own, parts), names.collect())
+    }
+
+    /// The bodies of each variant, see-through and in its colour, and the paths that they came.
+    pub(super) fn add_ghosts(&mut self, ghosts: &mut Vec<Ghost>, lines: &mut Vec<Line>) {
+        let time = self.shown_time();
+        let moves: Vec<bool> = (0..self.world.len()).map(|i| !self.is_static(i)).collect();
+        let mut taken: Vec<Vec<DVec3>> = vec![Vec::new(); moves.len()];
+        for n in 0..self.variants.list.len() {
+            let variant = &self.variants.list[n];
+            let colour = variant.colour;
+            let Some(places) = variant.places(time) else {
+                continue;
+            };
+            if places.len() != moves.len() {
+                continue;
+            }
+            for (i, place) in places.iter().enumerate().filter(|&(i, _)| moves[i]) {
+                // One that cannot be told from the body, or from another ghost, would only tint it.
+                let same = SAME * self.bounds(i).half.max_element();
+                let known = [self.shown_position(i)]
+                    .into_iter()
+                    .chain(taken[i].iter().copied());
+                if known.into_iter().any(|at| at.distance(*place) <= same) {
+                    continue;
+                }
+                taken[i].push(*place);
+                match self.body_mesh(i) {
+                    Some(mesh) => ghosts.push(Ghost {
+                        mesh,
+                        position: *place,
+                        colour,
+                    }),
+                    None if !self.is_half_space(i) => lines.push(Line {
+                        from: *place,
+                        to: *place,
+                        colour: [colour[0], colour[1], colour[2], 0.8],
+                        width: 8.0,
+                    }),
+                    None => {}
+                }
+            }
+            let [red, green, blue] = colour;
+            let variant = &self.variants.list[n];
+            let past = variant.record.partition_point(|s| s.sample.time <= time);
+            let long = LONGEST_PATH.min(past);
+            let points = variant.record.range(past - long..past);
+            for (i, _) in moves.iter().enumerate().filter(|&(_, &moves)| moves) {
+                if moves.len() > MOST_PATHS {
+                    break;
+                }
+                let ends = points.clone().map(|s| s.places[i]).chain([places[i]]);
+                for (from, to) in ends.clone().zip(ends.skip(1)) {
+                    if from != to {
+                        lines.push(Line {
+                            from,
+                            to,
+                            colour: [red, green, blue, 0.75],
+                            width: 1.6,
+                        });
+                    }
+                }
+            }
+        }
+    }
+
+    /// The simulated time of the picture, s: between the last two states while running.
+    pub(super) fn shown_time(&self) -> f64 {
+        let dt = self.world.settings().dt;
+        match self.state {
+            State::Running => self.world.time() - (1.0 - self.clock.fraction()) * dt,
+            State::Layout | State::Paused => self.world.time(),
+        }
+    }
+}
+
+/// Which parts of the settings a name tells.
+#[derive(Clone, Copy)]
+struct Parts {
+    method: bool,
+    dt: bool,
+    collision: bool,
+    tolerance: bool,
+}
+
+fn name(settings: &Settings, parts: Parts) -> String {
+    let mut words = Vec::new();
+    let nothing = !(parts.dt || parts.collision || parts.tolerance);
+    if parts.method || nothing {
+        words.push(settings.method.title.to_owned());
+    }
+    if parts.dt {
+        words.push(rate_text(settings.dt));
+    }
+    if parts.collision {
+        words.push(collision_text(settings.collision).to_owned());
+    }
+    if parts.tolerance {
+        words.push(format!("{:e}", settings.tolerance));
+    }
+    words.join(", ")
+}
+
+/// The full name of settings for tables: method, rate, way to collide.
+pub fn full_name(settings: &Settings) -> String {
+    let collision = match settings.collision {
+        Collision::Naive => "naive",
+        Collision::Bvh => "bvh",
+        Collision::Continuous => "continuous",
+    };
+    let rate = rate_text(settings.dt);
+    let mut text = format!("{} {rate} {collision}", settings.method.name);
+    if settings.method.adaptive {
+        text += &format!(" {:e}", settings.tolerance);
+    }
+    text
+}
+
+/// Steps per simulated second, in as many digits as set it apart.
+fn rate_text(dt: f64) -> String {
+    let rate = 1.0 / dt;
+    let digits = 10_f64.powf(5.0 - rate.log10().floor());
+    format!("{} Hz", (rate * digits).round() / digits)
+}
+
+fn collision_text(collision: Collision) -> &'static str {
+    match collision {
+        Collision::Naive => "naive",
+        Collision::Bvh => "BVH",
+        Collision::Continuous => "continuous",
+    }
+}

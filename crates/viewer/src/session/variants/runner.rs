@@ -1,0 +1,154 @@
+//! One variant on its way: a world of its own, or the exact solution, and what is noted of it.
+
+use std::time::Duration;
+
+use sim_core::{DVec3, Settings, StepError, World, WorldError};
+
+use crate::session::exact::Exact;
+use crate::session::figures::{Drift, Reference};
+use crate::session::sample::Sample;
+
+/// The exact solution is noted at least this often in a simulated second, so that it looks smooth.
+const EXACT_RATE: f64 = 60.0;
+
+/// A state of a variant: its figures, and where its bodies are, m.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    /// The figures.
+    pub sample: Sample,
+    pub(super) places: Box<[DVec3]>,
+}
+
+/// What goes from state to state.
+#[derive(Clone, Debug)]
+pub struct Runner {
+    world: World,
+    exact: Exact,
+    course: Course,
+    reference: Reference,
+}
+
+#[derive(Clone, Debug)]
+enum Course {
+    Steps,
+    /// The exact solution: when it began, s, how many states have been noted, and how far they are
+    /// apart, s.
+    Exact {
+        start: f64,
+        noted: u64,
+        apart: f64,
+    },
+}
+
+/// Why a variant goes no farther.
+#[derive(Debug)]
+pub enum Halt {
+    /// A step failed.
+    Step(StepError),
+    /// The exact solution is not known from here on.
+    Unknown,
+}
+
+impl Runner {
+    /// One that steps from the present state of `world` in another way.
+    pub fn stepping(world: &World, settings: Settings) -> Result<Self, WorldError> {
+        let mut own = world.clone();
+        own.set_settings(settings)?;
+        Ok(Self {
+            exact: Exact::of(&own),
+            reference: Reference::of(&own),
+            world: own,
+            course: Course::Steps,
+        })
+    }
+
+    /// The exact solution from the present state of `world`, if it is known for every body.
+    pub fn exact(world: &World) -> Option<Self> {
+        let mut exact = Exact::of(world);
+        let movable = (0..world.len()).any(|i| world.mass(i).is_finite());
+        let dt = world.settings().dt;
+        let known = movable && exact.knows_all(world.time());
+        known.then(|| Self {
+            exact,
+            reference: Reference::of(world),
+            world: world.clone(),
+            course: Course::Exact {
+                start: world.time(),
+                noted: 0,
+                apart: dt / (dt * EXACT_RATE).ceil(),
+            },
+        })
+    }
+
+    /// Simulated time reached, s.
+    pub fn time(&self) -> f64 {
+        match self.course {
+            Course::Steps => self.world.time(),
+            Course::Exact {
+                start,
+                noted,
+                apart,
+            } => start + noted as f64 * apart,
+        }
+    }
+
+    /// The world that it steps, or that stands for the exact solution.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// What has drifted since the start.
+    pub fn drift(&self) -> Drift {
+        self.reference.drift(&self.world)
+    }
+
+    /// The state that it is in, reached by a step of so long, s, with so many impacts.
+    pub fn snapshot(&mut self, cost: Option<f64>, impacts: u64) -> Snapshot {
+        let error = match self.course {
+            Course::Steps => self.exact.error(&self.world),
+            Course::Exact { .. } => Some(0.0),
+        };
+        let mut sample = Sample::of(&self.world, error, cost, impacts);
+        sample.time = self.time();
+        if let Course::Exact { noted, .. } = self.course {
+            sample.steps = noted;
+        }
+        let world = &self.world;
+        Snapshot {
+            sample,
+            places: (0..world.len()).map(|i| world.position(i)).collect(),
+        }
+    }
+
+    /// Goes on to the next state.
+    pub fn step(&mut self, stopwatch: &impl Fn() -> Duration) -> Result<Snapshot, Halt> {
+        let Course::Exact {
+            start,
+            noted,
+            apart,
+        } = self.course
+        else {
+            let mut impacts = Vec::new();
+            let before = stopwatch();
+            self.world
+                .step_reporting(&mut impacts)
+                .map_err(Halt::Step)?;
+            let cost = stopwatch().saturating_sub(before).as_secs_f64();
+            return Ok(self.snapshot(Some(cost), impacts.len() as u64));
+        };
+        let time = start + (noted + 1) as f64 * apart;
+        self.exact.watch(time, apart);
+        for i in 0..self.world.len() {
+            let (place, velocity) = self.exact.at(i, time).ok_or(Halt::Unknown)?;
+            let placed = self.world.set_position(i, place);
+            let moving = placed.and_then(|()| self.world.set_velocity(i, velocity));
+            moving.map_err(|_| Halt::Unknown)?;
+        }
+        self.course = Course::Exact {
+            start,
+            noted: noted + 1,
+            apart,
+        };
+        Ok(self.snapshot(None, 0))
+    }
+}

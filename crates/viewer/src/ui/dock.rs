@@ -1,0 +1,42 @@
+//! What stands under the picture and never over it: live figures and plots.
+
+use egui::{Panel, ScrollArea};
+
+use super::{Ui, live};
+use crate::session::Session;
+
+/// Height of the window, points, below which there is room for the picture alone.
+const LEAST_HEIGHT: f32 = 440.0;
+/// Width of the live figures, points.
+const FIGURES: f32 = 348.0;
+
+pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
+    let room = root.available_size();
+    if state.live_hidden && state.plots_hidden || room.y < LEAST_HEIGHT {
+        return;
+    }
+    Panel::bottom("dock")
+        .resizable(true)
+        .default_size((0.36 * room.y).clamp(180.0, 300.0))
+        .min_size(120.0)
+        .max_size(0.75 * room.y)
+        .show(root, |ui| {
+            if state.plots_hidden || ui.available_width() < FIGURES + 160.0 {
+                figures(ui, session);
+                return;
+            }
+            if !state.live_hidden {
+                Panel::left("figures")
+                    .exact_size(FIGURES)
+                    .resizable(false)
+                    .show(ui, |ui| figures(ui, session));
+            }
+            egui::CentralPanel::default().show(ui, |ui| state.plots.show(ui, session));
+        });
+}
+
+fn figures(ui: &mut egui::Ui, session: &mut Session) {
+    ScrollArea::vertical()
+        .auto_shrink([false, false])
+        .show(ui, |ui| live::show(ui, session));
+}
