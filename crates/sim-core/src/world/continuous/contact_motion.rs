@@ -153,7 +153,9 @@ impl World {
                 Some(measured) => {
                     let least = LEAST_GAP * self.hover_gap(i, j);
                     if measured.gap < 0.5 * least {
-                        self.move_apart((i, j), (least - measured.gap) * measured.normal);
+                        // They do not meet: what looks deeper has been found beside where they are.
+                        let gap = measured.gap.max(0.0);
+                        self.move_apart((i, j), (least - gap) * measured.normal);
                     }
                     *self.contacts.get_mut(index) = measured;
                 }

@@ -35,7 +35,7 @@ pub(in crate::world) struct Meeting {
 }
 
 /// A plane that keeps two bodies apart: the least offset along its normal.
-struct Plane {
+pub(super) struct Plane {
     bodies: (usize, usize),
     normal: DVec3,
     level: f64,
@@ -131,7 +131,11 @@ impl World {
 
     /// Places at which pairs that meet do not, nor any that they come to meet, and the planes that keep
     /// them apart; `None` where there are none nearby.
-    fn parted(&self, meeting: &mut Vec<Meeting>, at: &[DVec3]) -> Option<(Vec<DVec3>, Vec<Plane>)> {
+    pub(super) fn parted(
+        &self,
+        meeting: &mut Vec<Meeting>,
+        at: &[DVec3],
+    ) -> Option<(Vec<DVec3>, Vec<Plane>)> {
         let near = self.near_pairs(at, |i, j| {
             16.0 * self.hover_gap(i, j)
                 + 1e-6 * (self.extent(i).farthest.min(self.extent(j).farthest))

@@ -15,7 +15,7 @@ use crate::collide::parting_normals;
 /// Units in the last place, a few parts in 10^12, before it is an overlap.
 const MAX_CORRECTION: f64 = 1024.0;
 /// Rounds in which a body that is moved out of one may get into another.
-const ROUNDS: usize = 32;
+const ROUNDS: usize = 8;
 
 /// Beside what a body has been put back to its place at the start of the step.
 #[derive(Clone, Copy)]
@@ -52,26 +52,77 @@ impl World {
         let mut near = mem::take(&mut self.continuous.candidate_pairs);
         near.sort_unstable();
         near.dedup();
+        let done = self.part_all(&near) || self.part_together(&near);
+        let outcome = match done {
+            true => Ok(()),
+            false => self.roll_back_meeting(&near),
+        };
+        self.continuous.candidate_pairs = near;
+        outcome
+    }
+
+    /// Moves pairs apart that meet by rounding, one after the other, and tells whether none meets then.
+    fn part_all(&mut self, near: &[(usize, usize)]) -> bool {
+        for _ in 0..ROUNDS {
+            let mut met = false;
+            for &(i, j) in near {
+                if self.meet_now(i, j) {
+                    let most = self.position_resolution(i, j) * MAX_CORRECTION;
+                    if !self.part(i, j, most) {
+                        return false;
+                    }
+                    met = true;
+                }
+            }
+            if !met {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The same all at once, for bodies among others that leave each other no room.
+    fn part_together(&mut self, near: &[(usize, usize)]) -> bool {
+        let at = self.current.position.clone();
+        let mut meeting = Vec::new();
+        for &(i, j) in near {
+            if self.meet_now(i, j) {
+                match self.place_apart((i, j), at[j] - at[i]) {
+                    Some(pair) => meeting.push(pair),
+                    None => return false,
+                }
+            }
+        }
+        let Some((moved, _)) = self.parted(&mut meeting, &at) else {
+            return false;
+        };
+        self.current.position = moved;
+        if near.iter().any(|&(i, j)| self.meet_now(i, j)) {
+            self.current.position = at;
+            return false;
+        }
+        true
+    }
+
+    /// Rolls back what meets by more than rounding.
+    fn roll_back_meeting(&mut self, near: &[(usize, usize)]) -> Result<(), (usize, Cause)> {
         let mut back = Back::default();
-        let mut round = 0;
-        loop {
-            let mut parted = 0;
-            for &(i, j) in &near {
+        for round in 0..=ROUNDS {
+            let mut met = false;
+            for &(i, j) in near {
                 if self.meet_now(i, j) {
                     let most = self.position_resolution(i, j) * MAX_CORRECTION;
                     let is_back = back.of(i).or(back.of(j)).is_some();
                     if is_back || round == ROUNDS || !self.part(i, j, most) {
                         self.roll_back((i, j), &mut back)?;
                     }
-                    parted += 1;
+                    met = true;
                 }
             }
-            round += 1;
-            if parted == 0 || round > ROUNDS {
+            if !met {
                 break;
             }
         }
-        self.continuous.candidate_pairs = near;
         Ok(())
     }
 
@@ -107,8 +158,8 @@ impl World {
     }
 
     /// What rounding does not explain is answered as in the discrete mode: an impulse is exchanged,
-    /// and bodies go back to where the step began, where nothing met; so does all that they meet
-    /// there. Immovable ones go on, and take what they meet along.
+    /// and bodies go back to where the step began, where nothing met, no faster than they were there; so
+    /// does all that they meet there. Immovable ones go on, and take what they meet along.
     fn roll_back(&mut self, pair: (usize, usize), back: &mut Back) -> Result<(), (usize, Cause)> {
         back.with.resize(self.len(), None);
         let mut pairs = alloc::vec![pair];
@@ -136,6 +187,11 @@ impl World {
                     back.with[body] = Some(frame);
                     let start = self.previous.position[body];
                     self.current.position[body] = start + self.moves_of(frame);
+                    // What forces have given it on the way that it has not gone.
+                    let before = self.previous.velocity[body];
+                    if before.length() < self.current.velocity[body].length() {
+                        self.current.velocity[body] = before;
+                    }
                     let others = self.solid.iter().filter(|&&other| other != body);
                     pairs.extend(others.map(|&other| (body.min(other), body.max(other))));
                 }
@@ -151,12 +207,27 @@ impl World {
         })
     }
 
-    /// Moves the starts of two trajectories apart.
+    /// Moves the starts of two trajectories apart, unless one of the bodies would get into what it touches.
     pub(super) fn move_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
         let (first, second) = shares(self.is_movable(i), self.is_movable(j));
         let position = &mut self.continuous.start.position;
+        let before = (position[i], position[j]);
         position[i] -= first * by;
         position[j] += second * by;
+        if self.meets_a_contact(i) || self.meets_a_contact(j) {
+            let position = &mut self.continuous.start.position;
+            (position[i], position[j]) = before;
+        }
+    }
+
+    /// Whether a body meets one that it is in contact with, where their trajectories start.
+    fn meets_a_contact(&mut self, body: usize) -> bool {
+        let position = &self.continuous.start.position;
+        self.contacts.of_body(body).iter().any(|&index| {
+            let contact = &self.contacts.all()[index as usize];
+            let (i, j) = contact.bodies;
+            !contact.is_overlap && self.meet_built(i, j, position[j] - position[i])
+        })
     }
 
     fn move_current_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
