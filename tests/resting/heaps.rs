@@ -171,3 +171,35 @@ fn what_bundling_costs_is_told() {
     let after = world.bundled();
     assert_eq!((after.bodies, after.energy, after.distance), (0, 0.0, 0.0));
 }
+
+/// Distances shrink with the step, and energy, counted as a power, does not grow: a heap of the same
+/// balls at rates that double, by means over the time in which it settles.
+#[test]
+fn what_bundling_costs_shrinks_with_the_step() {
+    let mut figures = Vec::new();
+    for rate in [60.0, 120.0, 240.0, 480.0] {
+        let mut world = bin(12, 0.0, 0.0, 7);
+        let settings = sim_core::Settings {
+            dt: 1.0 / rate,
+            ..*world.settings()
+        };
+        world.set_settings(settings).expect("settings");
+        let (mut distance, mut sum, mut energy, mut steps) = (0.0_f64, 0.0, 0.0, 0);
+        for _ in 0..(3.0 * rate) as u32 {
+            step(&mut world, 1);
+            let bundled = world.bundled();
+            if bundled.distance > 0.0 {
+                distance = distance.max(bundled.distance);
+                sum += bundled.distance;
+                steps += 1;
+            }
+            energy += bundled.energy;
+        }
+        figures.push((rate, distance, sum / f64::from(steps.max(1)), energy, steps));
+    }
+    println!("{figures:?}");
+    for pair in figures.windows(2) {
+        let (coarse, fine) = (pair[0].2, pair[1].2);
+        assert!(fine <= 0.6 * coarse, "{figures:?}");
+    }
+}

@@ -181,7 +181,7 @@ pub(crate) fn parting_normals(first: Form<'_>, second: Form<'_>, offset: DVec3) 
 const MOST_NORMALS: usize = 32;
 
 /// How far a shape extends against `normal`, and where.
-pub(super) fn reach(shape: Form<'_>, normal: DVec3) -> (f64, DVec3) {
+pub(crate) fn reach(shape: Form<'_>, normal: DVec3) -> (f64, DVec3) {
     match shape {
         Form::Mesh(mesh) => {
             let (least, corner) = mesh.least_along(normal);

@@ -25,7 +25,7 @@ mod triple;
 
 pub use ball::{BallTouch, ball_meets, ball_touch};
 pub(crate) use broad::{Broad, Front, Swept};
-pub(crate) use form::{Contact, Form, first_contact, is_turned, meet, parting_normals};
+pub(crate) use form::{Contact, Form, first_contact, is_turned, meet, parting_normals, reach};
 pub use hit::{Hit, Side};
 pub use pairs::Level;
 pub(crate) use parabola::{Parabola, first_on_parabola, has_roots};

@@ -85,11 +85,17 @@ impl Matrix {
                     room = room.min((given[k] - least[k]) / along);
                 }
             }
-            // Contacts that hold each other up against nothing: only rounding leads there.
-            if curvature <= 256.0 * f64::EPSILON * size / length {
+            // Contacts that hold each other up against nothing: rounding leads there, or parallel ones of
+            // which some want less, which give up what they give.
+            let is_flat = curvature <= 256.0 * f64::EPSILON * size / length;
+            if is_flat && (worst <= NEARLY * most || room.is_infinite()) {
                 break;
             }
-            let best = slope / curvature;
+            let best = if is_flat {
+                f64::INFINITY
+            } else {
+                slope / curvature
+            };
             let step = best.min(room);
             let mut turn = 0.0;
             for k in 0..count {

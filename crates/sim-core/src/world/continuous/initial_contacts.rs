@@ -15,7 +15,7 @@ use super::super::World;
 use super::constraint_solve::Places;
 use super::contact_set::ContactConstraint;
 use crate::{
-    collide::{Broad, Form, Swept, first_contact, parting_normals, snap},
+    collide::{Broad, Form, Swept, first_contact, parting_normals, reach, snap},
     impulse::project,
 };
 
@@ -118,9 +118,15 @@ impl World {
         // Vertices are f32: what looks flush is so to their rounding.
         let rounding =
             f64::from(f32::EPSILON) * (self.extent(i).farthest + self.extent(j).farthest);
-        let reach = 4.0 * rounding + 16.0 * self.hover_gap(i, j);
+        let farthest = 4.0 * rounding + 16.0 * self.hover_gap(i, j);
         let is_apart = |to: DVec3| !self.meet_built(i, j, offset + to);
         let mut directions = parting_normals(forms.0, forms.1, offset);
+        // Those of planes with the one body on one side and the other one on the other side first.
+        let depth = |normal: &DVec3| {
+            let (first, second) = (reach(forms.0, -*normal).0, reach(forms.1, *normal).0);
+            first + second - normal.dot(offset)
+        };
+        directions.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
         directions.truncate(MAX_DIRECTIONS);
         directions.push(self.apart_along(i, j));
         let found = |by: DVec3| {
@@ -146,7 +152,7 @@ impl World {
             pairs.flat_map(|(l, ab)| singles().skip(l + 1).map(move |c| ab + c))
         };
         let all = singles().chain(pairs()).chain(triples());
-        all.map(|direction| reach * direction).find_map(found)
+        all.map(|direction| farthest * direction).find_map(found)
     }
 
     /// Places at which pairs that meet do not, nor any that they come to meet, and the planes that keep

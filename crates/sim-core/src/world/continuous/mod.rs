@@ -22,8 +22,10 @@ mod contact_motion;
 mod contact_set;
 mod crush;
 mod friction;
+mod hand_over;
 mod impact_search;
 mod initial_contacts;
+mod ledge;
 mod position_correction;
 mod progress;
 mod resolve;
@@ -74,6 +76,8 @@ pub(super) struct Continuous {
     /// Pairs that have come near in this step.
     candidate_pairs: Vec<(usize, usize)>,
     broad: Broad,
+    /// Whether that knows what is near bodies where they are: they have not been placed since.
+    knows_near: bool,
     probe: Probe,
     visited: Visited,
     restarted_motion: Vec<(DVec3, DVec3)>,
@@ -187,6 +191,7 @@ impl World {
             (position, self.overlapping.clone())
         });
         self.bundled = Bundled::default();
+        self.continuous.knows_near &= placed.is_none();
         self.separate_placed();
         self.begin_trajectories();
         let done = self
@@ -260,6 +265,7 @@ impl World {
         pairs.retain(|&(i, j)| self.may_collide(i, j));
         let count = pairs.len();
         self.continuous.broad = broad;
+        self.continuous.knows_near = true;
         self.continuous.candidate_pairs = pairs;
         for place in 0..count {
             let (i, j) = self.continuous.candidate_pairs[place];

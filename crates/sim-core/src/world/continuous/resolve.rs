@@ -53,6 +53,11 @@ impl World {
             self.restart(event.bodies.1, time, &mut restarted)?;
         }
         for event in group.iter_mut() {
+            if self.climb(event, time, &mut restarted)? {
+                // It goes on, on another surface.
+                event.kind = EventKind::ContactEnd;
+                event.outcome = Outcome::Rest;
+            }
             if event.kind == EventKind::Impact {
                 self.classify(event);
             }
