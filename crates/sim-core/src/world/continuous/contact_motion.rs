@@ -275,7 +275,8 @@ impl World {
                 break;
             };
             let end = time + after;
-            time = end + 1e-6 * soon;
+            // What is round has to turn by more than rounding.
+            time = end + if radius > 0.0 { soon } else { 1e-6 * soon };
             if time >= length {
                 return Course::Flat;
             }

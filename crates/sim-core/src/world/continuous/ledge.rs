@@ -22,10 +22,6 @@ const LEVEL: f64 = 1e-6;
 /// Lifts that are tried, each twice as high as the one before.
 const LIFTS: i32 = 8;
 
-/// Cosine of the angle between an impact and the surface that a body slides on above which it is no ledge
-/// but that surface.
-const ALIKE: f64 = 0.99;
-
 /// What a ledge is to what slides.
 struct Slide {
     body: usize,
@@ -79,7 +75,7 @@ impl World {
             true => event.contact.normal,
             false => -event.contact.normal,
         };
-        if !self.is_movable(body) || constraint.is_overlap || normal.dot(up) > ALIKE {
+        if !self.is_movable(body) || constraint.is_overlap || (normal - up).length() <= LEVEL {
             return None;
         }
         let start = &self.continuous.start;
@@ -127,9 +123,12 @@ impl World {
         let sign = if body == pair.1 { 1.0 } else { -1.0 };
         let start = &self.continuous.start;
         let offset = start.position[pair.1] - start.position[pair.0];
+        // As far as until what is round is over it.
+        let size = self.extent(body).half;
+        let far = 4.0 * libm::sqrt(most * size) + 4.0 * most + 64.0 * hover;
         let is_free = |lift: f64| {
             let from = offset + sign * lift * up;
-            let way = sign * (4.0 * most + 64.0 * hover) * forward;
+            let way = sign * far * forward;
             first_contact(forms.0, forms.1, snap(from), snap(way)).is_none()
         };
         let lifts = (0..LIFTS).map(|k| most * libm::ldexp(1.0, k + 1 - LIFTS));
@@ -148,15 +147,15 @@ impl World {
             ..slide.constraint
         };
         let reach = lift + 8.0 * hover;
-        let Some(surface) = self.surface_below(&level, offset + sign * (lift * up + onto), reach)
-        else {
-            return Ok(false);
-        };
-        if (surface.normal - level.normal).length() > LEVEL {
-            return Ok(false);
+        let surface = self.surface_below(&level, offset + sign * (lift * up + onto), reach);
+        match surface.filter(|surface| (surface.normal - level.normal).length() <= LEVEL) {
+            Some(surface) => {
+                let lift = lift - surface.distance + hover;
+                self.raise(slide, lift, lift * up + onto, time, restarted)
+            }
+            // It is not over it yet.
+            None => self.raise(slide, lift, lift * up, time, restarted),
         }
-        let lift = lift - surface.distance + hover;
-        self.raise(slide, lift, lift * up + onto, time, restarted)
     }
 
     /// Displaces a body and all that contacts tie to it, unless they would meet others, and lets what
