@@ -373,7 +373,7 @@ mod tests {
                     radius: 0.3,
                     motion: mirror * (1.5 * aim - 1.5 * from),
                 };
-                let touch = ball.touch(0, corners, 1.0)?;
+                let (touch, _) = ball.touch(0, corners, None)?;
                 Some((touch.time, mirror * touch.point, mirror * touch.normal))
             };
             let plain = touch(DVec3::ONE, [0, 1, 2]);
