@@ -22,6 +22,9 @@ const LEVEL: f64 = 1e-6;
 /// Lifts that are tried, each twice as high as the one before.
 const LIFTS: i32 = 8;
 
+/// How often a body is lifted in a step at most; what comes after that stops it.
+const MOST_CLIMBS: u32 = 16;
+
 /// What a ledge is to what slides.
 struct Slide {
     body: usize,
@@ -147,14 +150,18 @@ impl World {
             ..slide.constraint
         };
         let reach = lift + 8.0 * hover;
-        let surface = self.surface_below(&level, offset + sign * (lift * up + onto), reach);
-        match surface.filter(|surface| (surface.normal - level.normal).length() <= LEVEL) {
-            Some(surface) => {
-                let lift = lift - surface.distance + hover;
-                self.raise(slide, lift, lift * up + onto, time, restarted)
-            }
-            // It is not over it yet.
-            None => self.raise(slide, lift, lift * up, time, restarted),
+        let level_at = |ahead: DVec3| {
+            let surface = self.surface_below(&level, offset + sign * (lift * up + ahead), reach);
+            surface.filter(|surface| (surface.normal - level.normal).length() <= LEVEL)
+        };
+        if let Some(surface) = level_at(onto) {
+            let lift = lift - surface.distance + hover;
+            return self.raise(slide, lift, lift * up + onto, time, restarted);
+        }
+        // What is round, or pointed, is not over it yet.
+        match level_at(far * forward) {
+            Some(_) => self.raise(slide, lift, lift * up, time, restarted),
+            None => Ok(false),
         }
     }
 
@@ -184,7 +191,8 @@ impl World {
         let weight = |&body: &usize| -self.mass[body] * applied[body].dot(up);
         let work = lift * island.bodies.iter().map(weight).sum::<f64>();
         let left = along.length_squared() - 2.0 * work.max(0.0) / self.mass[body];
-        if visited.has(ledge) || left <= 0.0 {
+        let climbs = self.continuous.climbs.get(body).copied().unwrap_or(0);
+        if visited.has(ledge) || left <= 0.0 || climbs == MOST_CLIMBS {
             return Ok(false);
         }
         for &body in &island.bodies {
@@ -221,6 +229,9 @@ impl World {
         for &body in &island.bodies {
             self.continuous.start.position[body] += by;
         }
+        let bodies = self.len();
+        self.continuous.climbs.resize(bodies, 0);
+        self.continuous.climbs[body] += 1;
         let slower = libm::sqrt(left / along.length_squared());
         self.continuous.start.velocity[body] += (slower - 1.0) * along;
         self.hand_over(&slide.constraint);

@@ -66,6 +66,8 @@ pub(super) struct Continuous {
     velocity_stagger: f64,
     /// How often each body has come to rest in this step, once one has.
     rests: Vec<u32>,
+    /// How often each body has been lifted onto a ledge in this step, once one has.
+    climbs: Vec<u32>,
     /// What impacts each body has had in this step, once one has, where some give back a part only.
     bounces: Vec<Bounces>,
     /// Bodies that are at rest, to which nothing happens until something comes.
