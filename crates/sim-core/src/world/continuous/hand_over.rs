@@ -17,6 +17,9 @@ const LEVEL: f64 = 1e-9;
 /// How far ahead is looked for a surface, in gaps of bodies in contact.
 const AHEAD: f64 = 16.0;
 
+/// How often a body is handed over in a step at most, about, as contacts may end as they begin.
+const MOST_HANDED: u32 = 8;
+
 impl World {
     /// Finds the contacts of the bodies of one that ends with others that are level with it, and tells
     /// whether there are any.
@@ -28,7 +31,8 @@ impl World {
         let (i, j) = ended.bodies;
         let before = self.contacts.all().len();
         for body in [i, j] {
-            if !self.is_movable(body) {
+            let handed = self.continuous.handed.get(body).copied().unwrap_or(0);
+            if !self.is_movable(body) || handed >= MOST_HANDED {
                 continue;
             }
             let mut partners: Vec<usize> = mem::take(&mut self.continuous.partners);
@@ -53,6 +57,9 @@ impl World {
                     ..*ended
                 };
                 if let Some(level) = self.level_with(&level) {
+                    let count = self.len();
+                    self.continuous.handed.resize(count, 0);
+                    self.continuous.handed[body] += 1;
                     let movable = (self.is_movable(bodies.0), self.is_movable(bodies.1));
                     self.contacts.insert(level, |body| {
                         if body == bodies.0 {
@@ -82,7 +89,10 @@ impl World {
         // Where a vertex is above one, the surface ahead is.
         let ahead = start.velocity[j] - start.velocity[i];
         let ahead = AHEAD * hover * ahead.normalize_or_zero();
-        let is_level = |surface: &Surface| (surface.normal - level.normal).length() <= LEVEL;
+        // What lies on the other side of a body is found as if it were in it.
+        let is_level = |surface: &Surface| {
+            surface.distance > 0.0 && (surface.normal - level.normal).length() <= LEVEL
+        };
         let mut surfaces = [offset, offset + ahead.reject_from_normalized(level.normal)]
             .into_iter()
             .filter_map(|offset| self.surface_below(level, offset, 4.0 * hover));

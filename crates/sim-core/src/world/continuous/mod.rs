@@ -68,6 +68,8 @@ pub(super) struct Continuous {
     rests: Vec<u32>,
     /// How often each body has been lifted onto a ledge in this step, once one has.
     climbs: Vec<u32>,
+    /// How often each body has been handed over to another one in this step, once one has.
+    handed: Vec<u32>,
     /// What impacts each body has had in this step, once one has, where some give back a part only.
     bounces: Vec<Bounces>,
     /// Bodies that are at rest, to which nothing happens until something comes.

@@ -67,6 +67,7 @@ impl World {
         continuous.bounces.clear();
         continuous.rests.clear();
         continuous.climbs.clear();
+        continuous.handed.clear();
         continuous.version.clear();
         continuous.version.resize(n, 0);
     }
