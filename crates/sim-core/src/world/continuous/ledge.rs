@@ -14,7 +14,7 @@ use super::super::{World, stepping::Cause};
 use super::constraint_solve::Visited;
 use super::contact_set::ContactConstraint;
 use super::{Event, EventKind};
-use crate::collide::{first_contact, snap};
+use crate::collide::{first_contact, meet, snap};
 
 /// What the normals of surfaces that are level but for the rounding of their vertices may be off by.
 const LEVEL: f64 = 1e-6;
@@ -212,11 +212,8 @@ impl World {
             }
             self.need_bvh(other);
             is_blocked = self.motion_at(other, time, &mut probe).map(|(at, _)| {
-                let to = self.continuous.start.position[body] + by;
-                match body < other {
-                    true => self.meet_built(body, other, at - to),
-                    false => self.meet_built(other, body, to - at),
-                }
+                let from = self.continuous.start.position[body] - at;
+                self.is_stopped(body, other, from, [lift * up, by - lift * up])
             });
             if !matches!(is_blocked, Ok(false)) {
                 break;
@@ -236,5 +233,21 @@ impl World {
         self.continuous.start.velocity[body] += (slower - 1.0) * along;
         self.hand_over(&slide.constraint);
         Ok(true)
+    }
+
+    /// Whether a body on a way of two parts from an offset meets another one: a point, or a sheet, has to be
+    /// seen on the way.
+    fn is_stopped(&self, body: usize, other: usize, from: DVec3, parts: [DVec3; 2]) -> bool {
+        let Some((other, body)) = self.form(other).zip(self.form(body)) else {
+            return false;
+        };
+        let mut at = from;
+        for part in parts {
+            if first_contact(other, body, snap(at), snap(part)).is_some() {
+                return true;
+            }
+            at += part;
+        }
+        meet(other, body, snap(at))
     }
 }
