@@ -56,6 +56,7 @@ fn every_scene_ends_in_the_pinned_state() {
                 println!("{} {mode} is left out: {why}", entry.name);
                 continue;
             }
+            eprintln!("{} {mode}", entry.name);
             let mut scene = entry.scene().expect("a gallery scene");
             scene.collision = collision;
             let mut world = scene.world().expect("a world");

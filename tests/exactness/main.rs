@@ -7,6 +7,7 @@
 
 mod falling;
 mod lattices;
+mod points;
 mod rows;
 mod scenes;
 mod shapes;

@@ -48,8 +48,9 @@ pub fn ball_touch(mesh: &Bvh, centre: DVec3, radius: f64, motion: DVec3) -> Opti
         motion,
     };
     let mut best: Option<BallTouch> = None;
-    // Near the border of a face an edge is as near as the face, but for rounding.
-    let mut best_inside: Option<BallTouch> = None;
+    // Near the border of a face an edge is as near as the face, but for rounding, which turns its normal.
+    let mut best_upright: Option<BallTouch> = None;
+    let mut error: f64 = 0.0;
     // The nearest on top.
     let mut stack = [(0.0, mesh.root()); 3 * MAX_DEPTH + 1];
     let mut top = 1;
@@ -76,26 +77,30 @@ pub fn ball_touch(mesh: &Bvh, centre: DVec3, radius: f64, motion: DVec3) -> Opti
             }
             let triangles = mesh.triangles(node);
             let corners = triangles.corners(lane).map(|v| v.as_dvec3());
-            let horizon = best.map_or(1.0, |best| best.time);
-            let Some(touch) = ball.touch(triangles.face[lane], corners, horizon) else {
+            let latest = best.map(|best| best.time);
+            let Some((touch, is_upright)) = ball.touch(triangles.face[lane], corners, latest)
+            else {
                 continue;
             };
+            let [a, b, c] = corners.map(|corner| corner.abs());
+            error = error.max(ball.error(a.max(b).max(c)));
             let first = |old: Option<BallTouch>| match old {
                 Some(old) if !ball.is_before(&touch, &old) => Some(old),
                 _ => Some(touch),
             };
-            if is_inside(ball.centre + touch.time * motion, corners) {
-                best_inside = first(best_inside);
+            if is_upright {
+                best_upright = first(best_upright);
             }
             best = first(best);
         }
     }
-    let (first, inside) = (best?, best_inside);
-    let is_tie = |inside: &BallTouch| {
-        let speed = -inside.normal.dot(motion);
-        (inside.time - first.time) * speed <= 2.0 * ball.error(inside.point.abs())
+    let (first, upright) = (best?, best_upright);
+    // Each comes by up to twice the error before its time.
+    let is_tie = |upright: &BallTouch| {
+        let speed = -upright.normal.dot(motion);
+        (upright.time - first.time) * speed <= 2.0 * error
     };
-    inside.filter(is_tie).or(best)
+    upright.filter(is_tie).or(best)
 }
 
 /// Whether a closed ball and the surface of a mesh share a point, in the mesh's frame, m: whether
@@ -158,7 +163,14 @@ impl Ball {
         (enter <= leave).then_some(enter)
     }
 
-    fn touch(&self, face: u32, corners: [DVec3; 3], horizon: f64) -> Option<BallTouch> {
+    /// The contact with a triangle on the way, if it is no later than another one, or as late but for
+    /// rounding; and whether its normal is that of the triangle.
+    fn touch(
+        &self,
+        face: u32,
+        corners: [DVec3; 3],
+        other: Option<f64>,
+    ) -> Option<(BallTouch, bool)> {
         let [a, b, c] = corners;
         let error = self.error(a.abs().max(b.abs()).max(c.abs()));
         let mut time = 0.0;
@@ -169,18 +181,23 @@ impl Ball {
             let apart = centre - point;
             let distance = apart.length();
             let gap = distance - self.radius;
-            // Once there, the direction of a point is rounding and nothing else.
-            // Over a face its normal, which a small distance does not spoil; at an edge, once there, the
-            // last one, as the direction of a point is rounding and nothing else.
+            // Over a face its normal, which a small distance does not spoil, and no rounding beside it
+            // either; at an edge, once there, the last one, as the direction of a point is rounding and
+            // nothing else.
             let across = (b - a).cross(c - a);
             let side = apart.dot(across);
-            let normal = match last {
-                Some(normal) if distance <= error => normal,
-                None if distance <= error => across.try_normalize()?,
-                _ if is_inside(centre, corners) && side != 0.0 => {
-                    libm::copysign(1.0, side) * across.try_normalize()?
-                }
-                _ => apart / distance,
+            let upright = || {
+                let normal = unit(across)? * libm::copysign(1.0, side);
+                let aside = (apart - distance * normal).length();
+                (aside <= error || is_inside(centre, corners)).then_some(normal)
+            };
+            let (normal, is_upright) = match last {
+                Some(last) if distance <= error => last,
+                None if distance <= error => (unit(across)?, true),
+                _ => match upright().filter(|_| side != 0.0) {
+                    Some(normal) => (normal, true),
+                    None => (apart / distance, false),
+                },
             };
             let speed = -normal.dot(self.motion);
             if speed <= 0.0 {
@@ -192,18 +209,20 @@ impl Ball {
                 } else {
                     0.0
                 };
-                return Some(BallTouch {
+                let touch = BallTouch {
                     time,
                     point,
                     normal,
                     face,
-                });
+                };
+                return (time <= 1.0).then_some((touch, is_upright));
             }
             time += gap / speed;
-            if time - error / speed > horizon {
+            let is_late = other.is_some_and(|other| time - 3.0 * error / speed > other);
+            if is_late || time - error / speed > 1.0 {
                 return None;
             }
-            last = Some(normal);
+            last = Some((normal, is_upright));
         }
         None
     }
@@ -241,6 +260,12 @@ pub(crate) fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
         if key(y) < key(x) { y } else { x }
     };
     nearer(nearer(x, y), z)
+}
+
+/// A direction as a unit vector, exact along an axis.
+fn unit(way: DVec3) -> Option<DVec3> {
+    let unit = way / way.length();
+    unit.is_finite().then_some(unit)
 }
 
 /// Whether the point of a triangle that is nearest to `p` is none of its edges.
@@ -348,7 +373,7 @@ mod tests {
                     radius: 0.3,
                     motion: mirror * (1.5 * aim - 1.5 * from),
                 };
-                let touch = ball.touch(0, corners, 1.0)?;
+                let (touch, _) = ball.touch(0, corners, None)?;
                 Some((touch.time, mirror * touch.point, mirror * touch.normal))
             };
             let plain = touch(DVec3::ONE, [0, 1, 2]);

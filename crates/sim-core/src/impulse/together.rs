@@ -264,6 +264,34 @@ mod tests {
     }
 
     #[test]
+    fn of_parallel_contacts_the_one_that_wants_most_counts() {
+        for count in 1..6_usize {
+            for most in 0..count {
+                let contacts: Vec<Joined> = (0..count)
+                    .map(|k| Joined {
+                        bodies: (0, k % 3 + 1),
+                        normal: DVec3::NEG_Y,
+                    })
+                    .collect();
+                let missing: Vec<f64> = (0..count)
+                    .map(|k| {
+                        if k == most {
+                            2.0
+                        } else {
+                            1.0 - 0.25 * k as f64
+                        }
+                    })
+                    .collect();
+                let mut velocity = vec![DVec3::ZERO; 4];
+                let inverse_mass = [1.0, 0.0, 0.0, 0.0];
+                project(&contacts, &inverse_mass, &mut velocity, &missing);
+                let error = (velocity[0] - 2.0 * DVec3::Y).length();
+                assert!(error < 1e-12, "{most} of {count}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
     fn projections_close_nothing_and_only_push_what_stays_together() {
         for seed in 0..300 {
             let count = 1 + seed as usize % 9;

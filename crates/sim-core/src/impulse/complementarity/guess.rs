@@ -7,6 +7,10 @@ use super::{Matrix, ROUNDING, sum};
 /// Guesses at which contacts push; a few are enough, by far.
 const GUESSES: usize = 40;
 
+/// Part of the largest speed that is missing where equations have no solution: parallel contacts of the
+/// same bodies that want different speeds cannot all push.
+const UNSOLVED: f64 = 1e-9;
+
 impl Matrix {
     /// Contacts are taken to push or not to push by guess, the equations of those that push solved,
     /// and the guess mended where one would pull or one that does not push closes (Júdice, Pires
@@ -26,6 +30,10 @@ impl Matrix {
             };
             let wrong: Vec<usize> = (0..wanted.len()).filter(|&k| is_wrong(k)).collect();
             if wrong.is_empty() {
+                let is_unsolved = |k: usize| pushes[k] && missing[k].abs() > UNSOLVED * scale;
+                if (0..wanted.len()).any(is_unsolved) {
+                    return None;
+                }
                 let given = given.into_iter().enumerate();
                 let pushed =
                     |(k, given): (usize, f64)| if is_held(k) { given } else { given.max(0.0) };

@@ -184,18 +184,18 @@ impl World {
             visited.begin(self.len());
             for &body in &island.bodies {
                 if let Some(island) = self.island_of(body, &mut visited) {
-                    self.solve_measured(&island, time)?;
+                    self.solve_measured(&island, time, true)?;
                 }
             }
             return Ok(());
         }
-        self.solve_measured(island, time)
+        self.solve_measured(island, time, true)
     }
 
     /// Looks again at contacts whose normals turn, where bodies are at a time, and tells whether some
     /// are no more.
     fn remeasure(&mut self, island: &Island, time: f64) -> bool {
-        let mut gone = Vec::new();
+        let mut gone: Vec<usize> = Vec::new();
         if time == 0.0 {
             return false;
         }
@@ -212,14 +212,26 @@ impl World {
             }
         }
         gone.sort_unstable_by(|a, b| b.cmp(a));
+        let ended: Vec<ContactConstraint> = gone
+            .iter()
+            .map(|&index| self.contacts.all()[index])
+            .collect();
         for &index in &gone {
             self.contacts.remove(index);
+        }
+        for constraint in &ended {
+            self.hand_over(constraint);
         }
         !gone.is_empty()
     }
 
     /// Solves an island whose bodies are at the start of their trajectories.
-    fn solve_measured(&mut self, island: &Island, time: f64) -> Result<(), (usize, Cause)> {
+    fn solve_measured(
+        &mut self,
+        island: &Island,
+        time: f64,
+        hands_over: bool,
+    ) -> Result<(), (usize, Cause)> {
         let is_bundled = self.spread_bundle(island);
         let places = Places::of(self, &island.constraints);
         let mut solution = self.solve_velocities(island, &places, is_bundled, time)?;
@@ -229,8 +241,26 @@ impl World {
             .map(|k| island.constraints[k])
             .collect();
         gone.sort_unstable_by(|a, b| b.cmp(a));
+        let ended: Vec<ContactConstraint> = gone
+            .iter()
+            .map(|&index| self.contacts.all()[index])
+            .collect();
         for index in gone {
             self.contacts.remove(index);
+        }
+        let mut is_borne = false;
+        for constraint in &ended {
+            is_borne |= hands_over && self.hand_over(constraint);
+        }
+        // What has been borne by one body is borne by another one now.
+        if is_borne {
+            let mut visited = Visited::default();
+            visited.begin(self.len());
+            for &body in &island.bodies {
+                if let Some(island) = self.island_of(body, &mut visited) {
+                    self.solve_measured(&island, time, false)?;
+                }
+            }
         }
         Ok(())
     }

@@ -5,6 +5,7 @@
 //! they lie on and sees every other one. All is asked of the same exact search: a contact is there
 //! where a short motion against its normal is stopped, and its gap is the length of that motion.
 
+use alloc::vec::Vec;
 use glam::DVec3;
 
 use super::super::World;
@@ -130,6 +131,7 @@ impl World {
     /// Looks at the contacts that the last step has left: their gaps and normals now. Those that have
     /// opened are no more, nor are those that close so fast that they bounce.
     pub(super) fn measure_contacts(&mut self) {
+        let mut ended = Vec::new();
         for index in (0..self.contacts.all().len()).rev() {
             let constraint = self.contacts.all()[index];
             let (i, j) = constraint.bodies;
@@ -159,8 +161,14 @@ impl World {
                     }
                     *self.contacts.get_mut(index) = measured;
                 }
-                None => self.contacts.remove(index),
+                None => {
+                    self.contacts.remove(index);
+                    ended.push(constraint);
+                }
             }
+        }
+        for constraint in &ended {
+            self.hand_over(constraint);
         }
     }
 
@@ -272,7 +280,8 @@ impl World {
                 break;
             };
             let end = time + after;
-            time = end + 1e-6 * soon;
+            // What is round has to turn by more than rounding.
+            time = end + if radius > 0.0 { soon } else { 1e-6 * soon };
             if time >= length {
                 return Course::Flat;
             }

@@ -15,7 +15,7 @@ use super::super::World;
 use super::constraint_solve::Places;
 use super::contact_set::ContactConstraint;
 use crate::{
-    collide::{Broad, Form, Swept, first_contact, parting_normals, snap},
+    collide::{Broad, Form, Swept, first_contact, parting_normals, reach, snap},
     impulse::project,
 };
 
@@ -86,10 +86,16 @@ impl World {
         self.need_bvh(i);
         self.need_bvh(j);
         let forms = self.form(i).zip(self.form(j))?;
-        let reach = self.flush(i, j);
+        let farthest = self.flush(i, j);
         let is_apart = |to: DVec3| !self.meet_built(i, j, offset + to);
         let mut directions: Vec<DVec3> = Vec::new();
-        let surfaces = parting_normals(forms.0, forms.1, offset);
+        let mut surfaces = parting_normals(forms.0, forms.1, offset);
+        // Those of planes with the one body on one side and the other one on the other side first.
+        let depth = |normal: &DVec3| {
+            let (first, second) = (reach(forms.0, -*normal).0, reach(forms.1, *normal).0);
+            first + second - normal.dot(offset)
+        };
+        surfaces.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
         let surfaces = surfaces.into_iter().take(MAX_DIRECTIONS);
         for normal in surfaces.chain([self.apart_along(i, j)]) {
             // Each counts once in the sums below.
@@ -121,10 +127,10 @@ impl World {
         };
         let shortest = || {
             let out = self.penetration(i, j, offset);
-            (out.depth <= reach).then_some((out.depth + self.hover_gap(i, j)) * out.normal)
+            (out.depth <= farthest).then_some((out.depth + self.hover_gap(i, j)) * out.normal)
         };
         let all = singles().chain(pairs()).chain(triples());
-        let all = all.map(|direction| reach * direction);
+        let all = all.map(|direction| farthest * direction);
         all.chain(core::iter::once_with(shortest).flatten())
             .find_map(found)
     }

@@ -26,10 +26,12 @@ mod contact_motion;
 mod contact_set;
 mod crush;
 mod friction;
+mod hand_over;
 mod held_overlaps;
 mod horizon;
 mod impact_search;
 mod initial_contacts;
+mod ledge;
 mod position_correction;
 mod progress;
 mod resolve;
@@ -76,6 +78,10 @@ pub(super) struct Continuous {
     velocity_stagger: f64,
     /// How often each body has come to rest in this step, once one has.
     rests: Vec<u32>,
+    /// How often each body has been lifted onto a ledge in this step, once one has.
+    climbs: Vec<u32>,
+    /// How often each body has been handed over to another one in this step, once one has.
+    handed: Vec<u32>,
     /// What impacts each body has had in this step, once one has, where some give back a part only.
     bounces: Vec<Bounces>,
     /// Bodies that are at rest, to which nothing happens until something comes.
@@ -86,6 +92,8 @@ pub(super) struct Continuous {
     /// Pairs that have come near in this step.
     candidate_pairs: Vec<(usize, usize)>,
     broad: Broad,
+    /// Whether that knows what is near bodies where they are: they have not been placed since.
+    knows_near: bool,
     probe: Probe,
     visited: Visited,
     restarted_motion: Vec<(DVec3, DVec3)>,
@@ -205,6 +213,7 @@ impl World {
             (position, self.overlapping.clone())
         });
         self.bundled = Bundled::default();
+        self.continuous.knows_near &= placed.is_none();
         self.separate_placed();
         if let Err((body, cause)) = self.collide_without_deepening() {
             (self.impacts, self.last_impact) = before;
@@ -284,6 +293,7 @@ impl World {
         pairs.retain(|&(i, j)| self.may_collide(i, j));
         let count = pairs.len();
         self.continuous.broad = broad;
+        self.continuous.knows_near = true;
         self.continuous.candidate_pairs = pairs;
         for place in 0..count {
             let (i, j) = self.continuous.candidate_pairs[place];

@@ -55,7 +55,21 @@ impl World {
             self.restart(event.bodies.0, time, &mut restarted)?;
             self.restart(event.bodies.1, time, &mut restarted)?;
         }
+        for event in group.iter() {
+            let (i, j) = event.bodies;
+            let normal = event.contact.normal;
+            let ended = self.contacts.of_pair(i, j);
+            let ended = ended.copied().find(|known| known.normal == normal);
+            if let Some(ended) = ended.filter(|_| event.kind == EventKind::ContactEnd) {
+                self.hand_over(&ended);
+            }
+        }
         for event in group.iter_mut() {
+            if self.climb(event, time, &mut restarted)? {
+                // It goes on, on another surface.
+                event.kind = EventKind::ContactEnd;
+                event.outcome = Outcome::Rest;
+            }
             if event.kind == EventKind::Impact {
                 self.classify(event);
             }

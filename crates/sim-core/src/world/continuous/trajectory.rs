@@ -66,6 +66,8 @@ impl World {
         continuous.since.resize(n, 0.0);
         continuous.bounces.clear();
         continuous.rests.clear();
+        continuous.climbs.clear();
+        continuous.handed.clear();
         continuous.version.clear();
         continuous.version.resize(n, 0);
     }

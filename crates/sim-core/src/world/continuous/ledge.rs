@@ -1,0 +1,253 @@
+//! Ledges that are rounding: tiles that are level but for the last bit of their vertices.
+//!
+//! Vertices are f32, so that the tops of two bodies that are meant to be level differ by some parts in
+//! 10^7. What slides from the lower one to the higher one would stop there. Where a body that slides is
+//! stopped by what is no higher than that, and would lie on it, it is lifted there, with all that lies
+//! on it. That is a ramp of no length: it takes what the weight has gained, and a body without so much
+//! stops after all.
+
+use alloc::vec::Vec;
+use core::mem;
+use glam::DVec3;
+
+use super::super::{World, stepping::Cause};
+use super::constraint_solve::Visited;
+use super::contact_set::ContactConstraint;
+use super::{Event, EventKind};
+use crate::collide::{first_contact, meet, snap};
+
+/// What the normals of surfaces that are level but for the rounding of their vertices may be off by.
+const LEVEL: f64 = 1e-6;
+
+/// Lifts that are tried, each twice as high as the one before.
+const LIFTS: i32 = 8;
+
+/// How often a body is lifted in a step at most; what comes after that stops it.
+const MOST_CLIMBS: u32 = 16;
+
+/// What a ledge is to what slides.
+struct Slide {
+    body: usize,
+    ledge: usize,
+    /// The contact that it slides on.
+    constraint: ContactConstraint,
+    /// Up from what it slides on.
+    up: DVec3,
+    /// Its motion over the ledge, m/s.
+    along: DVec3,
+    /// The highest ledge that rounding explains, m.
+    most: f64,
+}
+
+impl World {
+    /// Lifts what slides onto a ledge of rounding, where it would have an impact with it, and tells
+    /// whether it has.
+    pub(super) fn climb(
+        &mut self,
+        event: &Event,
+        time: f64,
+        restarted: &mut Vec<usize>,
+    ) -> Result<bool, (usize, Cause)> {
+        let (i, j) = event.bodies;
+        if event.kind != EventKind::Impact {
+            return Ok(false);
+        }
+        for (body, ledge) in [(i, j), (j, i)] {
+            for place in 0..self.contacts.of_body(body).len() {
+                let index = self.contacts.of_body(body)[place] as usize;
+                if let Some(slide) = self.slide_onto(event, body, ledge, index)
+                    && self.lift(&slide, time, restarted)?
+                {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// How a body slides on one of its contacts onto what it has an impact with, if that rises from the
+    /// surface by no more than rounding where they touch.
+    fn slide_onto(&self, event: &Event, body: usize, ledge: usize, index: usize) -> Option<Slide> {
+        let constraint = self.contacts.all()[index];
+        let (i, j) = constraint.bodies;
+        let (up, floor) = match body == j {
+            true => (constraint.normal, i),
+            false => (-constraint.normal, j),
+        };
+        let normal = match body == event.bodies.1 {
+            true => event.contact.normal,
+            false => -event.contact.normal,
+        };
+        if !self.is_movable(body) || constraint.is_overlap || (normal - up).length() <= LEVEL {
+            return None;
+        }
+        let start = &self.continuous.start;
+        let touched = start.position[i] + constraint.point;
+        let of = |body: usize, point: DVec3| (point - start.position[body]).dot(up).abs();
+        let point = event.contact.point;
+        let most = f64::from(f32::EPSILON) * (of(floor, touched) + of(ledge, point));
+        if (point - touched).dot(up) > most {
+            return None;
+        }
+        let relative = start.velocity[body] - start.velocity[ledge];
+        Some(Slide {
+            body,
+            ledge,
+            constraint,
+            up,
+            along: relative - relative.dot(up) * up,
+            most,
+        })
+    }
+
+    /// Lifts a body onto a ledge, if it is as high as rounding at most, and tells whether it has.
+    fn lift(
+        &mut self,
+        slide: &Slide,
+        time: f64,
+        restarted: &mut Vec<usize>,
+    ) -> Result<bool, (usize, Cause)> {
+        let &Slide {
+            body,
+            ledge,
+            up,
+            along,
+            most,
+            ..
+        } = slide;
+        let Some(forward) = along.try_normalize() else {
+            return Ok(false);
+        };
+        let pair = (body.min(ledge), body.max(ledge));
+        let hover = self.hover_gap(pair.0, pair.1);
+        let Some(forms) = self.form(pair.0).zip(self.form(pair.1)) else {
+            return Ok(false);
+        };
+        let sign = if body == pair.1 { 1.0 } else { -1.0 };
+        let start = &self.continuous.start;
+        let offset = start.position[pair.1] - start.position[pair.0];
+        // As far as until what is round is over it.
+        let size = self.extent(body).half;
+        let far = 4.0 * libm::sqrt(most * size) + 4.0 * most + 64.0 * hover;
+        let is_free = |lift: f64| {
+            let from = offset + sign * lift * up;
+            let way = sign * far * forward;
+            first_contact(forms.0, forms.1, snap(from), snap(way)).is_none()
+        };
+        let lifts = (0..LIFTS).map(|k| most * libm::ldexp(1.0, k + 1 - LIFTS));
+        let Some(lift) = lifts
+            .into_iter()
+            .map(|lift| lift + hover)
+            .find(|&lift| is_free(lift))
+        else {
+            return Ok(false);
+        };
+        // Onto it by a little, and down to it.
+        let onto = 4.0 * hover * forward;
+        let level = ContactConstraint {
+            bodies: pair,
+            normal: sign * up,
+            ..slide.constraint
+        };
+        let reach = lift + 8.0 * hover;
+        let level_at = |ahead: DVec3| {
+            let surface = self.surface_below(&level, offset + sign * (lift * up + ahead), reach);
+            surface.filter(|surface| (surface.normal - level.normal).length() <= LEVEL)
+        };
+        if let Some(surface) = level_at(onto) {
+            let lift = lift - surface.distance + hover;
+            return self.raise(slide, lift, lift * up + onto, time, restarted);
+        }
+        // What is round, or pointed, is not over it yet.
+        match level_at(far * forward) {
+            Some(_) => self.raise(slide, lift, lift * up, time, restarted),
+            None => Ok(false),
+        }
+    }
+
+    /// Displaces a body and all that contacts tie to it, unless they would meet others, and lets what
+    /// that takes slow it down.
+    fn raise(
+        &mut self,
+        slide: &Slide,
+        lift: f64,
+        by: DVec3,
+        time: f64,
+        restarted: &mut Vec<usize>,
+    ) -> Result<bool, (usize, Cause)> {
+        let &Slide {
+            body,
+            ledge,
+            up,
+            along,
+            ..
+        } = slide;
+        let mut visited = Visited::default();
+        visited.begin(self.len());
+        let Some(island) = self.island_of(body, &mut visited) else {
+            return Ok(false);
+        };
+        let applied = &self.continuous.applied_acceleration;
+        let weight = |&body: &usize| -self.mass[body] * applied[body].dot(up);
+        let work = lift * island.bodies.iter().map(weight).sum::<f64>();
+        let left = along.length_squared() - 2.0 * work.max(0.0) / self.mass[body];
+        let climbs = self.continuous.climbs.get(body).copied().unwrap_or(0);
+        if visited.has(ledge) || left <= 0.0 || climbs == MOST_CLIMBS {
+            return Ok(false);
+        }
+        for &body in &island.bodies {
+            self.restart(body, time, restarted)?;
+        }
+        let mut partners = Vec::new();
+        for &body in &island.bodies {
+            let broad = &self.continuous.broad;
+            broad.each_partner(body, |other| partners.push((body, other)));
+        }
+        partners.retain(|&(_, other)| !visited.has(other));
+        let mut probe = mem::take(&mut self.continuous.probe);
+        let mut is_blocked = Ok(false);
+        for (body, other) in partners {
+            if !self.may_collide(body.min(other), body.max(other)) {
+                continue;
+            }
+            self.need_bvh(other);
+            is_blocked = self.motion_at(other, time, &mut probe).map(|(at, _)| {
+                let from = self.continuous.start.position[body] - at;
+                self.is_stopped(body, other, from, [lift * up, by - lift * up])
+            });
+            if !matches!(is_blocked, Ok(false)) {
+                break;
+            }
+        }
+        self.continuous.probe = probe;
+        if is_blocked? {
+            return Ok(false);
+        }
+        for &body in &island.bodies {
+            self.continuous.start.position[body] += by;
+        }
+        let bodies = self.len();
+        self.continuous.climbs.resize(bodies, 0);
+        self.continuous.climbs[body] += 1;
+        let slower = libm::sqrt(left / along.length_squared());
+        self.continuous.start.velocity[body] += (slower - 1.0) * along;
+        self.hand_over(&slide.constraint);
+        Ok(true)
+    }
+
+    /// Whether a body on a way of two parts from an offset meets another one: a point, or a sheet, has to be
+    /// seen on the way.
+    fn is_stopped(&self, body: usize, other: usize, from: DVec3, parts: [DVec3; 2]) -> bool {
+        let Some((other, body)) = self.form(other).zip(self.form(body)) else {
+            return false;
+        };
+        let mut at = from;
+        for part in parts {
+            if first_contact(other, body, snap(at), snap(part)).is_some() {
+                return true;
+            }
+            at += part;
+        }
+        meet(other, body, snap(at))
+    }
+}

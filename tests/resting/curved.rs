@@ -1,0 +1,204 @@
+//! Motion over curved surfaces without friction: energy, where a body leaves, and how long a bowl takes.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use sim_core::{Body, DVec3, Method, Settings, World};
+
+use crate::meshes::{fixed, turned};
+use crate::scenes::{GRAVITY, ball, cube, world};
+
+fn at_rate(name: &str, rate: f64) -> World {
+    let mut world = world(Method::named(name).expect("a method"));
+    let settings = Settings {
+        dt: 1.0 / rate,
+        ..*world.settings()
+    };
+    world.set_settings(settings).expect("settings");
+    world
+}
+
+fn energy(world: &World, body: usize) -> f64 {
+    0.5 * world.velocity(body).length_squared() + GRAVITY * world.position(body).y
+}
+
+/// A ball on top of a ball, pushed off: the speed along x that it keeps once it has left, m/s, and what
+/// energy it has gained in a step at most and lost in all until then, of `g R`.
+fn leave(rate: f64) -> (f64, f64, f64) {
+    let mut world = at_rate("rk4", rate);
+    let radius = 1.5;
+    let below = Body {
+        restitution: 0.0,
+        ..fixed(&ball(1.0), DVec3::ZERO)
+    };
+    world.add(below).expect("a ball");
+    let rider = Body {
+        shape: Some(ball(radius - 1.0)),
+        position: radius * DVec3::Y,
+        velocity: 0.3 * DVec3::X,
+        restitution: 0.0,
+        ..Body::default()
+    };
+    world.add(rider).expect("a rider");
+    let start = energy(&world, 1);
+    let mut gained: f64 = 0.0;
+    let mut before = start;
+    loop {
+        world.step().expect("a step");
+        let now = energy(&world, 1);
+        gained = gained.max(now - before);
+        before = now;
+        if world.position(1).y < 0.0 {
+            let lost = (start - now) / (GRAVITY * radius);
+            return (world.velocity(1).x, gained / (GRAVITY * radius), lost);
+        }
+        assert!(world.time() < 5.0, "it never leaves");
+    }
+}
+
+/// At `cos a = 2/3 + v²/(3 g R)`, of the first order in the step.
+#[test]
+fn a_ball_leaves_a_ball_where_it_must() {
+    let cosine = 2.0 / 3.0 + 0.3 * 0.3 / (3.0 * GRAVITY * 1.5);
+    let exact = (GRAVITY * 1.5 * cosine).sqrt() * cosine;
+    let mut errors = Vec::new();
+    for rate in [60.0, 240.0, 960.0, 3840.0] {
+        let (speed, gained, lost) = leave(rate);
+        assert!(gained < 1e-12, "{rate}: gains {gained:e}");
+        errors.push(((speed / exact - 1.0).abs(), lost));
+    }
+    for (at, (error, lost)) in errors.iter().enumerate() {
+        let most = 0.01 / 4.0_f64.powi(at as i32);
+        assert!(error.max(lost.abs()) < most, "{errors:?}");
+    }
+}
+
+/// A cube that slides over the edge of a ramp's top falls from there.
+#[test]
+fn a_ramp_gives_a_body_the_speed_of_its_height() {
+    for slope in [0.25_f64, 0.5, 1.0, 2.0] {
+        let mut world = at_rate("rk4", 60.0);
+        let normal = DVec3::new(slope, 1.0, 0.0).normalize();
+        // A slope and a floor, one body each.
+        for normal in [normal, DVec3::Y] {
+            let plane = Body {
+                restitution: 0.0,
+                ..fixed(&sim_core::Shape::HalfSpace { normal }, DVec3::ZERO)
+            };
+            world.add(plane).expect("a plane");
+        }
+        let height = 1.0;
+        let foot = 0.5 * normal / normal.y;
+        let at = foot + height * DVec3::new(-1.0 / slope, 1.0, 0.0);
+        let rider = Body {
+            shape: Some(ball(0.5)),
+            position: at + (0.5 - normal.dot(at)) * normal,
+            restitution: 0.0,
+            ..Body::default()
+        };
+        let height = rider.position.y - 0.5;
+        world.add(rider).expect("a rider");
+        while world.position(2).y > 0.5 + 1e-9 {
+            world.step().expect("a step");
+            assert!(world.time() < 10.0, "{slope}: stuck");
+        }
+        // The floor takes what is across it.
+        let speed = (2.0 * GRAVITY * height).sqrt() * normal.y;
+        let error = (world.velocity(2).x - speed).abs();
+        assert!(error < 1e-9, "{slope}: {error:e}");
+        assert_eq!(world.velocity(2).y, 0.0, "{slope}");
+    }
+}
+
+/// A bowl of triangles: one outline of a sphere's lower half, for a small ball.
+fn in_bowl(rate: f64, sides: u32) -> World {
+    let mut world = at_rate("rk4", rate);
+    let outline: Vec<[f64; 2]> = (0..=sides / 4)
+        .map(|k| {
+            let (sin, cos) = (FRAC_PI_2 * f64::from(k) / f64::from(sides / 4)).sin_cos();
+            [2.0 * sin, -2.0 * cos]
+        })
+        .collect();
+    world
+        .add(fixed(&turned(&outline, sides), DVec3::ZERO))
+        .expect("a bowl");
+    world
+}
+
+/// To and fro in a bowl, and round it: no energy comes, and the period is that of the pendulum.
+#[test]
+fn balls_circle_in_a_bowl() {
+    let mut world = in_bowl(240.0, 96);
+    let (radius, length) = (0.25, 1.75);
+    // Put in where it touches, at a small height, with the speed that keeps it there.
+    let angle = 0.4_f64;
+    let at = length * DVec3::new(angle.sin(), -angle.cos(), 0.0);
+    let speed = (GRAVITY * length * angle.sin() * angle.tan()).sqrt();
+    let rider = Body {
+        shape: Some(ball(radius)),
+        position: at * 0.99,
+        velocity: speed * DVec3::Z,
+        restitution: 0.0,
+        ..Body::default()
+    };
+    world.add(rider).expect("a rider");
+    let mut before = energy(&world, 1);
+    let period = 2.0 * PI * length * angle.sin() / speed;
+    let mut turned = 0.0;
+    let mut last = 0.0_f64;
+    let steps = (2.0 * period * 240.0) as u32;
+    for count in 0..steps {
+        world.step().expect("a step");
+        let now = energy(&world, 1);
+        assert!(now <= before + 1e-10, "{count}: gains {:e}", now - before);
+        before = now;
+        let at = world.position(1);
+        let angle = at.z.atan2(at.x);
+        turned += (angle - last + 3.0 * PI).rem_euclid(2.0 * PI) - PI;
+        last = angle;
+        assert!(at.length() < length + 1e-3, "{at}: through the bowl");
+    }
+    // Facets take some speed at each of their edges.
+    assert!(turned.abs() > 1.5 * PI, "{turned}");
+    assert!(world.position(1).y < -1.0);
+}
+
+/// Off a cube's edge: what slides over it with a speed goes on as a stone that is thrown.
+#[test]
+fn off_an_edge_a_ball_flies_or_rolls_over_it() {
+    for rate in [60.0, 1000.0] {
+        for (speed, flies) in [(3.0, true), (1.0, false)] {
+            let mut world = at_rate("rk4", rate);
+            world.add(fixed(&cube(), -0.5 * DVec3::Y)).expect("a cube");
+            let radius = 0.25;
+            let rider = Body {
+                shape: Some(ball(radius)),
+                position: DVec3::new(0.0, radius, 0.0),
+                velocity: speed * DVec3::X,
+                restitution: 0.0,
+                ..Body::default()
+            };
+            let start = 0.5 * speed * speed + GRAVITY * radius;
+            world.add(rider).expect("a rider");
+            let until = 0.5 / speed;
+            while world.time() < until + 0.2 {
+                world.step().expect("a step");
+                assert!(energy(&world, 1) <= start + 1e-9, "{rate} {speed}");
+            }
+            let at = world.position(1);
+            if flies {
+                // Faster than the edge bends its way: v² > g r.
+                let time = world.time() - until;
+                let x = 0.5 + speed * time;
+                let y = radius - 0.5 * GRAVITY * time * time;
+                let error = (at - DVec3::new(x, y, 0.0)).length();
+                assert!(error < 1e-9, "{rate}: {error:e}, {at}");
+            } else {
+                // It leaves the edge at cos a = 2/3 + v²/(3 g r), with the speed √(g r cos a).
+                let cosine = 2.0 / 3.0 + speed * speed / (3.0 * GRAVITY * radius);
+                let out = (GRAVITY * radius * cosine).sqrt() * cosine;
+                let error = (world.velocity(1).x - out).abs();
+                assert!(error < 5.0 / rate, "{rate}: {error:e}");
+            }
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Floors and hollows made of triangles.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use sim_core::{Body, DQuat, DVec3, Mesh, Shape, Vec3};
+
+/// SplitMix64: numbers that look random and are the same on every run.
+pub(crate) struct Random(pub(crate) u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ mixed >> 31
+    }
+
+    pub(crate) fn from(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+pub(crate) fn mesh(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Shape {
+    Shape::Mesh(Arc::new(Mesh::new(vertices, triangles).expect("a mesh")))
+}
+
+/// A mesh, stretched.
+pub(crate) fn scaled(shape: &Shape, scale: DVec3) -> Shape {
+    let Shape::Mesh(mesh) = shape else {
+        panic!("a mesh");
+    };
+    let mesh = mesh.transformed(DQuat::IDENTITY, scale);
+    Shape::Mesh(Arc::new(mesh.expect("a mesh")))
+}
+
+/// A level grid of cells in the plane y = 0, about its origin, with its inner vertices put aside by
+/// part of a cell, and with its diagonals either way.
+pub(crate) fn grid((along, across): (u32, u32), size: [f64; 2], random: &mut Random) -> Shape {
+    let mut vertices = Vec::new();
+    for i in 0..=along {
+        for j in 0..=across {
+            let is_inner = i > 0 && i < along && j > 0 && j < across;
+            let mut aside = || {
+                if is_inner {
+                    random.from(-0.3, 0.3)
+                } else {
+                    0.0
+                }
+            };
+            let x = (f64::from(i) + aside()) / f64::from(along) - 0.5;
+            let z = (f64::from(j) + aside()) / f64::from(across) - 0.5;
+            vertices.push(Vec3::new((size[0] * x) as f32, 0.0, (size[1] * z) as f32));
+        }
+    }
+    let number = |i: u32, j: u32| i * (across + 1) + j;
+    let mut triangles = Vec::new();
+    for i in 0..along {
+        for j in 0..across {
+            let [p, q] = [number(i, j), number(i, j + 1)];
+            let [r, s] = [number(i + 1, j + 1), number(i + 1, j)];
+            match random.from(0.0, 1.0) < 0.5 {
+                true => triangles.extend([[p, q, r], [p, r, s]]),
+                false => triangles.extend([[p, q, s], [q, r, s]]),
+            }
+        }
+    }
+    mesh(vertices, triangles)
+}
+
+/// A level disc of triangles that share the vertex in its middle.
+pub(crate) fn fan(triangles: u32, radius: f64) -> Shape {
+    let mut vertices = vec![Vec3::ZERO];
+    vertices.extend((0..triangles).map(|i| {
+        let (sin, cos) = (TAU * f64::from(i) / f64::from(triangles)).sin_cos();
+        Vec3::new((radius * cos) as f32, 0.0, (radius * sin) as f32)
+    }));
+    let rim = (0..triangles).map(|i| [0, 1 + (i + 1) % triangles, 1 + i]);
+    mesh(vertices, rim.collect())
+}
+
+/// A surface of revolution about the y axis, open or closed at its ends: by points (radius, height) of
+/// its outline. Where a radius is 0 there is one vertex. Seen from the axis its triangles turn left.
+pub(crate) fn turned(outline: &[[f64; 2]], sides: u32) -> Shape {
+    let mut vertices = Vec::new();
+    let mut rings: Vec<Vec<u32>> = Vec::new();
+    for &[radius, height] in outline {
+        let count = if radius == 0.0 { 1 } else { sides };
+        let first = vertices.len() as u32;
+        vertices.extend((0..count).map(|i| {
+            let (sin, cos) = (TAU * f64::from(i) / f64::from(sides)).sin_cos();
+            DVec3::new(radius * cos, height, radius * sin).as_vec3()
+        }));
+        rings.push((0..sides).map(|i| first + i % count).collect());
+    }
+    let mut triangles = Vec::new();
+    for pair in rings.windows(2) {
+        let (low, high) = (&pair[0], &pair[1]);
+        for i in 0..sides as usize {
+            let j = (i + 1) % sides as usize;
+            for triangle in [[low[i], low[j], high[j]], [low[i], high[j], high[i]]] {
+                let [a, b, c] = triangle;
+                if a != b && b != c && c != a {
+                    triangles.push(triangle);
+                }
+            }
+        }
+    }
+    mesh(vertices, triangles)
+}
+
+/// A body that nothing moves.
+pub(crate) fn fixed(shape: &Shape, position: DVec3) -> Body {
+    Body {
+        shape: Some(shape.clone()),
+        position,
+        mass: f64::INFINITY,
+        restitution: 0.0,
+        ..Body::default()
+    }
+}
