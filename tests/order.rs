@@ -14,15 +14,12 @@ const MODES: [(&str, Collision); 3] = [
 ];
 
 /// Scenes and modes that do not hold it yet, and why.
-const NOT_YET: [(&str, &str, &str); 5] = [
+const NOT_YET: [(&str, &str, &str); 3] = [
     ("herd", "continuous", WHO_IS_BUNDLED),
-    ("stack", "continuous", SUMS),
     ("wall", "continuous", WHO_IS_BUNDLED),
-    ("funnel", "continuous", SUMS),
-    ("bin", "continuous", WHO_IS_BUNDLED),
+    ("funnel", "continuous", WHO_IS_BUNDLED),
 ];
 
-const SUMS: &str = "the contacts of a heap are solved in the order of its bodies, and sums round";
 const WHO_IS_BUNDLED: &str =
     "which bodies count as a heap, and from which impact of a step, depends on it";
 

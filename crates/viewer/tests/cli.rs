@@ -280,7 +280,7 @@ fn overlaps_are_told_with_names_and_depth_and_can_be_separated() {
         "{held:?}"
     );
     let table = String::from_utf8(answer(&run).stdout).expect("text");
-    for words in ["floor and left at the start, 0.25 m deep", "--separate"] {
+    for words in ["floor and left at the start, 0.2500 m deep", "--separate"] {
         assert!(table.contains(words), "{words} is not in\n{table}");
     }
     let run = [&run[..], &["--separate"]].concat();

@@ -42,6 +42,9 @@ const FULL_STEPS: usize = 10;
 /// Looks for the least along a line, at most.
 const LOOKS: usize = 16;
 
+/// Lengths of a step beyond which nothing is looked for.
+const FARTHEST: f64 = 1024.0;
+
 /// Contacts and their bodies as one problem.
 struct Problem<'a> {
     contacts: &'a [Joined],
@@ -330,13 +333,14 @@ impl Newton {
         };
         let (mut low, mut high) = (0.0, 1.0);
         let (mut at_low, mut at_high) = (slope(low), slope(high));
-        if at_low >= 0.0 {
+        if at_low >= 0.0 || at_low.is_nan() {
             return 0.0;
         }
         let steep = at_low.abs();
         let enough = 0.1 * steep;
         while at_high < 0.0 {
-            if -at_high <= enough {
+            // Where nothing bounds it, rounding is all that is left.
+            if -at_high <= enough || high >= FARTHEST {
                 return high;
             }
             (low, at_low) = (high, at_high);
@@ -348,7 +352,8 @@ impl Newton {
                 return high;
             }
             let chord = low + (high - low) * at_low / (at_low - at_high);
-            let middle = chord.clamp(low + 0.1 * (high - low), high - 0.1 * (high - low));
+            let edge = 0.1 * (high - low);
+            let middle = chord.max(low + edge).min(high - edge);
             let there = slope(middle);
             if there.abs() <= enough {
                 return middle;

@@ -157,7 +157,7 @@ impl World {
                     if measured.gap < 0.5 * least {
                         // They do not meet: what looks deeper has been found beside where they are.
                         let gap = measured.gap.max(0.0);
-                        self.move_apart((i, j), (least - gap) * measured.normal);
+                        self.move_apart_in_room((i, j), (least - gap) * measured.normal);
                     }
                     *self.contacts.get_mut(index) = measured;
                 }

@@ -207,13 +207,19 @@ impl World {
         })
     }
 
-    /// Moves the starts of two trajectories apart, unless one of the bodies would get into what it touches.
+    /// Moves the starts of two trajectories apart.
     pub(super) fn move_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
         let (first, second) = shares(self.is_movable(i), self.is_movable(j));
         let position = &mut self.continuous.start.position;
-        let before = (position[i], position[j]);
         position[i] -= first * by;
         position[j] += second * by;
+    }
+
+    /// The same, unless one of the bodies would get into what it touches.
+    pub(super) fn move_apart_in_room(&mut self, (i, j): (usize, usize), by: DVec3) {
+        let position = &self.continuous.start.position;
+        let before = (position[i], position[j]);
+        self.move_apart((i, j), by);
         if self.meets_a_contact(i) || self.meets_a_contact(j) {
             let position = &mut self.continuous.start.position;
             (position[i], position[j]) = before;

@@ -365,6 +365,16 @@ impl World {
         self.rests_of(body) > MANY_RESTS || self.contacts.is_bundled(body)
     }
 
+    /// Bundles for the next step what has come to rest in this one and touches more than one plane.
+    pub(super) fn bundle_restless(&mut self) {
+        let rests = self.continuous.rests.iter().enumerate();
+        let is_caught = |body: usize| self.contacts.of_body(body).len() > 1;
+        let restless = rests.filter(|&(body, &rests)| rests > 0 && is_caught(body));
+        let restless: Vec<usize> = restless.map(|(body, _)| body).collect();
+        self.contacts.bundle(&restless);
+        self.contacts.keep_bundled(&restless);
+    }
+
     /// Bundles an island of which one body is.
     pub(super) fn spread_bundle(&mut self, island: &Island) -> bool {
         let is_bundled = island.bodies.iter().any(|&body| self.is_bundled(body));
