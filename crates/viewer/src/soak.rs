@@ -1,6 +1,6 @@
 //! Scenes that run for minutes or days, looked at after each step.
 //!
-//! Each scene has an equal part of the time. What must hold after each of its steps is an [`Invariant`];
+//! Each scene has an equal part of the time. What must hold after each of its steps is an `Invariant`;
 //! the first that does not hold ends the soak with an error. A scene that has an end, as one in which
 //! walls close on a body, starts again.
 
