@@ -106,9 +106,6 @@ fn put_into(hollow: &Shape, shape: &Shape, at: DVec3, restitution: f64, friction
     world
 }
 
-/// What ends in an error: impacts follow each other in no time (README, limits).
-const KNOWN: &str = "cow in 64, e 0.3, friction 0.3: step 60: body 1 has an impact after ";
-
 /// Across a groove what has no friction goes to and fro for ever if it gives everything back; else it
 /// settles. Along the groove nothing stops it.
 #[test]
@@ -144,9 +141,6 @@ fn bodies_settle_in_wedges_and_funnels() {
         }
     }
     assert_eq!(count, 7 * 3 * 3 * 2);
-    let (known, wrong): (Vec<_>, Vec<_>) =
-        wrong.into_iter().partition(|what| what.starts_with(KNOWN));
-    assert_eq!(known.len(), 1, "it settles now: take it out");
     assert!(
         wrong.is_empty(),
         "{} wrong:\n{}",

@@ -1,5 +1,6 @@
 //! An order of bodies that comes from their motion, whatever their places in the columns are.
 
+use alloc::vec::Vec;
 use core::cmp::Ordering;
 use glam::DVec3;
 
@@ -17,6 +18,34 @@ impl World {
         let [u, v, w] = self.previous.velocity[body].to_array();
         let [a, b, c] = self.acceleration[body].to_array();
         Key([x, y, z, u, v, w, self.mass[body], a, b, c])
+    }
+
+    /// Some bodies, once each, in that order.
+    pub(super) fn in_order(&self, mut bodies: Vec<usize>) -> InOrder {
+        bodies.sort_unstable();
+        bodies.dedup();
+        let key = |body: usize| (self.motion_key(body), body);
+        let mut keys: Vec<(Key, usize)> = bodies.into_iter().map(key).collect();
+        keys.sort_unstable();
+        let bodies: Vec<usize> = keys.into_iter().map(|(_, body)| body).collect();
+        let mut places: Vec<(usize, usize)> = bodies.iter().copied().zip(0..).collect();
+        places.sort_unstable();
+        InOrder { bodies, places }
+    }
+}
+
+/// Bodies in order, and the place of each among them.
+pub(super) struct InOrder {
+    pub(super) bodies: Vec<usize>,
+    /// By body.
+    places: Vec<(usize, usize)>,
+}
+
+impl InOrder {
+    /// The place of one of the bodies.
+    pub(super) fn place(&self, body: usize) -> usize {
+        let before = |&(other, _): &(usize, usize)| other < body;
+        self.places[self.places.partition_point(before)].1
     }
 }
 

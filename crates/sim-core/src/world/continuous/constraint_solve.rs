@@ -7,12 +7,11 @@
 //! Neither adds energy: what holds a contact is at right angles to how it moves.
 
 use alloc::vec::Vec;
-use core::{cmp::Ordering, mem};
+use core::mem;
 use glam::DVec3;
 
 use super::super::{World, order, stepping::Cause};
 use super::contact_motion::{Course, LEAST_GAP};
-use super::contact_set::ContactConstraint;
 use super::friction::Friction;
 use super::{Event, EventKind, Outcome};
 use crate::impulse::{Joined, Known, apply, greatest, project_with};
@@ -110,37 +109,35 @@ impl World {
                 }
             }
         }
-        self.sort_bodies(&mut island.bodies);
-        let all = self.contacts.all();
-        island.constraints.sort_unstable_by(|&one, &other| {
-            let (one_pair, one_normal) = self.in_order(&all[one]);
-            let (other_pair, other_normal) = self.in_order(&all[other]);
-            let by_bodies = self.compare_bodies(one_pair.0, other_pair.0);
-            by_bodies
-                .then_with(|| self.compare_bodies(one_pair.1, other_pair.1))
-                .then_with(|| order::of_vectors(one_normal, other_normal))
-                .then(one.cmp(&other))
-        });
+        if let [_, _, ..] = island.constraints[..] {
+            self.sort(&mut island);
+        }
         Some(island)
     }
 
-    /// Puts bodies into an order that is not that of their places: sums over an island round.
-    fn sort_bodies(&self, bodies: &mut [usize]) {
-        bodies.sort_unstable_by(|&one, &other| self.compare_bodies(one, other));
-    }
-
-    fn compare_bodies(&self, one: usize, other: usize) -> Ordering {
-        let by_motion = self.motion_key(one).cmp(&self.motion_key(other));
-        by_motion.then(one.cmp(&other))
-    }
-
-    /// The bodies of a contact in that order, and its normal from the first to the second.
-    fn in_order(&self, contact: &ContactConstraint) -> ((usize, usize), DVec3) {
-        let (i, j) = contact.bodies;
-        match self.compare_bodies(i, j) {
-            Ordering::Greater => ((j, i), -contact.normal),
-            _ => ((i, j), contact.normal),
-        }
+    /// Puts an island into an order that is not that of the places of bodies: sums over it round.
+    fn sort(&self, island: &mut Island) {
+        let all = self.contacts.all();
+        let pairs = island.constraints.iter().map(|&index| all[index].bodies);
+        let order = self.in_order(pairs.flat_map(|(i, j)| [i, j]).collect());
+        island
+            .bodies
+            .sort_unstable_by_key(|&body| order.place(body));
+        island.constraints.sort_unstable_by(|&one, &other| {
+            let key = |index: usize| {
+                let ((i, j), normal) = (all[index].bodies, all[index].normal);
+                let (first, second) = (order.place(i), order.place(j));
+                match first > second {
+                    true => ((second, first), -normal),
+                    false => ((first, second), normal),
+                }
+            };
+            let ((one_pair, one_normal), (other_pair, other_normal)) = (key(one), key(other));
+            let by_bodies = one_pair.cmp(&other_pair);
+            by_bodies
+                .then_with(|| order::of_vectors(one_normal, other_normal))
+                .then(one.cmp(&other))
+        });
     }
 
     /// Solves the islands of some bodies at a time, and adds the bodies whose trajectories have started
@@ -184,12 +181,12 @@ impl World {
             visited.begin(self.len());
             for &body in &island.bodies {
                 if let Some(island) = self.island_of(body, &mut visited) {
-                    self.solve_measured(&island, time, true)?;
+                    self.solve_measured(&island, time)?;
                 }
             }
             return Ok(());
         }
-        self.solve_measured(island, time, true)
+        self.solve_measured(island, time)
     }
 
     /// Looks again at contacts whose normals turn, where bodies are at a time, and tells whether some
@@ -211,54 +208,28 @@ impl World {
                 }
             }
         }
-        gone.sort_unstable_by(|a, b| b.cmp(a));
-        let ended: Vec<ContactConstraint> = gone
-            .iter()
-            .map(|&index| self.contacts.all()[index])
-            .collect();
-        for &index in &gone {
-            self.contacts.remove(index);
-        }
-        for constraint in &ended {
-            self.hand_over(constraint);
-        }
-        !gone.is_empty()
+        let is_gone = !gone.is_empty();
+        self.end_contacts(gone);
+        is_gone
     }
 
     /// Solves an island whose bodies are at the start of their trajectories.
-    fn solve_measured(
-        &mut self,
-        island: &Island,
-        time: f64,
-        hands_over: bool,
-    ) -> Result<(), (usize, Cause)> {
+    fn solve_measured(&mut self, island: &Island, time: f64) -> Result<(), (usize, Cause)> {
         let is_bundled = self.spread_bundle(island);
         let places = Places::of(self, &island.constraints);
         let mut solution = self.solve_velocities(island, &places, is_bundled, time)?;
         self.solve_accelerations(island, &places, &mut solution, time);
-        let mut gone: Vec<usize> = (0..island.constraints.len())
+        let gone = (0..island.constraints.len())
             .filter(|&k| solution.open[k])
-            .map(|k| island.constraints[k])
-            .collect();
-        gone.sort_unstable_by(|a, b| b.cmp(a));
-        let ended: Vec<ContactConstraint> = gone
-            .iter()
-            .map(|&index| self.contacts.all()[index])
-            .collect();
-        for index in gone {
-            self.contacts.remove(index);
-        }
-        let mut is_borne = false;
-        for constraint in &ended {
-            is_borne |= hands_over && self.hand_over(constraint);
-        }
+            .map(|k| island.constraints[k]);
+        let is_borne = self.end_contacts(gone.collect());
         // What has been borne by one body is borne by another one now.
         if is_borne {
             let mut visited = Visited::default();
             visited.begin(self.len());
             for &body in &island.bodies {
                 if let Some(island) = self.island_of(body, &mut visited) {
-                    self.solve_measured(&island, time, false)?;
+                    self.solve_measured(&island, time)?;
                 }
             }
         }
@@ -313,11 +284,18 @@ impl World {
             };
             spent = bundled.map(|left| rubbed.into_iter().map(|rubbed| rubbed / left).collect());
         }
+        // Where normals turn a velocity is along the surface but for what steps round off.
+        let turned: Vec<f64> = (0..count)
+            .map(|k| match constraint(k).is_turning {
+                true => hop[k],
+                false => 0.0,
+            })
+            .collect();
         let parting: Vec<f64> = (0..count)
             .map(|k| places.joined[k].opening(&velocity) - target[k])
             .collect();
         let open: Vec<bool> = (0..count)
-            .map(|k| !is_bundled && parting[k] > still[k].max(hop[k]))
+            .map(|k| !is_bundled && parting[k] > still[k].max(turned[k]))
             .collect();
         // What is left of a speed at which it parts turns back by the end of the step.
         let recession = |k: usize| match parting[k] > 4.0 * rounding {
@@ -359,7 +337,7 @@ impl World {
             let constraint = self.contacts.get_mut(index);
             constraint.impulse = given[k];
             constraint.target = target[k];
-            constraint.is_turning = solution.recession[k] > 0.0;
+            constraint.is_turning = false;
             constraint.ends_at = f64::INFINITY;
         }
         if let Some((energy, distance)) = bundled {
@@ -764,20 +742,14 @@ impl Places {
         world: &World,
         contacts: impl Iterator<Item = ((usize, usize), DVec3)> + Clone,
     ) -> Places {
-        let both = contacts.clone().flat_map(|((i, j), _)| [i, j]);
-        let mut bodies: Vec<usize> = both.collect();
-        bodies.sort_unstable();
-        bodies.dedup();
-        world.sort_bodies(&mut bodies);
-        let mut places: Vec<(usize, usize)> = bodies.iter().copied().zip(0..).collect();
-        places.sort_unstable();
-        let place = |body: usize| places[places.partition_point(|&(other, _)| other < body)].1;
+        let order = world.in_order(contacts.clone().flat_map(|((i, j), _)| [i, j]).collect());
         let joined = contacts
             .map(|((i, j), normal)| Joined {
-                bodies: (place(i), place(j)),
+                bodies: (order.place(i), order.place(j)),
                 normal,
             })
             .collect();
+        let bodies = order.bodies;
         let inverse_mass = bodies.iter().map(|&body| 1.0 / world.mass[body]).collect();
         Places {
             bodies,

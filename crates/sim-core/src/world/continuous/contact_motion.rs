@@ -35,6 +35,14 @@ pub(super) struct Surface {
     pub(super) point: DVec3,
 }
 
+impl Surface {
+    /// The gap to the plane that is met there along a normal, m, that plane's normal and the point.
+    fn along(&self, normal: DVec3) -> (f64, DVec3, DVec3) {
+        let gap = self.distance * self.normal.dot(normal);
+        (gap, self.normal, self.point)
+    }
+}
+
 /// What of two bodies touches.
 #[derive(Clone, Copy)]
 pub(super) enum Touched {
@@ -155,9 +163,7 @@ impl World {
                 Some(measured) => {
                     let least = LEAST_GAP * self.hover_gap(i, j);
                     if measured.gap < 0.5 * least {
-                        // They do not meet: what looks deeper has been found beside where they are.
-                        let gap = measured.gap.max(0.0);
-                        self.move_apart_in_room((i, j), (least - gap) * measured.normal);
+                        self.move_apart_in_room((i, j), (least - measured.gap) * measured.normal);
                     }
                     *self.contacts.get_mut(index) = measured;
                 }
@@ -191,15 +197,28 @@ impl World {
             false => height,
         };
         let offset = start.position[j] - start.position[i];
-        let surface = self.surface_below(&constraint, offset, reach.max(8.0 * hover))?;
-        // Along the plane that it meets.
-        let gap = surface.distance * surface.normal.dot(constraint.normal);
+        // Most are as near as contacts are kept, and the farther one looks, the more else is in the way.
+        let near = 8.0 * hover;
+        let (gap, normal, point) = match self.surface_below(&constraint, offset, near) {
+            // Bodies do not meet. What seems to be above where they are is another surface, through which
+            // they have been lifted, and nothing is known of this one but that they touched.
+            Some(below) if below.distance < 0.0 => (0.0, constraint.normal, constraint.point),
+            Some(below) => below.along(constraint.normal),
+            None if reach <= near => return None,
+            None => {
+                let below = self.surface_below(&constraint, offset, reach)?;
+                if below.distance < 0.0 {
+                    return None;
+                }
+                below.along(constraint.normal)
+            }
+        };
         let push = &self.continuous.applied_acceleration;
-        let pressed = (push[i] - push[j]).dot(surface.normal);
+        let pressed = (push[i] - push[j]).dot(normal);
         let load_speed = constraint.load_speed.max(self.settings.dt * pressed);
         Some(ContactConstraint {
-            normal: surface.normal,
-            point: surface.point,
+            normal,
+            point,
             gap,
             ends_at: f64::INFINITY,
             target: self.speed_to_hover(gap, hover, left, load_speed),
@@ -214,8 +233,7 @@ impl World {
         if gap > 4.0 * hover {
             -(gap - hover) / time
         } else if gap < 0.5 * hover && load_speed > 0.0 {
-            // What looks deeper is stopped by something else.
-            (hover - gap.max(0.0)) / (4.0 * self.settings.dt)
+            (hover - gap) / (4.0 * self.settings.dt)
         } else {
             0.0
         }
@@ -267,6 +285,8 @@ impl World {
         }
         // What turns all the time is seen to have turned after this.
         let soon = (4.0 * turn * radius / way).clamp(1e-5, 0.0625) * length;
+        // What is round has to turn by more than rounding.
+        let soon = if radius > 0.0 { soon } else { 1e-6 * soon };
         let (mut time, mut now) = (soon, below(soon));
         for _ in 0..MAX_FEATURES {
             let Below::Flat(surface) = now else { break };
@@ -280,8 +300,7 @@ impl World {
                 break;
             };
             let end = time + after;
-            // What is round has to turn by more than rounding.
-            time = end + if radius > 0.0 { soon } else { 1e-6 * soon };
+            time = end + soon;
             if time >= length {
                 return Course::Flat;
             }

@@ -4,6 +4,8 @@ use alloc::vec::Vec;
 use core::mem;
 use glam::DVec3;
 
+use super::super::World;
+
 /// A plane that keeps two bodies apart: the second one may not move against the normal faster than
 /// the target, nor be accelerated against it by more than the surface recedes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +38,33 @@ pub(in crate::world) struct ContactConstraint {
     pub(in crate::world) is_overlap: bool,
     /// Whether it is one of those that let such bodies move as one in this step.
     pub(super) is_hold: bool,
+}
+
+impl ContactConstraint {
+    /// A contact that has not been solved: bodies, the lower one first, a unit normal from it to the other one,
+    /// a gap, m, and where it was touched, from the first body, m.
+    pub(super) fn new(
+        bodies: (usize, usize),
+        normal: DVec3,
+        gap: f64,
+        point: DVec3,
+    ) -> ContactConstraint {
+        ContactConstraint {
+            bodies,
+            normal,
+            gap,
+            target: 0.0,
+            is_turning: false,
+            load_speed: 0.0,
+            ends_at: f64::INFINITY,
+            point,
+            impulse: 0.0,
+            friction: DVec3::ZERO,
+            sticks: true,
+            is_overlap: false,
+            is_hold: false,
+        }
+    }
 }
 
 /// Cosine of the angle to which the normals of two contacts of the same bodies are one: 0.8 degrees.
@@ -104,9 +133,8 @@ impl ContactSet {
         self.like(new).any(|other| other != index)
     }
 
-    /// Adds a constraint, in the place of one of the same bodies along the same normal. Says which of its
-    /// bodies may move.
-    pub(super) fn insert(&mut self, new: ContactConstraint, is_movable: impl Fn(usize) -> bool) {
+    /// Adds a constraint, in the place of one of the same bodies along the same normal.
+    fn insert(&mut self, new: ContactConstraint, is_movable: impl Fn(usize) -> bool) {
         let (i, j) = new.bodies;
         let known = self.like(&new).next();
         if let Some(known) = known {
@@ -198,6 +226,31 @@ impl ContactSet {
         self.all.clone_from(&other.all);
         self.of_body.clone_from(&other.of_body);
         self.bundled.clone_from(&other.bundled);
+    }
+}
+
+impl World {
+    /// Adds a contact, in the place of one of the same bodies along the same normal.
+    pub(super) fn add_contact(&mut self, new: ContactConstraint) {
+        let mass = &self.mass;
+        self.contacts.insert(new, |body| mass[body].is_finite());
+    }
+
+    /// Ends contacts, given by their indices, and hands over to others what they have borne. Tells whether
+    /// there were others.
+    pub(super) fn end_contacts(&mut self, mut gone: Vec<usize>) -> bool {
+        // From the last on, as the last one takes the index of one that goes.
+        gone.sort_unstable_by(|a, b| b.cmp(a));
+        let all = self.contacts.all();
+        let ended: Vec<ContactConstraint> = gone.iter().map(|&index| all[index]).collect();
+        for index in gone {
+            self.contacts.remove(index);
+        }
+        let mut is_borne = false;
+        for constraint in &ended {
+            is_borne |= self.hand_over(constraint);
+        }
+        is_borne
     }
 }
 

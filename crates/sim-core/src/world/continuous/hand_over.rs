@@ -60,14 +60,7 @@ impl World {
                     let count = self.len();
                     self.continuous.handed.resize(count, 0);
                     self.continuous.handed[body] += 1;
-                    let movable = (self.is_movable(bodies.0), self.is_movable(bodies.1));
-                    self.contacts.insert(level, |body| {
-                        if body == bodies.0 {
-                            movable.0
-                        } else {
-                            movable.1
-                        }
-                    });
+                    self.add_contact(level);
                 }
             }
             self.continuous.partners = partners;

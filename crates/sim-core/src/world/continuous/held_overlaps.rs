@@ -114,7 +114,7 @@ impl World {
             {
                 let at = &self.previous.position;
                 let out = self.penetration(i, j, at[j] - at[i]);
-                self.insert_contact((i, j), out.normal, DVec3::ZERO, true);
+                self.add_contact(self.overlap_contact((i, j), out.normal));
             }
         }
     }
@@ -127,13 +127,19 @@ impl World {
             let Some(&known) = known else { continue };
             let (one, other) = known.normal.any_orthonormal_pair();
             for normal in [-known.normal, one, -one, other, -other] {
-                self.insert_contact((i, j), normal, DVec3::ZERO, true);
+                self.add_contact(ContactConstraint {
+                    is_hold: true,
+                    ..self.overlap_contact((i, j), normal)
+                });
             }
-            for constraint in self.contacts.all_mut() {
-                if constraint.bodies == (i, j) && constraint.normal != known.normal {
-                    constraint.is_hold = true;
-                }
-            }
+        }
+    }
+
+    fn overlap_contact(&self, (i, j): (usize, usize), normal: DVec3) -> ContactConstraint {
+        let gap = self.hover_gap(i, j);
+        ContactConstraint {
+            is_overlap: true,
+            ..ContactConstraint::new((i, j), normal, gap, DVec3::ZERO)
         }
     }
 

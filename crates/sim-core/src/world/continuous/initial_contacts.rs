@@ -64,7 +64,13 @@ impl World {
             }
             self.previous.position = moved;
             for plane in planes {
-                self.insert_contact(plane.bodies, plane.normal, plane.point, false);
+                let gap = self.hover_gap(plane.bodies.0, plane.bodies.1);
+                self.add_contact(ContactConstraint::new(
+                    plane.bodies,
+                    plane.normal,
+                    gap,
+                    plane.point,
+                ));
             }
         }
         let at = self.previous.position.clone();
@@ -258,7 +264,13 @@ impl World {
                 }
             }
             for contact in found {
-                self.insert_contact((i, j), contact.normal, contact.point, false);
+                let gap = self.hover_gap(i, j);
+                self.add_contact(ContactConstraint::new(
+                    (i, j),
+                    contact.normal,
+                    gap,
+                    contact.point,
+                ));
             }
         }
     }
@@ -293,35 +305,6 @@ impl World {
         });
         pairs.sort_unstable();
         pairs
-    }
-
-    pub(super) fn insert_contact(
-        &mut self,
-        (i, j): (usize, usize),
-        normal: DVec3,
-        point: DVec3,
-        is_overlap: bool,
-    ) {
-        let movable = (self.is_movable(i), self.is_movable(j));
-        let constraint = ContactConstraint {
-            bodies: (i, j),
-            normal,
-            gap: self.hover_gap(i, j),
-            target: 0.0,
-            is_turning: false,
-            load_speed: 0.0,
-            ends_at: f64::INFINITY,
-            point,
-            impulse: 0.0,
-            friction: DVec3::ZERO,
-            sticks: true,
-            is_overlap,
-            is_hold: false,
-        };
-        self.contacts.insert(
-            constraint,
-            |body| if body == i { movable.0 } else { movable.1 },
-        );
     }
 }
 

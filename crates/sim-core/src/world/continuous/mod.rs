@@ -229,7 +229,6 @@ impl World {
         }
         self.forget_parted_overlaps();
         self.bundled.bodies = self.contacts.bundled_bodies();
-        self.bundle_restless();
         self.contacts.end_step();
         self.contact_steps += u64::from(!self.contacts.is_empty());
         Ok(())

@@ -337,7 +337,17 @@ impl World {
             return false;
         }
         let leaving = restitution * closing;
-        let is_spent = || leaving * self.settings.dt <= self.resolution_along(i, j, normal);
+        // Contacts move bodies by their gap, and no impact has to tell that speed from none.
+        let is_touching = [i, j]
+            .iter()
+            .any(|&body| !self.contacts.of_body(body).is_empty());
+        let is_spent = || {
+            let unseen = match is_touching {
+                true => self.hover_gap(i, j),
+                false => self.resolution_along(i, j, normal),
+            };
+            leaving * self.settings.dt <= unseen
+        };
         let is_caught = || {
             let felt = self.settings.dt * self.greatest_push(i, j);
             let bounces = self.bounces_of(i, j);
@@ -363,16 +373,6 @@ impl World {
     /// what follows is bundled; or has been in the last step.
     pub(super) fn is_bundled(&self, body: usize) -> bool {
         self.rests_of(body) > MANY_RESTS || self.contacts.is_bundled(body)
-    }
-
-    /// Bundles for the next step what has come to rest in this one and touches more than one plane.
-    pub(super) fn bundle_restless(&mut self) {
-        let rests = self.continuous.rests.iter().enumerate();
-        let is_caught = |body: usize| self.contacts.of_body(body).len() > 1;
-        let restless = rests.filter(|&(body, &rests)| rests > 0 && is_caught(body));
-        let restless: Vec<usize> = restless.map(|(body, _)| body).collect();
-        self.contacts.bundle(&restless);
-        self.contacts.keep_bundled(&restless);
     }
 
     /// Bundles an island of which one body is.
@@ -414,27 +414,12 @@ impl World {
             self.move_apart(event.bodies, (least - event.gap) * event.contact.normal);
         }
         let target = self.speed_to_hover(gap, hover, self.settings.dt - time, event.load_speed);
-        let position = &self.continuous.start.position;
-        let constraint = ContactConstraint {
-            bodies: event.bodies,
-            normal: event.contact.normal,
-            gap,
+        let point = event.contact.point - self.continuous.start.position[i];
+        self.add_contact(ContactConstraint {
             target,
-            is_turning: false,
             load_speed: event.load_speed,
-            ends_at: f64::INFINITY,
-            point: event.contact.point - position[i],
-            impulse: 0.0,
-            friction: DVec3::ZERO,
-            sticks: true,
-            is_overlap: false,
-            is_hold: false,
-        };
-        let movable = (self.is_movable(i), self.is_movable(j));
-        self.contacts.insert(
-            constraint,
-            |body| if body == i { movable.0 } else { movable.1 },
-        );
+            ..ContactConstraint::new(event.bodies, event.contact.normal, gap, point)
+        });
     }
 
     /// Notes an impact that has come to rest, if it was one.
