@@ -4,11 +4,13 @@ mod agree;
 mod oracle;
 mod rational;
 
+use std::sync::Arc;
+
 use agree::assert_same;
 use proptest::prelude::*;
 use sim_core::collide::predicates::{segment_meets_triangle, triangles_meet};
-use sim_core::collide::{Placement, tree};
-use sim_core::{Bvh, DQuat, DVec3, Mesh, Vec3};
+use sim_core::collide::{Placement, naive, tree};
+use sim_core::{Body, Bvh, DQuat, DVec3, Mesh, Settings, Shape, Vec3, World};
 
 /// Points that touch, coincide and lie in planes more often than not: a small lattice, some of
 /// it moved by an ulp, scaled by a power of two and moved far away.
@@ -89,6 +91,20 @@ fn assert_symmetric(first: &Mesh, second: &Mesh, offset: DVec3) -> Result<bool, 
     Ok(meet)
 }
 
+/// Whether bodies of these shapes overlap, the second one displaced.
+fn overlap(first: &Mesh, second: &Mesh, offset: DVec3) -> bool {
+    let mut world = World::new(Settings::default()).expect("settings");
+    for (mesh, position) in [(first, DVec3::ZERO), (second, offset)] {
+        let body = Body {
+            shape: Some(Shape::Mesh(Arc::new(mesh.clone()))),
+            position,
+            ..Body::default()
+        };
+        world.add(body).expect("a body");
+    }
+    !world.overlapping().is_empty()
+}
+
 /// Rotations: any, and those by right angles, after which lattices meet lattices exactly or by a
 /// rounding.
 fn rotations() -> impl Strategy<Value = DQuat> {
@@ -147,7 +163,13 @@ proptest! {
     ) {
         let scaled = |mesh: &Mesh| mesh.transformed(sim_core::DQuat::IDENTITY, DVec3::splat(scale));
         let (first, second) = (scaled(&first).unwrap(), scaled(&second).unwrap());
-        assert_symmetric(&first, &second, DVec3::from_array(offset.map(f64::from)) * scale)?;
+        let offset = DVec3::from_array(offset.map(f64::from)) * scale;
+        // What f32 holds places vertices without rounding.
+        assert_symmetric(&first, &second, offset.as_vec3().as_dvec3())?;
+        // Else the order of meshes says which one is rounded; that of bodies does not.
+        assert_same(&first, &second, offset)?;
+        assert_same(&second, &first, -offset)?;
+        prop_assert_eq!(overlap(&first, &second, offset), overlap(&second, &first, -offset));
     }
 
     #[test]
@@ -169,6 +191,25 @@ proptest! {
         let at = Placement::turned(rotation, DVec3::from_array(offset)).expect("of unit length");
         assert_same(&first, &second, at)?;
     }
+}
+
+/// Found by a random search: placed in the frame of the one, a corner lies on an edge, and beside it in
+/// that of the other.
+#[test]
+fn bodies_that_touch_by_a_rounding_do_so_in_either_order() {
+    let scaled = |corners: [[f32; 3]; 3]| {
+        let mesh = Mesh::new(corners.map(Vec3::from_array).to_vec(), vec![[0, 2, 1]]);
+        let mesh = mesh.expect("a triangle");
+        mesh.transformed(DQuat::IDENTITY, DVec3::splat(1e-10))
+            .unwrap()
+    };
+    let first = scaled([[0.0, 2.0, 0.0], [3.0, 0.0, 1.0], [0.0, 0.0, 0.0]]);
+    let second = scaled([[3.0, 4.0, 2.0], [1.0, 0.0, 0.0], [3.0, 0.0, 1.0]]);
+    let offset = 1e-10 * DVec3::new(0.0, -4.0, -1.0);
+    assert!(naive::intersect(&first, &second, offset));
+    assert!(!naive::intersect(&second, &first, -offset));
+    let meet = overlap(&first, &second, offset);
+    assert_eq!(meet, overlap(&second, &first, -offset));
 }
 
 /// Found by a random search: a vertex so little off a plane that the determinant underflows.

@@ -319,7 +319,7 @@ fn the_herd_settles_in_its_pen() {
         assert!(is_inside, "{i}: {at}");
     }
     let late = world.kinetic_energy();
-    assert!(late < 75.0, "{late} J");
+    assert!(late < 50.0, "{late} J");
 }
 
 /// The body of that name in a gallery scene.
@@ -392,8 +392,7 @@ fn what_slides_on_the_slope_has_too_little_friction() {
     }
     let (scene, world) = settle("slope", 600);
     for name in ["mu 0", "mu 0.3", "mu 0.5", "mu 0.7", "mu 0.76", "mu 0.9"] {
-        let velocity = world.velocity(body(&scene, name));
-        assert!(velocity.length() < 1e-12, "{name}: {velocity}");
+        assert_eq!(world.velocity(body(&scene, name)), DVec3::ZERO, "{name}");
     }
     assert!(world.velocity(body(&scene, "mu 0.74")).length() > 0.7);
 }
@@ -425,8 +424,7 @@ fn a_push_gets_through_the_dominoes_as_far_as_one_would_slide() {
     }
     let way = speed * speed / (2.0 * slowing);
     let off = moved("sticky 3") - way;
-    // It lands among others, and so as one of a heap (README, limits).
-    assert!(off.abs() < 0.02, "off by {off:e} m");
+    assert!(off.abs() < 1e-9, "off by {off:e} m");
     for number in 4..=16 {
         assert_eq!(moved(&format!("sticky {number}")), 0.0, "{number}");
     }

@@ -27,6 +27,9 @@ const AT_REST: f64 = 1e-6;
 /// Part of the accelerations of an island that may be left over where it has none.
 const UNBALANCED: f64 = 1e-9;
 
+/// The same where friction holds with all that it has: what rounding makes of it.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// Part of the greatest speed at which a contact may still close where its island is solved.
 const UNSOLVED: f64 = 1e-6;
 
@@ -633,6 +636,11 @@ impl World {
     ) -> bool {
         let push = greatest(free);
         let is_still = |v: DVec3| v.length() <= AT_REST * push * self.settings.dt;
+        // What friction hardly fails to hold is accelerated by little.
+        let unbalanced = match (0..force.len()).any(|k| friction.slides(k, force[k])) {
+            true => ROUNDING,
+            false => UNBALANCED,
+        };
         let at_rest =
             time == 0.0
                 && places.bodies.iter().enumerate().all(|(place, &body)| {
@@ -640,7 +648,7 @@ impl World {
                         false => self.previous.velocity[body] == DVec3::ZERO,
                         true => {
                             is_still(self.continuous.start.velocity[body])
-                                && acceleration[place].length() <= UNBALANCED * push
+                                && acceleration[place].length() <= unbalanced * push
                                 && self.coupled_group(body).is_none()
                         }
                     }
@@ -652,8 +660,7 @@ impl World {
                     .all(|(&index, &force)| {
                         let constraint = &self.contacts.all()[index];
                         constraint.target == 0.0 || force <= 0.0
-                    })
-                && (0..force.len()).all(|k| !friction.slides(k, force[k]));
+                    });
         if at_rest {
             for &body in &island.bodies {
                 self.continuous.start.velocity[body] = DVec3::ZERO;
