@@ -20,8 +20,9 @@ impl World {
         Key([x, y, z, u, v, w, self.mass[body], a, b, c])
     }
 
-    /// Some bodies, once each, in that order.
-    pub(super) fn in_order(&self, mut bodies: Vec<usize>) -> InOrder {
+    /// Those of some pairs, once each, in that order.
+    pub(super) fn in_order(&self, pairs: impl Iterator<Item = (usize, usize)>) -> InOrder {
+        let mut bodies: Vec<usize> = pairs.flat_map(|(i, j)| [i, j]).collect();
         bodies.sort_unstable();
         bodies.dedup();
         let key = |body: usize| (self.motion_key(body), body);
@@ -46,6 +47,27 @@ impl InOrder {
     pub(super) fn place(&self, body: usize) -> usize {
         let before = |&(other, _): &(usize, usize)| other < body;
         self.places[self.places.partition_point(before)].1
+    }
+
+    /// Compares what is between two of the bodies each, along a normal from the first one to the second.
+    pub(super) fn compare(
+        &self,
+        one: ((usize, usize), DVec3),
+        other: ((usize, usize), DVec3),
+    ) -> Ordering {
+        let (one_pair, one_normal) = self.turned(one);
+        let (other_pair, other_normal) = self.turned(other);
+        let by_bodies = one_pair.cmp(&other_pair);
+        by_bodies.then_with(|| of_vectors(one_normal, other_normal))
+    }
+
+    /// The places of a pair, the lower one first, and the normal from it.
+    fn turned(&self, ((i, j), normal): ((usize, usize), DVec3)) -> ((usize, usize), DVec3) {
+        let (first, second) = (self.place(i), self.place(j));
+        match first > second {
+            true => ((second, first), -normal),
+            false => ((first, second), normal),
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 use core::mem;
 use glam::DVec3;
 
-use super::super::{World, order, stepping::Cause};
+use super::super::{World, stepping::Cause};
 use super::contact_motion::{Course, LEAST_GAP};
 use super::friction::Friction;
 use super::{Event, EventKind, Outcome};
@@ -65,6 +65,13 @@ pub(super) struct Visited {
     body: Vec<u32>,
 }
 
+/// When islands are solved, whose trajectories have started again there, and who has been solved.
+struct Now<'a> {
+    time: f64,
+    restarted: &'a mut Vec<usize>,
+    visited: Visited,
+}
+
 impl Visited {
     /// Begins with nobody visited.
     pub(super) fn begin(&mut self, bodies: usize) {
@@ -112,7 +119,7 @@ impl World {
                 }
             }
         }
-        if let [_, _, ..] = island.constraints[..] {
+        if island.bodies.len() + island.constraints.len() > 2 {
             self.sort(&mut island);
         }
         Some(island)
@@ -122,24 +129,14 @@ impl World {
     fn sort(&self, island: &mut Island) {
         let all = self.contacts.all();
         let pairs = island.constraints.iter().map(|&index| all[index].bodies);
-        let order = self.in_order(pairs.flat_map(|(i, j)| [i, j]).collect());
+        let order = self.in_order(pairs);
         island
             .bodies
             .sort_unstable_by_key(|&body| order.place(body));
         island.constraints.sort_unstable_by(|&one, &other| {
-            let key = |index: usize| {
-                let ((i, j), normal) = (all[index].bodies, all[index].normal);
-                let (first, second) = (order.place(i), order.place(j));
-                match first > second {
-                    true => ((second, first), -normal),
-                    false => ((first, second), normal),
-                }
-            };
-            let ((one_pair, one_normal), (other_pair, other_normal)) = (key(one), key(other));
-            let by_bodies = one_pair.cmp(&other_pair);
-            by_bodies
-                .then_with(|| order::of_vectors(one_normal, other_normal))
-                .then(one.cmp(&other))
+            let plane = |index: usize| (all[index].bodies, all[index].normal);
+            let compared = order.compare(plane(one), plane(other));
+            compared.then(one.cmp(&other))
         });
     }
 
@@ -153,51 +150,77 @@ impl World {
     ) -> Result<(), (usize, Cause)> {
         let mut visited = mem::take(&mut self.continuous.visited);
         visited.begin(self.len());
+        let mut now = Now {
+            time,
+            restarted,
+            visited,
+        };
         let mut outcome = Ok(());
-        for &seed in seeds {
-            if let Some(island) = self.island_of(seed, &mut visited)
+        for seed in self.in_order(seeds.iter().map(|&body| (body, body))).bodies {
+            if let Some(island) = self.island_of(seed, &mut now.visited)
                 && !island.constraints.is_empty()
             {
-                outcome = self.solve_island(&island, time, restarted);
+                outcome = self.solve_island(&island, &mut now);
                 if outcome.is_err() {
                     break;
                 }
             }
         }
-        self.continuous.visited = visited;
+        self.continuous.visited = now.visited;
         outcome
     }
 
-    fn solve_island(
-        &mut self,
-        island: &Island,
-        time: f64,
-        restarted: &mut Vec<usize>,
-    ) -> Result<(), (usize, Cause)> {
-        for &body in &island.bodies {
-            self.wake(body);
-            self.restart(body, time, restarted)?;
+    fn solve_island(&mut self, island: &Island, now: &mut Now) -> Result<(), (usize, Cause)> {
+        self.start_island(island, now)?;
+        match self.remeasure(island, now.time)? {
+            true => self.solve_again(island, now, true),
+            false => self.solve_measured(island, now, true),
         }
-        if self.remeasure(island, time) {
-            // What is left may be several islands.
-            let mut visited = Visited::default();
-            visited.begin(self.len());
-            for &body in &island.bodies {
-                if let Some(island) = self.island_of(body, &mut visited) {
-                    self.solve_measured(&island, time)?;
+    }
+
+    /// Lets the trajectories of the bodies of an island start at a time, and those of immovable ones that it
+    /// touches.
+    fn start_island(&mut self, island: &Island, now: &mut Now) -> Result<(), (usize, Cause)> {
+        for &body in &island.bodies {
+            now.visited.visit(body);
+            self.wake(body);
+            self.restart(body, now.time, now.restarted)?;
+        }
+        for &index in &island.constraints {
+            let (i, j) = self.contacts.all()[index].bodies;
+            for body in [i, j] {
+                if !self.is_movable(body) {
+                    self.restart_at(body, now.time)?;
                 }
             }
-            return Ok(());
         }
-        self.solve_measured(island, time)
+        Ok(())
+    }
+
+    /// Solves an island whose contacts have changed: it may be several now, or a part of a larger one.
+    fn solve_again(
+        &mut self,
+        island: &Island,
+        now: &mut Now,
+        hands_over: bool,
+    ) -> Result<(), (usize, Cause)> {
+        let mut again = Visited::default();
+        again.begin(self.len());
+        for &body in &island.bodies {
+            if let Some(island) = self.island_of(body, &mut again) {
+                self.start_island(&island, now)?;
+                self.solve_measured(&island, now, hands_over)?;
+            }
+        }
+        Ok(())
     }
 
     /// Looks again at contacts whose normals turn, where bodies are at a time, and tells whether some
     /// are no more.
-    fn remeasure(&mut self, island: &Island, time: f64) -> bool {
+    fn remeasure(&mut self, island: &Island, time: f64) -> Result<bool, (usize, Cause)> {
         let mut gone: Vec<usize> = Vec::new();
         if time == 0.0 {
-            return false;
+            return Ok(false);
         }
         for &index in &island.constraints {
             let constraint = self.contacts.all()[index];
@@ -212,12 +235,19 @@ impl World {
             }
         }
         let is_gone = !gone.is_empty();
-        self.end_contacts(gone);
-        is_gone
+        let ended = self.contacts.remove_all(gone);
+        self.hand_over_all(&ended)?;
+        Ok(is_gone)
     }
 
     /// Solves an island whose bodies are at the start of their trajectories.
-    fn solve_measured(&mut self, island: &Island, time: f64) -> Result<(), (usize, Cause)> {
+    fn solve_measured(
+        &mut self,
+        island: &Island,
+        now: &mut Now,
+        hands_over: bool,
+    ) -> Result<(), (usize, Cause)> {
+        let time = now.time;
         let is_bundled = self.spread_bundle(island);
         let places = Places::of(self, &island.constraints);
         let mut solution = self.solve_velocities(island, &places, is_bundled, time)?;
@@ -225,18 +255,12 @@ impl World {
         let gone = (0..island.constraints.len())
             .filter(|&k| solution.open[k])
             .map(|k| island.constraints[k]);
-        let is_borne = self.end_contacts(gone.collect());
+        let ended = self.contacts.remove_all(gone.collect());
         // What has been borne by one body is borne by another one now.
-        if is_borne {
-            let mut visited = Visited::default();
-            visited.begin(self.len());
-            for &body in &island.bodies {
-                if let Some(island) = self.island_of(body, &mut visited) {
-                    self.solve_measured(&island, time)?;
-                }
-            }
+        match hands_over && self.hand_over_all(&ended)? {
+            true => self.solve_again(island, now, false),
+            false => Ok(()),
         }
-        Ok(())
     }
 
     /// Gives the bodies of an island velocities with which no contact closes faster than its target, nor
@@ -749,7 +773,7 @@ impl Places {
         world: &World,
         contacts: impl Iterator<Item = ((usize, usize), DVec3)> + Clone,
     ) -> Places {
-        let order = world.in_order(contacts.clone().flat_map(|((i, j), _)| [i, j]).collect());
+        let order = world.in_order(contacts.clone().map(|(bodies, _)| bodies));
         let joined = contacts
             .map(|((i, j), normal)| Joined {
                 bodies: (order.place(i), order.place(j)),

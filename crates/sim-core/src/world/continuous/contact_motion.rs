@@ -8,7 +8,7 @@
 use alloc::vec::Vec;
 use glam::DVec3;
 
-use super::super::World;
+use super::super::{World, stepping::Cause};
 use super::contact_set::ContactConstraint;
 use crate::{
     Feature, Shape,
@@ -138,14 +138,11 @@ impl World {
 
     /// Looks at the contacts that the last step has left: their gaps and normals now. Those that have
     /// opened are no more, nor are those that close so fast that they bounce.
-    pub(super) fn measure_contacts(&mut self) {
-        let mut ended = Vec::new();
-        for index in (0..self.contacts.all().len()).rev() {
+    pub(super) fn measure_contacts(&mut self) -> Result<(), (usize, Cause)> {
+        let mut gone = Vec::new();
+        for index in self.contacts_in_order() {
             let constraint = self.contacts.all()[index];
             let (i, j) = constraint.bodies;
-            if self.is_asleep(i) || self.is_asleep(j) {
-                continue;
-            }
             if constraint.is_overlap {
                 if self.stood_still(i) && self.stood_still(j) {
                     continue;
@@ -157,8 +154,8 @@ impl World {
             }
             match self.measured(constraint, self.settings.dt) {
                 // What has turned to the normal of another contact of the pair is that one.
-                Some(measured) if self.contacts.is_known(index, &measured) => {
-                    self.contacts.remove(index);
+                Some(measured) if self.contacts.is_known(&measured, (index, &gone)) => {
+                    gone.push(index);
                 }
                 Some(measured) => {
                     let least = LEAST_GAP * self.hover_gap(i, j);
@@ -167,15 +164,12 @@ impl World {
                     }
                     *self.contacts.get_mut(index) = measured;
                 }
-                None => {
-                    self.contacts.remove(index);
-                    ended.push(constraint);
-                }
+                None => gone.push(index),
             }
         }
-        for constraint in &ended {
-            self.hand_over(constraint);
-        }
+        let ended = self.contacts.remove_all(gone);
+        self.hand_over_all(&ended)?;
+        Ok(())
     }
 
     /// A contact as it is where the trajectories of its bodies start, if it still is one, with so much of
@@ -355,6 +349,7 @@ impl World {
             let ends = self.mesh(body)?.edges()[edge as usize];
             Some((corner(body, ends[0])?, corner(body, ends[1])?))
         };
+        // Corners come before the offset, so that rounding is the same whichever of the bodies is the first.
         let mut bound = |k: usize, along: DVec3, place: DVec3| {
             let across = along.cross(normal);
             lines[k] = (across, across.dot(place));
@@ -364,22 +359,22 @@ impl World {
                 let (triangle, vertex) = (face(i, of)?, corner(j, vertex)?);
                 for k in 0..3 {
                     let along = triangle[(k + 1) % 3] - triangle[k];
-                    bound(k, along, vertex + offset - triangle[k]);
+                    bound(k, along, (vertex - triangle[k]) + offset);
                 }
             }
             Touched::Feature(Feature::VertexFace { vertex, face: of }) => {
                 let (triangle, vertex) = (face(j, of)?, corner(i, vertex)?);
                 for k in 0..3 {
                     let along = triangle[(k + 1) % 3] - triangle[k];
-                    bound(k, along, triangle[k] + offset - vertex);
+                    bound(k, along, (triangle[k] - vertex) + offset);
                 }
             }
             Touched::Feature(Feature::EdgeEdge { first, second }) => {
                 let ((a, b), (c, d)) = (edge(i, first)?, edge(j, second)?);
-                bound(0, d - c, c + offset - a);
-                bound(1, d - c, c + offset - b);
-                bound(2, b - a, c + offset - a);
-                bound(3, b - a, d + offset - a);
+                bound(0, d - c, (c - a) + offset);
+                bound(1, d - c, (c - b) + offset);
+                bound(2, b - a, (c - a) + offset);
+                bound(3, b - a, (d - a) + offset);
             }
             Touched::Face { body, face: of } => {
                 // The middle of a sphere over a face, as seen from the mesh.

@@ -95,10 +95,6 @@ impl ContactSet {
         &mut self.all[index]
     }
 
-    pub(super) fn all_mut(&mut self) -> &mut [ContactConstraint] {
-        &mut self.all
-    }
-
     /// The indices of the constraints of a movable body.
     pub(super) fn of_body(&self, body: usize) -> &[u32] {
         self.of_body.get(body).map_or(&[], Vec::as_slice)
@@ -128,9 +124,15 @@ impl ContactSet {
         })
     }
 
-    /// Whether another constraint than that of an index keeps the same bodies apart along the same normal.
-    pub(super) fn is_known(&self, index: usize, new: &ContactConstraint) -> bool {
-        self.like(new).any(|other| other != index)
+    /// Whether another constraint than that of an index, and than some that are gone, keeps the same bodies
+    /// apart along the same normal.
+    pub(super) fn is_known(
+        &self,
+        new: &ContactConstraint,
+        (index, gone): (usize, &[usize]),
+    ) -> bool {
+        let is_other = |&other: &usize| other != index && !gone.contains(&other);
+        self.like(new).any(|other| is_other(&other))
     }
 
     /// Adds a constraint, in the place of one of the same bodies along the same normal.
@@ -187,6 +189,17 @@ impl ContactSet {
         }
     }
 
+    /// Removes constraints, given by their indices, and returns them in that order.
+    pub(super) fn remove_all(&mut self, mut indices: Vec<usize>) -> Vec<ContactConstraint> {
+        let removed = indices.iter().map(|&index| self.all[index]).collect();
+        // From the last on, as the last one takes the index of one that goes.
+        indices.sort_unstable_by(|a, b| b.cmp(a));
+        for index in indices {
+            self.remove(index);
+        }
+        removed
+    }
+
     pub(super) fn is_bundled(&self, body: usize) -> bool {
         self.bundled.get(body).is_some_and(|&bundled| bundled)
     }
@@ -230,27 +243,26 @@ impl ContactSet {
 }
 
 impl World {
+    /// The contacts of bodies that are awake, in an order that is not that of the places of bodies.
+    pub(super) fn contacts_in_order(&self) -> Vec<usize> {
+        let all = self.contacts.all();
+        let is_awake = |&index: &usize| {
+            let (i, j) = all[index].bodies;
+            !self.is_asleep(i) && !self.is_asleep(j)
+        };
+        let mut awake: Vec<usize> = (0..all.len()).filter(is_awake).collect();
+        let order = self.in_order(awake.iter().map(|&index| all[index].bodies));
+        awake.sort_by(|&one, &other| {
+            let plane = |index: usize| (all[index].bodies, all[index].normal);
+            order.compare(plane(one), plane(other))
+        });
+        awake
+    }
+
     /// Adds a contact, in the place of one of the same bodies along the same normal.
     pub(super) fn add_contact(&mut self, new: ContactConstraint) {
         let mass = &self.mass;
         self.contacts.insert(new, |body| mass[body].is_finite());
-    }
-
-    /// Ends contacts, given by their indices, and hands over to others what they have borne. Tells whether
-    /// there were others.
-    pub(super) fn end_contacts(&mut self, mut gone: Vec<usize>) -> bool {
-        // From the last on, as the last one takes the index of one that goes.
-        gone.sort_unstable_by(|a, b| b.cmp(a));
-        let all = self.contacts.all();
-        let ended: Vec<ContactConstraint> = gone.iter().map(|&index| all[index]).collect();
-        for index in gone {
-            self.contacts.remove(index);
-        }
-        let mut is_borne = false;
-        for constraint in &ended {
-            is_borne |= self.hand_over(constraint);
-        }
-        is_borne
     }
 }
 

@@ -6,8 +6,9 @@
 
 use alloc::vec::Vec;
 use core::mem;
+use glam::DVec3;
 
-use super::super::World;
+use super::super::{World, stepping::Cause};
 use super::contact_motion::Surface;
 use super::contact_set::ContactConstraint;
 
@@ -21,15 +22,26 @@ const AHEAD: f64 = 16.0;
 const MOST_HANDED: u32 = 8;
 
 impl World {
-    /// Finds the contacts of the bodies of one that ends with others that are level with it, and tells
-    /// whether there are any.
-    pub(super) fn hand_over(&mut self, ended: &ContactConstraint) -> bool {
+    /// Hands over what some contacts that end have borne, and tells whether anything goes on bearing it.
+    pub(super) fn hand_over_all(
+        &mut self,
+        ended: &[ContactConstraint],
+    ) -> Result<bool, (usize, Cause)> {
+        let before = self.contacts.all().len();
+        for constraint in ended {
+            self.hand_over(constraint)?;
+        }
+        Ok(self.contacts.all().len() > before)
+    }
+
+    /// Finds the contacts of the bodies of one that ends, whose trajectories start there, with others that
+    /// are level with it.
+    pub(super) fn hand_over(&mut self, ended: &ContactConstraint) -> Result<(), (usize, Cause)> {
         // Where bodies have just been placed all contacts are new.
         if ended.is_overlap || !self.continuous.knows_near {
-            return false;
+            return Ok(());
         }
         let (i, j) = ended.bodies;
-        let before = self.contacts.all().len();
         for body in [i, j] {
             let handed = self.continuous.handed.get(body).copied().unwrap_or(0);
             if !self.is_movable(body) || handed >= MOST_HANDED {
@@ -56,7 +68,16 @@ impl World {
                     normal,
                     ..*ended
                 };
-                if let Some(level) = self.level_with(&level) {
+                let time = self.continuous.since[body];
+                let mut probe = mem::take(&mut self.continuous.probe);
+                let there = self.motion_at(other, time, &mut probe);
+                self.continuous.probe = probe;
+                let (at, moving) = there?;
+                let start = &self.continuous.start;
+                let sign = if body == bodies.1 { 1.0 } else { -1.0 };
+                let offset = sign * (start.position[body] - at);
+                let velocity = sign * (start.velocity[body] - moving);
+                if let Some(level) = self.level_with(&level, offset, velocity) {
                     let count = self.len();
                     self.continuous.handed.resize(count, 0);
                     self.continuous.handed[body] += 1;
@@ -65,23 +86,25 @@ impl World {
             }
             self.continuous.partners = partners;
         }
-        self.contacts.all().len() > before
+        Ok(())
     }
 
-    /// A contact along a normal, if two bodies are no farther apart than those in contact and have none
-    /// like it.
-    fn level_with(&self, level: &ContactConstraint) -> Option<ContactConstraint> {
+    /// A contact along a normal, if two bodies, of which the second one is at an offset and has a velocity from
+    /// the first, are no farther apart than those in contact and have none like it.
+    fn level_with(
+        &self,
+        level: &ContactConstraint,
+        offset: DVec3,
+        velocity: DVec3,
+    ) -> Option<ContactConstraint> {
         let (i, j) = level.bodies;
         let is_known = |known: &ContactConstraint| known.normal.dot(level.normal) > 1.0 - LEVEL;
         if self.contacts.of_pair(i, j).any(is_known) {
             return None;
         }
-        let start = &self.continuous.start;
         let hover = self.hover_gap(i, j);
-        let offset = start.position[j] - start.position[i];
         // Where a vertex is above one, the surface ahead is.
-        let ahead = start.velocity[j] - start.velocity[i];
-        let ahead = AHEAD * hover * ahead.normalize_or_zero();
+        let ahead = AHEAD * hover * velocity.normalize_or_zero();
         // What lies on the other side of a body is found as if it were in it.
         let is_level = |surface: &Surface| {
             surface.distance > 0.0 && (surface.normal - level.normal).length() <= LEVEL

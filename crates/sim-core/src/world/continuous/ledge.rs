@@ -231,7 +231,7 @@ impl World {
         self.continuous.climbs[body] += 1;
         let slower = libm::sqrt(left / along.length_squared());
         self.continuous.start.velocity[body] += (slower - 1.0) * along;
-        self.hand_over(&slide.constraint);
+        self.hand_over(&slide.constraint)?;
         Ok(true)
     }
 

@@ -253,7 +253,7 @@ impl World {
             return Ok(());
         }
         self.sleep_on();
-        self.measure_contacts();
+        self.measure_contacts()?;
         self.unstagger_velocities();
         self.release_bouncing();
         self.hold_still();
@@ -353,6 +353,7 @@ impl World {
             while let Some(event) = self.next_event(until) {
                 group.push(event);
             }
+            self.sort_events(&mut group);
             self.count_events(&group)?;
             self.watch_crush(&group)?;
             self.resolve(&mut group, time)?;
@@ -364,6 +365,18 @@ impl World {
         }
         self.continuous.group = group;
         Ok(())
+    }
+
+    /// Puts events of one time into an order that is not that of the places of bodies.
+    fn sort_events(&self, events: &mut [Event]) {
+        if events.len() < 2 {
+            return;
+        }
+        let order = self.in_order(events.iter().map(|event| event.bodies));
+        events.sort_by(|one, other| {
+            let by_time = one.time.total_cmp(&other.time);
+            by_time.then_with(|| order.compare(one.plane(), other.plane()))
+        });
     }
 
     /// Notes impacts with immovable bodies, and stops where they would go on for ever.

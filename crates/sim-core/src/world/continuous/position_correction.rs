@@ -52,11 +52,15 @@ impl World {
         let mut near = mem::take(&mut self.continuous.candidate_pairs);
         near.sort_unstable();
         near.dedup();
-        let done = self.part_all(&near) || self.part_together(&near);
-        let outcome = match done {
-            true => Ok(()),
-            false => self.roll_back_meeting(&near),
-        };
+        let mut outcome = Ok(());
+        if near.iter().any(|&(i, j)| self.meet_now(i, j)) {
+            let order = self.in_order(near.iter().copied());
+            let plane = |pair: (usize, usize)| (pair, DVec3::ZERO);
+            near.sort_by(|&one, &other| order.compare(plane(one), plane(other)));
+            if !self.part_all(&near) && !self.part_together(&near) {
+                outcome = self.roll_back_meeting(&near);
+            }
+        }
         self.continuous.candidate_pairs = near;
         outcome
     }
@@ -162,6 +166,7 @@ impl World {
     /// does all that they meet there. Immovable ones go on, and take what they meet along.
     fn roll_back(&mut self, pair: (usize, usize), back: &mut Back) -> Result<(), (usize, Cause)> {
         back.with.resize(self.len(), None);
+        let solid = self.in_order(self.solid.iter().map(|&body| (body, body)));
         let mut pairs = alloc::vec![pair];
         while let Some((i, j)) = pairs.pop() {
             if !self.meet_now(i, j) {
@@ -192,7 +197,7 @@ impl World {
                     if before.length() < self.current.velocity[body].length() {
                         self.current.velocity[body] = before;
                     }
-                    let others = self.solid.iter().filter(|&&other| other != body);
+                    let others = solid.bodies.iter().filter(|&&other| other != body);
                     pairs.extend(others.map(|&other| (body.min(other), body.max(other))));
                 }
             }

@@ -61,7 +61,7 @@ impl World {
             let ended = self.contacts.of_pair(i, j);
             let ended = ended.copied().find(|known| known.normal == normal);
             if let Some(ended) = ended.filter(|_| event.kind == EventKind::ContactEnd) {
-                self.hand_over(&ended);
+                self.hand_over(&ended)?;
             }
         }
         for event in group.iter_mut() {
@@ -166,7 +166,7 @@ impl World {
             let soon = self.continuous.events.iter().filter(is_tied);
             let mut soon: Vec<Event> = soon.cloned().collect();
             self.continuous.visited = visited;
-            soon.sort_unstable_by(|a, b| b.cmp(a));
+            self.sort_events(&mut soon);
             let before = group.len();
             for mut event in soon {
                 let (gap, opening) = self.gap_before(&event, time)?;
@@ -471,6 +471,7 @@ impl World {
                     }
                 }
             }
+            self.sort_events(&mut group);
             for event in &group {
                 self.restart(event.bodies.0, time, restarted)?;
                 self.restart(event.bodies.1, time, restarted)?;
