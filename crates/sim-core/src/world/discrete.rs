@@ -327,7 +327,7 @@ impl Touching {
 
     fn in_order(&self, other: &Touching) -> Ordering {
         let keys = self.keys.cmp(&other.keys);
-        keys.then_with(|| order::of_vectors(self.normal, other.normal))
+        keys.then_with(|| order::of_vector(self.normal).cmp(&order::of_vector(other.normal)))
     }
 }
 

@@ -1,15 +1,13 @@
 //! An order of bodies that comes from their motion, whatever their places in the columns are.
 
 use alloc::vec::Vec;
-use core::cmp::Ordering;
 use glam::DVec3;
 
 use super::World;
 
 /// What tells one body from another: position, velocity, mass, and the acceleration by constant
 /// forces. Bodies of which these are the same may take each other's place.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Key([f64; 10]);
+pub(super) type Key = [i64; 10];
 
 impl World {
     /// The key of a body where the step begins.
@@ -17,7 +15,7 @@ impl World {
         let [x, y, z] = self.previous.position[body].to_array();
         let [u, v, w] = self.previous.velocity[body].to_array();
         let [a, b, c] = self.acceleration[body].to_array();
-        Key([x, y, z, u, v, w, self.mass[body], a, b, c])
+        [x, y, z, u, v, w, self.mass[body], a, b, c].map(ordinal)
     }
 
     /// Those of some pairs, once each, in that order.
@@ -49,57 +47,40 @@ impl InOrder {
         self.places[self.places.partition_point(before)].1
     }
 
-    /// Compares what is between two of the bodies each, along a normal from the first one to the second.
-    pub(super) fn compare(
-        &self,
-        one: ((usize, usize), DVec3),
-        other: ((usize, usize), DVec3),
-    ) -> Ordering {
-        let (one_pair, one_normal) = self.turned(one);
-        let (other_pair, other_normal) = self.turned(other);
-        let by_bodies = one_pair.cmp(&other_pair);
-        by_bodies.then_with(|| of_vectors(one_normal, other_normal))
-    }
-
-    /// The places of a pair, the lower one first, and the normal from it.
-    fn turned(&self, ((i, j), normal): ((usize, usize), DVec3)) -> ((usize, usize), DVec3) {
+    /// A key of what is between two of the bodies, along a normal from the first one to the second.
+    pub(super) fn between(&self, (i, j): (usize, usize), normal: DVec3) -> ([usize; 2], [i64; 3]) {
         let (first, second) = (self.place(i), self.place(j));
         match first > second {
-            true => ((second, first), -normal),
-            false => ((first, second), normal),
+            true => ([second, first], of_vector(-normal)),
+            false => ([first, second], of_vector(normal)),
         }
     }
 }
 
-impl Ord for Key {
-    fn cmp(&self, other: &Key) -> Ordering {
-        lexicographic(&self.0, &other.0)
+/// A key of a vector.
+pub(super) fn of_vector(vector: DVec3) -> [i64; 3] {
+    vector.to_array().map(ordinal)
+}
+
+/// A number that is greater where another number is, as `f64::total_cmp` has it.
+pub(super) fn ordinal(number: f64) -> i64 {
+    let bits = number.to_bits() as i64;
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ordinal;
+
+    #[test]
+    fn keys_have_the_order_of_numbers() {
+        let mut numbers = [0.0, 1.0, -1.0, 1e-310, 1e300, f64::INFINITY].to_vec();
+        numbers.extend(numbers.clone().iter().map(|x| -x));
+        for &one in &numbers {
+            for &other in &numbers {
+                let order = ordinal(one).cmp(&ordinal(other));
+                assert_eq!(order, one.total_cmp(&other), "{one} {other}");
+            }
+        }
     }
-}
-
-impl PartialOrd for Key {
-    fn partial_cmp(&self, other: &Key) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Key {
-    fn eq(&self, other: &Key) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Key {}
-
-/// Of vectors: by the first component that differs.
-pub(super) fn of_vectors(one: DVec3, other: DVec3) -> Ordering {
-    lexicographic(&one.to_array(), &other.to_array())
-}
-
-fn lexicographic(one: &[f64], other: &[f64]) -> Ordering {
-    let pairs = one.iter().zip(other);
-    pairs
-        .map(|(one, other)| one.total_cmp(other))
-        .find(|order| order.is_ne())
-        .unwrap_or(Ordering::Equal)
 }

@@ -254,7 +254,7 @@ impl World {
             noted.push(((i, j), contact, impulse, (before.0 - before.1).dot(normal)));
         }
         // In an order that comes from the terms alone.
-        changes.sort_unstable_by(|a, b| a.0.cmp(&b.0).then_with(|| order::of_vectors(a.1, b.1)));
+        changes.sort_by_cached_key(|&(body, change)| (body, order::of_vector(change)));
         for of_body in changes.chunk_by(|a, b| a.0 == b.0) {
             let change: DVec3 = of_body.iter().map(|&(_, change)| change).sum();
             self.current.velocity[of_body[0].0] += change;

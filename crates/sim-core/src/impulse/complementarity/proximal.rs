@@ -12,8 +12,8 @@
 //!
 //! over changes of velocity `d`, which has one least, no constraints, and pieces that are quadratic: Newton's
 //! method finds it (Li, Sun, Toh 2018, "A highly efficient semismooth Newton augmented Lagrangian method"), with the
-//! matrix `M + Σ ρ n nᵀ` over contacts that push, 3 × 3 a body. Masses and the height of a heap do not
-//! make it slower.
+//! matrix `M + Σ ρ n nᵀ` over contacts that push, 3 × 3 a body. The height of a heap does not make it
+//! slower, nor do masses up to about 1 : 10^6.
 
 use alloc::{vec, vec::Vec};
 use glam::{DMat3, DVec3};
@@ -21,8 +21,8 @@ use glam::{DMat3, DVec3};
 use super::{ROUNDING, cholesky::Cholesky};
 use crate::impulse::{Joined, Known};
 
-/// `R` by what a contact yields: large, but not so large that rounding in the factor undoes what a
-/// step gains; and by what it grows where a step gains little, and how often. None changes the answer.
+/// `R` by the heavier of the bodies of a contact: large, but not so large that rounding in the factor undoes
+/// what a step gains; and by what it grows where a step gains little, and how often. None changes the answer.
 const STIFFNESS: f64 = (1_u32 << 24) as f64;
 const STIFFER: f64 = 64.0;
 const MOST_STIFFER: u32 = 3;
@@ -79,7 +79,7 @@ pub(super) fn multipliers(
     let mut newton = Newton::of(&problem);
     let most = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
     let enough = known.enough.max(ROUNDING * most);
-    let mut best = (f64::INFINITY, Vec::new());
+    let mut best = (f64::INFINITY, given.clone());
     let (mut is_found, mut stiffer) = (true, 0);
     for _ in 0..STEPS {
         let missing = problem.missing(&given);

@@ -133,10 +133,9 @@ impl World {
         island
             .bodies
             .sort_unstable_by_key(|&body| order.place(body));
-        island.constraints.sort_unstable_by(|&one, &other| {
-            let plane = |index: usize| (all[index].bodies, all[index].normal);
-            let compared = order.compare(plane(one), plane(other));
-            compared.then(one.cmp(&other))
+        island.constraints.sort_by_cached_key(|&index| {
+            let contact = &all[index];
+            (order.between(contact.bodies, contact.normal), index)
         });
     }
 

@@ -160,7 +160,8 @@ impl World {
                 Some(measured) => {
                     let least = LEAST_GAP * self.hover_gap(i, j);
                     if measured.gap < 0.5 * least {
-                        self.move_apart_in_room((i, j), (least - measured.gap) * measured.normal);
+                        let by = (least - measured.gap) * measured.normal;
+                        self.move_apart_in_room((i, j), by, 0.0)?;
                     }
                     *self.contacts.get_mut(index) = measured;
                 }

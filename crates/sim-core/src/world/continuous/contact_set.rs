@@ -252,10 +252,7 @@ impl World {
         };
         let mut awake: Vec<usize> = (0..all.len()).filter(is_awake).collect();
         let order = self.in_order(awake.iter().map(|&index| all[index].bodies));
-        awake.sort_by(|&one, &other| {
-            let plane = |index: usize| (all[index].bodies, all[index].normal);
-            order.compare(plane(one), plane(other))
-        });
+        awake.sort_by_cached_key(|&index| order.between(all[index].bodies, all[index].normal));
         awake
     }
 

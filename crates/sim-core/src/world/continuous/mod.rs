@@ -47,7 +47,7 @@ use alloc::{
 use core::{cmp::Ordering, mem};
 use glam::DVec3;
 
-use super::{Bundled, StepError, World, state::State, stepping::Cause};
+use super::{Bundled, StepError, World, order::ordinal, state::State, stepping::Cause};
 use crate::{
     Extent, Shape,
     collide::{Broad, Contact, Front, Swept},
@@ -373,9 +373,9 @@ impl World {
             return;
         }
         let order = self.in_order(events.iter().map(|event| event.bodies));
-        events.sort_by(|one, other| {
-            let by_time = one.time.total_cmp(&other.time);
-            by_time.then_with(|| order.compare(one.plane(), other.plane()))
+        events.sort_by_cached_key(|event| {
+            let time = ordinal(event.time);
+            (time, order.between(event.bodies, event.contact.normal))
         });
     }
 

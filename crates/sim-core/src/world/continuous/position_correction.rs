@@ -10,7 +10,7 @@ use core::mem;
 use glam::DVec3;
 
 use super::super::{World, stepping::Cause};
-use crate::collide::parting_normals;
+use crate::collide::{first_contact, parting_normals, snap};
 
 /// Units in the last place, a few parts in 10^12, before it is an overlap.
 const MAX_CORRECTION: f64 = 1024.0;
@@ -55,8 +55,7 @@ impl World {
         let mut outcome = Ok(());
         if near.iter().any(|&(i, j)| self.meet_now(i, j)) {
             let order = self.in_order(near.iter().copied());
-            let plane = |pair: (usize, usize)| (pair, DVec3::ZERO);
-            near.sort_by(|&one, &other| order.compare(plane(one), plane(other)));
+            near.sort_by_cached_key(|&pair| order.between(pair, DVec3::ZERO));
             if !self.part_all(&near) && !self.part_together(&near) {
                 outcome = self.roll_back_meeting(&near);
             }
@@ -220,25 +219,71 @@ impl World {
         position[j] += second * by;
     }
 
-    /// The same, unless one of the bodies would get into what it touches.
-    pub(super) fn move_apart_in_room(&mut self, (i, j): (usize, usize), by: DVec3) {
-        let position = &self.continuous.start.position;
-        let before = (position[i], position[j]);
-        self.move_apart((i, j), by);
-        if self.meets_a_contact(i) || self.meets_a_contact(j) {
-            let position = &mut self.continuous.start.position;
-            (position[i], position[j]) = before;
+    /// The same at a time, where others leave room: half of it is left to them. What the one has no room for
+    /// the other one moves. Tells how far apart they have been moved, m.
+    pub(super) fn move_apart_in_room(
+        &mut self,
+        (i, j): (usize, usize),
+        by: DVec3,
+        time: f64,
+    ) -> Result<f64, (usize, Cause)> {
+        let mut room = [0.0; 2];
+        for (room, (body, other, way)) in room.iter_mut().zip([(i, j, -by), (j, i, by)]) {
+            if self.is_movable(body) {
+                let free = self.free_part(body, other, way, time)?;
+                *room = if free < 1.0 { 0.5 * free } else { 1.0 };
+            }
         }
+        let (first, _) = shares(self.is_movable(i), self.is_movable(j));
+        let second = (1.0 - room[0].min(first)).min(room[1]);
+        let first = (1.0 - second).min(room[0]);
+        let position = &mut self.continuous.start.position;
+        position[i] -= first * by;
+        position[j] += second * by;
+        Ok((first + second) * by.length())
     }
 
-    /// Whether a body meets one that it is in contact with, where their trajectories start.
-    fn meets_a_contact(&mut self, body: usize) -> bool {
-        let position = &self.continuous.start.position;
-        self.contacts.of_body(body).iter().any(|&index| {
-            let contact = &self.contacts.all()[index as usize];
-            let (i, j) = contact.bodies;
-            !contact.is_overlap && self.meet_built(i, j, position[j] - position[i])
-        })
+    /// The part of a way that a body goes from where its trajectory starts before it meets another body than
+    /// one, at a time.
+    fn free_part(
+        &mut self,
+        body: usize,
+        except: usize,
+        way: DVec3,
+        time: f64,
+    ) -> Result<f64, (usize, Cause)> {
+        let mut partners = mem::take(&mut self.continuous.partners);
+        let mut probe = mem::take(&mut self.continuous.probe);
+        partners.clear();
+        match self.continuous.knows_near {
+            true => self
+                .continuous
+                .broad
+                .each_partner(body, |other| partners.push(other)),
+            false => partners.extend(self.solid.iter().filter(|&&other| other != body)),
+        }
+        let mut free = Ok(1.0_f64);
+        for &other in &partners {
+            if other == except || !self.may_collide(body.min(other), body.max(other)) {
+                continue;
+            }
+            self.need_bvh(body);
+            self.need_bvh(other);
+            let found = self.motion_at(other, time, &mut probe).map(|(at, _)| {
+                let offset = self.continuous.start.position[body] - at;
+                let forms = self.form(other).zip(self.form(body))?;
+                first_contact(forms.0, forms.1, snap(offset), snap(way))
+            });
+            free = match found {
+                Ok(contact) => free.map(|free| contact.map_or(free, |found| free.min(found.time))),
+                Err(cause) => Err(cause),
+            };
+            if free.is_err() {
+                break;
+            }
+        }
+        (self.continuous.partners, self.continuous.probe) = (partners, probe);
+        free
     }
 
     fn move_current_apart(&mut self, (i, j): (usize, usize), by: DVec3) {

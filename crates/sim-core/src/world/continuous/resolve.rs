@@ -87,7 +87,7 @@ impl World {
         seeds.extend(bouncing.flat_map(|event| [event.bodies.0, event.bodies.1]));
         self.bounce_contacts(&mut seeds, time, &mut restarted)?;
         for event in group.iter().filter(|event| event.is_rest()) {
-            self.begin_contact(event, time);
+            self.begin_contact(event, time)?;
         }
         let others = group
             .iter()
@@ -404,14 +404,20 @@ impl World {
     }
 
     /// Adds the constraint of an impact that comes to rest.
-    fn begin_contact(&mut self, event: &Event, time: f64) {
+    fn begin_contact(&mut self, event: &Event, time: f64) -> Result<(), (usize, Cause)> {
         let (i, j) = event.bodies;
         let hover = self.hover_gap(i, j);
         // Where bodies touch they are moved apart by a rounding, for what rounds and solves after that.
         let least = LEAST_GAP * hover;
-        let gap = event.gap.max(least);
-        if event.gap < least {
-            self.move_apart(event.bodies, (least - event.gap) * event.contact.normal);
+        let mut gap = event.gap;
+        if gap < least {
+            let normal = event.contact.normal;
+            gap += self.move_apart_in_room(event.bodies, (least - gap) * normal, time)?;
+            let seen = self.resolution_along(i, j, normal);
+            if gap < seen {
+                self.move_apart(event.bodies, (seen - gap) * normal);
+                gap = seen;
+            }
         }
         let target = self.speed_to_hover(gap, hover, self.settings.dt - time, event.load_speed);
         let point = event.contact.point - self.continuous.start.position[i];
@@ -420,6 +426,7 @@ impl World {
             load_speed: event.load_speed,
             ..ContactConstraint::new(event.bodies, event.contact.normal, gap, point)
         });
+        Ok(())
     }
 
     /// Notes an impact that has come to rest, if it was one.
