@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use kit::agree::assert_same;
 use kit::inputs::{hard_coordinate, soup};
+use kit::meshes::{mesh, scaled};
 use kit::oracle;
 use kit::worlds::meet;
 use proptest::prelude::*;
@@ -124,8 +125,7 @@ proptest! {
         offset in prop::array::uniform3(-6..6i32),
         scale in prop_oneof![Just(1.0), Just(1e-10), Just(1e10), Just(1e-36), Just(3e13), Just(5e37)],
     ) {
-        let scaled = |mesh: &Mesh| mesh.transformed(sim_core::DQuat::IDENTITY, DVec3::splat(scale));
-        let (first, second) = (scaled(&first).unwrap(), scaled(&second).unwrap());
+        let [first, second] = [first, second].map(|mesh| scaled(&mesh, DVec3::splat(scale)));
         let offset = DVec3::from_array(offset.map(f64::from)) * scale;
         // What f32 holds places vertices without rounding.
         assert_symmetric(&first, &second, offset.as_vec3().as_dvec3());
@@ -160,14 +160,12 @@ proptest! {
 /// that of the other.
 #[test]
 fn bodies_that_touch_by_a_rounding_do_so_in_either_order() {
-    let scaled = |corners: [[f32; 3]; 3]| {
-        let mesh = Mesh::new(corners.map(Vec3::from_array).to_vec(), vec![[0, 2, 1]]);
-        let mesh = mesh.expect("a triangle");
-        mesh.transformed(DQuat::IDENTITY, DVec3::splat(1e-10))
-            .unwrap()
+    let tiny = |corners: [[f32; 3]; 3]| {
+        let mesh = mesh(corners.map(Vec3::from_array).to_vec(), vec![[0, 2, 1]]);
+        scaled(&mesh, DVec3::splat(1e-10))
     };
-    let first = scaled([[0.0, 2.0, 0.0], [3.0, 0.0, 1.0], [0.0, 0.0, 0.0]]);
-    let second = scaled([[3.0, 4.0, 2.0], [1.0, 0.0, 0.0], [3.0, 0.0, 1.0]]);
+    let first = tiny([[0.0, 2.0, 0.0], [3.0, 0.0, 1.0], [0.0, 0.0, 0.0]]);
+    let second = tiny([[3.0, 4.0, 2.0], [1.0, 0.0, 0.0], [3.0, 0.0, 1.0]]);
     let offset = 1e-10 * DVec3::new(0.0, -4.0, -1.0);
     assert!(naive::intersect(&first, &second, offset));
     assert!(!naive::intersect(&second, &first, -offset));
@@ -178,11 +176,10 @@ fn bodies_that_touch_by_a_rounding_do_so_in_either_order() {
 /// Found by a random search: a vertex so little off a plane that the determinant underflows.
 #[test]
 fn offsets_below_any_product_count_as_none() {
-    let mesh = |corners: [[f32; 3]; 3]| {
-        Mesh::new(corners.map(Vec3::from_array).to_vec(), vec![[0, 1, 2]]).expect("a triangle")
-    };
-    let flat = mesh([[0.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 3.0, 0.0]]);
-    let upright = mesh([[1.0, 3.0, 0.0], [1.0, 3.0, 1.0], [0.0, 0.0, 0.0]]);
+    let triangle =
+        |corners: [[f32; 3]; 3]| mesh(corners.map(Vec3::from_array).to_vec(), vec![[0, 1, 2]]);
+    let flat = triangle([[0.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 3.0, 0.0]]);
+    let upright = triangle([[1.0, 3.0, 0.0], [1.0, 3.0, 1.0], [0.0, 0.0, 0.0]]);
     let least_kept = 2.0_f64.powi(-250);
     for (z, meet) in [
         (5e-324, true),

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::slice;
 
 use kit::problems::{kepler, pleiades};
-use kit::worlds::step;
+use kit::worlds::{step, world_of};
 use sim_core::{
     Body, BodyLaw, BodyMotion, DMat3, DVec3, Dop853, Force, Jacobians, Law, METHODS, Method,
     PairLaw, PairMotion, Settings, StepError, Tolerance, World, WorldError,
@@ -21,10 +21,7 @@ fn world(method: &'static Method, dt: f64, bodies: &[Body], forces: &[Force]) ->
         tolerance: 1e-13,
         ..Settings::default()
     };
-    let mut world = World::new(settings).expect("settings");
-    for body in bodies {
-        world.add(body.clone()).expect("a body");
-    }
+    let mut world = world_of(settings, bodies);
     for force in forces {
         world.add_force(force.clone()).expect("a force");
     }

@@ -6,13 +6,12 @@ mod borders;
 mod crossing;
 mod moving_oracle;
 
-use moving_oracle::brute::{brute_force, placed};
-
 use std::sync::Arc;
 
 use kit::meshes::{builtin, mesh, scaled};
 use kit::rational::rational;
 use moving_oracle::assert_rounded_down;
+use moving_oracle::brute::{brute_force, placed};
 use moving_oracle::inputs::{lattice_soup, lattice_vector, points, random_soup, vector};
 use proptest::prelude::*;
 use sim_core::collide::moving::{edge_meets_edge, point_meets_edge, point_meets_triangle};

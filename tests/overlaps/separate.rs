@@ -3,8 +3,8 @@
 use kit::bodies::{at, immovable};
 use kit::random::Random;
 use kit::shapes::{ball, cow, cuboid, half_space};
-use kit::worlds::{add_gravity, meeting, world};
-use sim_core::{Body, Collision, DVec3, SeparateError, Settings, Shape, World};
+use kit::worlds::{add_gravity, meeting, world, world_of};
+use sim_core::{Body, Collision, DVec3, SeparateError, Settings, World};
 
 use crate::WEIGHT;
 
@@ -218,16 +218,12 @@ fn all_modes_go_on_from_where_bodies_were_moved_to() {
             collision,
             ..Settings::default()
         };
-        let mut world = World::new(settings).expect("settings");
-        let shapes: [Shape; 3] = [cuboid([0.5; 3]), cow(), ball(0.5)];
-        for (k, shape) in shapes.iter().enumerate() {
-            world
-                .add(Body {
-                    velocity: DVec3::new(-(k as f64), 0.1, 0.0),
-                    ..at(shape, 0.2 * k as f64 * DVec3::X)
-                })
-                .expect("a body");
-        }
+        let shapes = [cuboid([0.5; 3]), cow(), ball(0.5)];
+        let bodies = shapes.iter().enumerate().map(|(k, shape)| Body {
+            velocity: DVec3::new(-(k as f64), 0.1, 0.0),
+            ..at(shape, 0.2 * k as f64 * DVec3::X)
+        });
+        let mut world = world_of(settings, bodies);
         separated(&mut world, "three");
         let energy = world.kinetic_energy();
         for _ in 0..120 {
