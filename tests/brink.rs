@@ -1,36 +1,26 @@
 //! Meshes so large that slabs are compared, on the brink of contact.
 
-mod agree;
+use std::sync::Arc;
 
-use agree::assert_same;
+use kit::agree::assert_same;
+use kit::meshes::{builtin, grid, mesh, scaled};
 use sim_core::collide::{Placement, tree};
 use sim_core::{Bvh, DQuat, DVec3, Mesh, Vec3};
 
 /// A square of 24 by 24 squares about the origin, bent.
-fn sheet(at: impl Fn(f32, f32) -> Vec3) -> Mesh {
-    let n = 24u32;
-    let place = |i: u32| i as f32 / n as f32 - 0.5;
-    let vertices = (0..=n).flat_map(|i| (0..=n).map(move |j| (i, j)));
-    let vertices = vertices.map(|(i, j)| at(place(i), place(j))).collect();
-    let corner = |i: u32, j: u32| i * (n + 1) + j;
-    let quads = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
-    let triangles = quads.flat_map(|(i, j)| {
-        let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
-        let [a, b, c, d] = corners.map(|(i, j)| corner(i, j));
-        [[a, b, c], [a, c, d]]
-    });
-    Mesh::new(vertices, triangles.collect()).expect("a sheet is a mesh")
+fn sheet(at: impl Fn(f32, f32) -> Vec3) -> Arc<Mesh> {
+    grid(24, false, |x, z| at(x - 0.5, z - 0.5))
 }
 
 /// The cow, and sheets whose folds lie close to each other.
-fn large() -> [Mesh; 3] {
+fn large() -> [Arc<Mesh>; 3] {
     let cow = cow::cow(1_000).expect("a cow of this size can be made");
     let vertices = cow.vertices.into_iter().map(Vec3::from_array).collect();
     let folded = |folds: f32, thickness: f32| {
         sheet(|x, z| Vec3::new(x, thickness * (folds * x + 1.3 * z).sin(), z))
     };
     [
-        Mesh::new(vertices, cow.triangles).expect("the cow is a mesh"),
+        mesh(vertices, cow.triangles),
         folded(20.0, 0.2),
         folded(3.0, 0.05),
     ]
@@ -57,7 +47,7 @@ fn naive_and_bvh_agree_where_surfaces_come_within_a_hair() {
                     *(if meet { &mut meeting } else { &mut apart }) = middle;
                 }
                 for far in [apart, meeting, 1.001 * apart, 0.999 * meeting] {
-                    let meet = assert_same(first, second, along * far).expect("all agree");
+                    let meet = assert_same(first, second, along * far);
                     answers[usize::from(meet)] += 1;
                 }
             }
@@ -69,14 +59,9 @@ fn naive_and_bvh_agree_where_surfaces_come_within_a_hair() {
 /// A vertex of one mesh put exactly on a vertex, on the middle of an edge and of a face of another.
 #[test]
 fn meshes_that_touch_exactly_meet() {
-    let cube = scene::mesh_file::builtin("cube.obj").expect("built in");
+    let cube = builtin("cube.obj");
     let [cow, sheet, _] = large();
-    for (first, second) in [
-        (&*cube, &cow),
-        (&cow, &cow),
-        (&cow, &sheet),
-        (&sheet, &*cube),
-    ] {
+    for (first, second) in [(&cube, &cow), (&cow, &cow), (&cow, &sheet), (&sheet, &cube)] {
         for k in 0..12 {
             let pick = |n: usize, salt: usize| (k * 7919 + salt) % n;
             let vertex = second.vertices()[pick(second.vertices().len(), 1)].as_dvec3();
@@ -88,7 +73,7 @@ fn meshes_that_touch_exactly_meet() {
                 // Exact as long as sums of these floats are, which is what the test needs.
                 let offset = target - vertex;
                 if vertex + offset == target {
-                    assert!(assert_same(first, second, offset).expect("all agree"));
+                    assert!(assert_same(first, second, offset));
                 }
             }
         }
@@ -120,18 +105,18 @@ fn nested_spheres_are_apart_until_they_touch() {
             let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
             [[a, b, c], [a, c, d]]
         });
-        Mesh::new(vertices, triangles.collect()).expect("a sphere is a mesh")
+        mesh(vertices, triangles.collect())
     };
     let (outer, inner) = (sphere(40, 1.0), sphere(36, 0.96));
     let mut answers = [0, 0];
     for k in 0..60 {
         let far = 0.001 * f64::from(k);
         let meet = assert_same(&outer, &inner, DVec3::new(0.6, 0.64, 0.48) * far);
-        answers[usize::from(meet.expect("all agree"))] += 1;
+        answers[usize::from(meet)] += 1;
         let turn = DQuat::from_rotation_y(0.1 * f64::from(k));
         let at = Placement::turned(turn, DVec3::new(-0.8, 0.0, 0.6) * far).expect("a rotation");
         let meet = assert_same(&outer, &inner, at);
-        answers[usize::from(meet.expect("all agree"))] += 1;
+        answers[usize::from(meet)] += 1;
     }
     assert!(answers[0] > 40 && answers[1] > 40, "{answers:?}");
 }
@@ -147,22 +132,20 @@ fn slabs_and_planes_prove_nothing_that_is_false() {
     let mut answers = [0, 0];
     for k in -30..=30 {
         let offset = DVec3::new(0.11, 0.03, 0.07) + normal * (f64::from(k) * 4e-6);
-        let meet = assert_same(&flat, &flat, offset).expect("all agree");
+        let meet = assert_same(&flat, &flat, offset);
         answers[usize::from(meet)] += 1;
     }
     let bent = sheet(|x, z| Vec3::new(x, 0.1 * (9.0 * x).sin() * (7.0 * z).cos(), z));
     for exponent in [-36, -20, -10, 10, 12, 13, 14, 15, 18, 25, 36, 38] {
         let scale = 10.0_f64.powi(exponent);
-        let scaled = bent
-            .transformed(DQuat::IDENTITY, DVec3::splat(scale))
-            .expect("in range");
+        let scaled = scaled(&bent, DVec3::splat(scale));
         for k in 0..12 {
             let offset = DVec3::new(0.2, 0.02 * f64::from(k), 0.1) * scale;
-            let meet = assert_same(&scaled, &scaled, offset).expect("all agree");
+            let meet = assert_same(&scaled, &scaled, offset);
             answers[usize::from(meet)] += 1;
             let turn = DQuat::from_axis_angle(DVec3::new(0.6, 0.64, 0.48), 0.3);
             let at = Placement::turned(turn, offset).expect("a rotation");
-            let meet = assert_same(&scaled, &scaled, at).expect("all agree");
+            let meet = assert_same(&scaled, &scaled, at);
             answers[usize::from(meet)] += 1;
         }
     }
@@ -185,7 +168,7 @@ fn what_passes_as_of_unit_length_is_a_rotation() {
             let over = at.place(Vec3::new(x, 10.0 + 0.3e-4 * x, z));
             (over + gap).as_vec3()
         });
-        let meet = assert_same(&first, &second, at).expect("all agree");
+        let meet = assert_same(&first, &second, at);
         answers[usize::from(meet)] += 1;
     }
     assert!(answers[0] > 10 && answers[1] > 10, "{answers:?}");
@@ -202,14 +185,14 @@ fn the_largest_floats_are_in_range() {
         Vec3::new(end, 0.0, 0.0),
         Vec3::new(0.0, end, 0.0),
     ];
-    let mesh = Mesh::new(corners, vec![[0, 1, 2]]).expect("a triangle");
+    let mesh = mesh(corners, vec![[0, 1, 2]]);
     let turn = DQuat::from_rotation_z(0.3);
     for offset in [0.0, 1e38, 1e39, -7e38, 1e200, f64::NAN, f64::INFINITY] {
         let offset = DVec3::splat(offset);
-        let meet = assert_same(&mesh, &mesh, offset).expect("all agree");
+        let meet = assert_same(&mesh, &mesh, offset);
         assert_eq!(meet, offset == DVec3::ZERO);
         let turned = Placement::turned(turn, offset).expect("a rotation");
-        let meet = assert_same(&mesh, &mesh, turned).expect("all agree");
+        let meet = assert_same(&mesh, &mesh, turned);
         assert_eq!(meet, offset == DVec3::ZERO);
     }
 }
@@ -222,8 +205,8 @@ fn triangles_with_almost_one_centre_make_a_tree() {
         let corners = (0..count).flat_map(|i| [0.0, ends[i % 2], 0.0]);
         let corners = corners.map(|x| Vec3::new(x, 0.0, 0.0)).collect();
         let triangles = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
-        let mesh = Mesh::new(corners, triangles.collect()).expect("a soup");
-        assert!(assert_same(&mesh, &mesh, DVec3::ZERO).expect("all agree"));
+        let mesh = mesh(corners, triangles.collect());
+        assert!(assert_same(&mesh, &mesh, DVec3::ZERO));
     }
 }
 
@@ -237,7 +220,7 @@ fn roundings_of_slabs_are_allowed_for() {
         let corners = corners.flat_map(|(s, z)| [(s, z), (s + 0.25, z), (s, z + 0.25)]);
         let vertices: Vec<Vec3> = corners.map(|(s, z)| at(s, z)).collect();
         let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
-        Mesh::new(vertices, triangles.collect()).expect("a soup")
+        mesh(vertices, triangles.collect())
     };
     for far in [500.0f32, 50_000.0] {
         let first = soup(0.0, None, &|s, z| Vec3::new(far + s, -far - s, z));
@@ -248,14 +231,8 @@ fn roundings_of_slabs_are_allowed_for() {
             (Some((3.0, 11.125)), true),
         ] {
             let second = soup(0.5, extra, &|s, z| Vec3::new(s, 1.0 - s, z));
-            assert_eq!(
-                assert_same(&first, &second, offset).expect("all agree"),
-                meet
-            );
-            assert_eq!(
-                assert_same(&second, &first, -offset).expect("all agree"),
-                meet
-            );
+            assert_eq!(assert_same(&first, &second, offset), meet);
+            assert_eq!(assert_same(&second, &first, -offset), meet);
         }
     }
 }

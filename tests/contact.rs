@@ -1,16 +1,16 @@
 //! Exact contact, from predicates to meshes: against rational arithmetic, and naive against BVH.
 
-mod agree;
-mod oracle;
-mod rational;
-
 use std::sync::Arc;
 
-use agree::assert_same;
+use kit::agree::assert_same;
+use kit::inputs::{hard_coordinate, soup};
+use kit::meshes::{mesh, scaled};
+use kit::oracle;
+use kit::worlds::meet;
 use proptest::prelude::*;
 use sim_core::collide::predicates::{segment_meets_triangle, triangles_meet};
 use sim_core::collide::{Placement, naive, tree};
-use sim_core::{Body, Bvh, DQuat, DVec3, Mesh, Settings, Shape, Vec3, World};
+use sim_core::{Bvh, DQuat, DVec3, Mesh, Shape, Vec3};
 
 /// Points that touch, coincide and lie in planes more often than not: a small lattice, some of
 /// it moved by an ulp, scaled by a power of two and moved far away.
@@ -22,16 +22,8 @@ fn hard_points<const N: usize>() -> impl Strategy<Value = [DVec3; N]> {
         let scale = 2.0_f64.powi(exponent);
         points.map(|p| {
             DVec3::from_array(p.map(|(cell, ulps)| {
-                let x = f64::from(cell) + offset;
-                // Next to zero an ulp would leave the range of exact products.
-                let x = match ulps {
-                    _ if !nudge => x,
-                    _ if x == 0.0 => f64::from(ulps) * f64::EPSILON,
-                    1 => x.next_up(),
-                    -1 => x.next_down(),
-                    _ => x,
-                };
-                x * scale
+                let ulps = if nudge { ulps } else { 0 };
+                hard_coordinate(cell, ulps, offset) * scale
             }))
         })
     })
@@ -62,47 +54,19 @@ fn lattice_soup(most: usize) -> impl Strategy<Value = Mesh> {
 fn random_soup() -> impl Strategy<Value = Mesh> {
     let corner = prop::array::uniform3(-1.0f32..1.0);
     let triangle = (corner.clone(), prop::array::uniform2(corner));
-    prop::collection::vec(triangle, 1..60).prop_map(|soup| {
-        let corners = soup.iter().flat_map(|&(at, arms)| {
-            let at = Vec3::from_array(at);
-            [
-                at,
-                at + Vec3::from_array(arms[0]) * 0.3,
-                at + Vec3::from_array(arms[1]) * 0.3,
-            ]
-        });
-        let triangles = (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
-        Mesh::new(corners.collect(), triangles.collect()).expect("three corners each")
-    })
+    prop::collection::vec(triangle, 1..60).prop_map(|triangles| soup(&triangles))
 }
 
-/// Whether two closed triangles share a point: an edge of one meets the other.
-fn exactly_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
-    let crosses = |s: [DVec3; 3], t: [DVec3; 3]| {
-        (0..3).any(|i| oracle::segment_meets_triangle(s[i], s[(i + 1) % 3], t))
-    };
-    crosses(s, t) || crosses(t, s)
-}
-
-/// The same, and that it does not matter which mesh comes first.
-fn assert_symmetric(first: &Mesh, second: &Mesh, offset: DVec3) -> Result<bool, TestCaseError> {
-    let meet = assert_same(first, second, offset)?;
-    prop_assert_eq!(meet, assert_same(second, first, -offset)?);
-    Ok(meet)
+/// That naive and BVH agree, and that it does not matter which mesh comes first.
+fn assert_symmetric(first: &Mesh, second: &Mesh, offset: DVec3) {
+    let meet = assert_same(first, second, offset);
+    assert_eq!(meet, assert_same(second, first, -offset));
 }
 
 /// Whether bodies of these shapes overlap, the second one displaced.
 fn overlap(first: &Mesh, second: &Mesh, offset: DVec3) -> bool {
-    let mut world = World::new(Settings::default()).expect("settings");
-    for (mesh, position) in [(first, DVec3::ZERO), (second, offset)] {
-        let body = Body {
-            shape: Some(Shape::Mesh(Arc::new(mesh.clone()))),
-            position,
-            ..Body::default()
-        };
-        world.add(body).expect("a body");
-    }
-    !world.overlapping().is_empty()
+    let [first, second] = [first, second].map(|mesh| Shape::Mesh(Arc::new(mesh.clone())));
+    meet(&first, &second, offset)
 }
 
 /// Rotations: any, and those by right angles, after which lattices meet lattices exactly or by a
@@ -137,7 +101,7 @@ proptest! {
     ) {
         let [a, b, c, d, e, f] = corners.map(DVec3::from_array);
         let (s, t) = ([a, b, c], [d, e, f]);
-        let exact = exactly_meet(s, t);
+        let exact = oracle::triangles_meet(s, t);
         prop_assert_eq!(triangles_meet(s, t), exact);
         prop_assert_eq!(triangles_meet(t, [c, b, a]), exact);
     }
@@ -145,7 +109,7 @@ proptest! {
     #[test]
     fn triangles_agree_with_rational_arithmetic([a, b, c, d, e, f] in hard_points()) {
         let (s, t) = ([a, b, c], [d, e, f]);
-        let exact = exactly_meet(s, t);
+        let exact = oracle::triangles_meet(s, t);
         prop_assert_eq!(triangles_meet(s, t), exact);
         prop_assert_eq!(triangles_meet(t, s), exact);
     }
@@ -161,14 +125,13 @@ proptest! {
         offset in prop::array::uniform3(-6..6i32),
         scale in prop_oneof![Just(1.0), Just(1e-10), Just(1e10), Just(1e-36), Just(3e13), Just(5e37)],
     ) {
-        let scaled = |mesh: &Mesh| mesh.transformed(sim_core::DQuat::IDENTITY, DVec3::splat(scale));
-        let (first, second) = (scaled(&first).unwrap(), scaled(&second).unwrap());
+        let [first, second] = [first, second].map(|mesh| scaled(&mesh, DVec3::splat(scale)));
         let offset = DVec3::from_array(offset.map(f64::from)) * scale;
         // What f32 holds places vertices without rounding.
-        assert_symmetric(&first, &second, offset.as_vec3().as_dvec3())?;
+        assert_symmetric(&first, &second, offset.as_vec3().as_dvec3());
         // Else the order of meshes says which one is rounded; that of bodies does not.
-        assert_same(&first, &second, offset)?;
-        assert_same(&second, &first, -offset)?;
+        assert_same(&first, &second, offset);
+        assert_same(&second, &first, -offset);
         prop_assert_eq!(overlap(&first, &second, offset), overlap(&second, &first, -offset));
     }
 
@@ -178,7 +141,7 @@ proptest! {
         second in random_soup(),
         offset in prop::array::uniform3(-2.0..2.0),
     ) {
-        assert_symmetric(&first, &second, DVec3::from_array(offset))?;
+        assert_symmetric(&first, &second, DVec3::from_array(offset));
     }
 
     #[test]
@@ -189,7 +152,7 @@ proptest! {
         rotation in rotations(),
     ) {
         let at = Placement::turned(rotation, DVec3::from_array(offset)).expect("of unit length");
-        assert_same(&first, &second, at)?;
+        assert_same(&first, &second, at);
     }
 }
 
@@ -197,14 +160,12 @@ proptest! {
 /// that of the other.
 #[test]
 fn bodies_that_touch_by_a_rounding_do_so_in_either_order() {
-    let scaled = |corners: [[f32; 3]; 3]| {
-        let mesh = Mesh::new(corners.map(Vec3::from_array).to_vec(), vec![[0, 2, 1]]);
-        let mesh = mesh.expect("a triangle");
-        mesh.transformed(DQuat::IDENTITY, DVec3::splat(1e-10))
-            .unwrap()
+    let tiny = |corners: [[f32; 3]; 3]| {
+        let mesh = mesh(corners.map(Vec3::from_array).to_vec(), vec![[0, 2, 1]]);
+        scaled(&mesh, DVec3::splat(1e-10))
     };
-    let first = scaled([[0.0, 2.0, 0.0], [3.0, 0.0, 1.0], [0.0, 0.0, 0.0]]);
-    let second = scaled([[3.0, 4.0, 2.0], [1.0, 0.0, 0.0], [3.0, 0.0, 1.0]]);
+    let first = tiny([[0.0, 2.0, 0.0], [3.0, 0.0, 1.0], [0.0, 0.0, 0.0]]);
+    let second = tiny([[3.0, 4.0, 2.0], [1.0, 0.0, 0.0], [3.0, 0.0, 1.0]]);
     let offset = 1e-10 * DVec3::new(0.0, -4.0, -1.0);
     assert!(naive::intersect(&first, &second, offset));
     assert!(!naive::intersect(&second, &first, -offset));
@@ -215,11 +176,10 @@ fn bodies_that_touch_by_a_rounding_do_so_in_either_order() {
 /// Found by a random search: a vertex so little off a plane that the determinant underflows.
 #[test]
 fn offsets_below_any_product_count_as_none() {
-    let mesh = |corners: [[f32; 3]; 3]| {
-        Mesh::new(corners.map(Vec3::from_array).to_vec(), vec![[0, 1, 2]]).expect("a triangle")
-    };
-    let flat = mesh([[0.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 3.0, 0.0]]);
-    let upright = mesh([[1.0, 3.0, 0.0], [1.0, 3.0, 1.0], [0.0, 0.0, 0.0]]);
+    let triangle =
+        |corners: [[f32; 3]; 3]| mesh(corners.map(Vec3::from_array).to_vec(), vec![[0, 1, 2]]);
+    let flat = triangle([[0.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1.0, 3.0, 0.0]]);
+    let upright = triangle([[1.0, 3.0, 0.0], [1.0, 3.0, 1.0], [0.0, 0.0, 0.0]]);
     let least_kept = 2.0_f64.powi(-250);
     for (z, meet) in [
         (5e-324, true),
@@ -228,15 +188,8 @@ fn offsets_below_any_product_count_as_none() {
         (1e-40, false),
     ] {
         let offset = DVec3::new(0.0, 0.0, z);
-        assert_eq!(
-            assert_same(&flat, &upright, offset).expect("all agree"),
-            meet,
-            "{z}"
-        );
-        assert!(
-            assert_same(&flat, &upright, -offset).expect("all agree"),
-            "-{z}"
-        );
+        assert_eq!(assert_same(&flat, &upright, offset), meet, "{z}");
+        assert!(assert_same(&flat, &upright, -offset), "-{z}");
     }
 }
 

@@ -1,11 +1,10 @@
 //! Worlds under forces against exact solutions: hard cases of dynamics.
 
-mod problems;
-
 use std::f64::consts::PI;
 use std::slice;
 
-use problems::pleiades;
+use kit::problems::{kepler, pleiades};
+use kit::worlds::{step, world_of};
 use sim_core::{
     Body, BodyLaw, BodyMotion, DMat3, DVec3, Dop853, Force, Jacobians, Law, METHODS, Method,
     PairLaw, PairMotion, Settings, StepError, Tolerance, World, WorldError,
@@ -22,10 +21,7 @@ fn world(method: &'static Method, dt: f64, bodies: &[Body], forces: &[Force]) ->
         tolerance: 1e-13,
         ..Settings::default()
     };
-    let mut world = World::new(settings).expect("settings");
-    for body in bodies {
-        world.add(body.clone()).expect("a body");
-    }
+    let mut world = world_of(settings, bodies);
     for force in forces {
         world.add_force(force.clone()).expect("a force");
     }
@@ -47,12 +43,6 @@ fn spring_to_origin(stiffness: f64, damping: f64) -> Force {
         rest_length: 0.0,
         stiffness,
         damping,
-    }
-}
-
-fn run(world: &mut World, steps: u64) {
-    for _ in 0..steps {
-        world.step().expect("a step");
     }
 }
 
@@ -88,7 +78,7 @@ fn a_throw_lands_where_each_method_says() {
             };
             let by_method = world(method, dt, &[stone], &[no_drag]);
             for mut world in [by_constant, by_weight, by_method] {
-                run(&mut world, (4.0 * rate) as u64);
+                step(&mut world, (4.0 * rate) as u64);
                 let height = match method.name {
                     "forward-euler" => 2.0 * dt,
                     "backward-euler" | "symplectic-euler" => -2.0 * dt,
@@ -114,7 +104,7 @@ fn worlds_converge_with_the_order_of_their_method() {
             };
             let body = point(DVec3::ZERO, DVec3::X);
             let mut world = world(method, 2.0 / f64::from(steps), &[body], &[force]);
-            run(&mut world, u64::from(steps));
+            step(&mut world, u64::from(steps));
             (world.position(0).x - 3f64.ln()).abs() + (world.velocity(0).x - 1.0 / 3.0).abs()
         };
         let steps = match method.order {
@@ -137,7 +127,7 @@ fn an_oscillator_keeps_to_the_amplitude_of_its_method() {
         let body = point(DVec3::X, DVec3::ZERO);
         let mut world = world(method, dt, &[body], &[spring_to_origin(1.0, 0.0)]);
         let steps = (2000.0 * PI / dt).round() as u64;
-        run(&mut world, steps);
+        step(&mut world, steps);
         (world.position(0).x.hypot(world.velocity(0).x), steps as f64)
     };
     let dt = 1.0 / 60.0;
@@ -172,7 +162,7 @@ fn symplectic_euler_keeps_its_own_energy_exactly() {
     };
     let start = energy(&world);
     for _ in 0..376_991 {
-        run(&mut world, 1);
+        step(&mut world, 1);
         assert!((energy(&world) / start - 1.0).abs() < 1e-12);
     }
 }
@@ -186,7 +176,7 @@ fn order_eight_stays_with_an_oscillator_for_a_thousand_periods() {
         &[body],
         &[spring_to_origin(1.0, 0.0)],
     );
-    run(&mut world, 31_416);
+    step(&mut world, 31_416);
     let t = world.time();
     let (x, v) = (world.position(0).x, world.velocity(0).x);
     let amplitude = (x.hypot(v) - 1.0).abs();
@@ -218,13 +208,13 @@ fn stiff(method: &'static Method, dt: f64) -> World {
 fn implicit_methods_find_the_rest_of_a_stiff_spring_at_sixty_hertz() {
     for name in ["backward-euler", "radau5"] {
         let mut world = stiff(method(name), 1.0 / 60.0);
-        run(&mut world, 600);
+        step(&mut world, 600);
         let x = world.position(0).x;
         assert!((x / -9.81e-6 - 1.0).abs() < 1e-12, "{name}: {x}");
     }
     // Without damping at infinity the midpoint rule is slower.
     let mut world = stiff(method("implicit-midpoint"), 1.0 / 60.0);
-    run(&mut world, 600);
+    step(&mut world, 600);
     assert!((world.position(0).x + 9.81e-6).abs() < 1.0);
 }
 
@@ -467,7 +457,7 @@ fn backward_euler_is_exact_for_its_own_solution_of_a_stiff_linear_system() {
         };
         let body = point(DVec3::ZERO, 2.0 * DVec3::X);
         let mut world = world(method("backward-euler"), dt, &[body], &[force]);
-        run(&mut world, u64::from(steps as u32));
+        step(&mut world, u64::from(steps as u32));
         let exact = (1.0 + dt).powi(-steps);
         let v = world.velocity(0);
         let error = (v.x - exact).abs().max((v.y - exact).abs());
@@ -483,7 +473,7 @@ fn backward_euler_is_exact_for_its_own_solution_of_a_stiff_linear_system() {
         &[point(DVec3::ZERO, 2.0 * DVec3::X)],
         &[force],
     );
-    run(&mut world, 100);
+    step(&mut world, 100);
     let e = (-1f64).exp();
     assert!(
         (world.velocity(0).x - e).abs() < 1e-9,
@@ -495,7 +485,7 @@ fn backward_euler_is_exact_for_its_own_solution_of_a_stiff_linear_system() {
 // Case 6: Kepler's ellipse, a hundred times round.
 
 fn kepler_world(method: &'static Method, e: f64, steps_an_orbit: u32) -> World {
-    let start = problems::kepler::start(e);
+    let start = kepler::start(e);
     let body = point(start[0] * DVec3::X, start[3] * DVec3::Y);
     let sun = Force::Attraction {
         body: None,
@@ -522,7 +512,7 @@ fn energy_after_a_hundred_orbits_is_what_is_known_of_each_method() {
         let mut world = kepler_world(method(name), 0.6, 1000);
         let energy = |world: &World| world.kinetic_energy() + world.potential_energy();
         let start = energy(&world);
-        run(&mut world, 100_000);
+        step(&mut world, 100_000);
         let error = (energy(&world) - start).abs();
         println!("{name}: {error:.2e}");
         assert!(error < 1.3 * known, "{name}: {error}");
@@ -535,7 +525,7 @@ fn adaptive_worlds_come_back_after_a_hundred_orbits() {
         for name in ["dop853", "dopri5"] {
             let mut world = kepler_world(method(name), e, 20);
             let start = world.position(0);
-            run(&mut world, 2000);
+            step(&mut world, 2000);
             let error = (world.position(0) - start).length();
             println!("{name}, e = {e}: {error:.1e} after 100 orbits");
             assert!(error < bar, "{name} {e}: {error}");
@@ -576,7 +566,7 @@ fn the_pleiades_end_where_the_book_says() {
     solver.advance(3.0).expect("a solution");
     let solved = off(&|i| solver.state()[i]);
     let mut world = pleiades_world(method("dop853"), 0.05);
-    run(&mut world, 60);
+    step(&mut world, 60);
     let stepped = off(&|i| {
         let at = world.position(i % 7);
         if i < 7 { at.x } else { at.y }
@@ -675,7 +665,7 @@ fn forces_out_of_range_are_refused_by_field_and_disturb_nothing() {
         assert!(world.set_settings(settings).is_err());
     }
     assert_eq!(world.forces(), before);
-    run(&mut world, 1);
+    step(&mut world, 1);
 }
 
 #[test]
@@ -800,7 +790,7 @@ fn every_method_solves_every_force() {
                 &pair(),
                 slice::from_ref(&force),
             );
-            run(&mut world, u64::from(steps));
+            step(&mut world, u64::from(steps));
             (0..2)
                 .flat_map(|i| [world.position(i), world.velocity(i)])
                 .collect::<Vec<_>>()
@@ -829,7 +819,7 @@ fn forces_between_bodies_keep_momentum_and_forces_with_a_potential_energy() {
         let mut world = world(method("dop853"), 0.02, &pair(), slice::from_ref(&force));
         let energy = |world: &World| world.kinetic_energy() + world.potential_energy();
         let (start, momentum) = (energy(&world), world.momentum());
-        run(&mut world, 50);
+        step(&mut world, 50);
         if matches!(name, "spring" | "gravitation" | "pair law") {
             assert!((world.momentum() - momentum).length() < 1e-13, "{name}");
         }
@@ -847,11 +837,11 @@ fn forces_between_bodies_keep_momentum_and_forces_with_a_potential_energy() {
 #[test]
 fn editing_forces_takes_effect_from_the_next_step() {
     let mut world = stiff(method("rk4"), 1e-3);
-    run(&mut world, 10);
+    step(&mut world, 10);
     world.remove_force(0).expect("a force");
     assert_eq!(world.forces().len(), 1);
     let (x, v) = (world.position(0).x, world.velocity(0).x);
-    run(&mut world, 1);
+    step(&mut world, 1);
     assert!((world.velocity(0).x - (v - 9.81e-3)).abs() < 1e-13);
     assert!((world.position(0).x - (x + 1e-3 * v - 0.5 * 9.81e-6)).abs() < 1e-13);
     let drag = Force::LinearDrag {
@@ -860,7 +850,7 @@ fn editing_forces_takes_effect_from_the_next_step() {
     };
     world.replace_force(0, drag).expect("a force");
     let v = world.velocity(0).x;
-    run(&mut world, 1);
+    step(&mut world, 1);
     assert!((world.velocity(0).x / v - (-5e-3f64).exp()).abs() < 1e-12);
 }
 
@@ -884,8 +874,8 @@ fn bodies_without_forces_move_as_if_there_were_none() {
             damping: 0.1,
         };
         let mut some = world(method, 0.01, &bodies, &[spring]);
-        run(&mut free, 20);
-        run(&mut some, 20);
+        step(&mut free, 20);
+        step(&mut some, 20);
         for i in (0..100).chain(104..300) {
             assert_eq!(free.position(i), some.position(i), "{} {i}", method.name);
         }
@@ -926,7 +916,7 @@ fn a_stiff_chain_of_a_thousand_steps_at_sixty_hertz() {
         let mut world = chain(method(name), 1000);
         let energy = |world: &World| world.kinetic_energy() + world.potential_energy();
         let start = energy(&world);
-        run(&mut world, 60);
+        step(&mut world, 60);
         let gain = (energy(&world) - start) / world.kinetic_energy();
         assert!(gain < 1e-3, "{name}: {gain}");
         // The free end falls as if it hung on nothing: news of the anchor has not reached it.
@@ -943,7 +933,7 @@ fn two_runs_give_the_same_bits() {
         let forces: Vec<Force> = every_force().into_iter().map(|(_, force)| force).collect();
         let [first, second] = [0, 1].map(|_| {
             let mut world = world(method, 0.01, &pair(), &forces);
-            run(&mut world, 30);
+            step(&mut world, 30);
             [0, 1].map(|i| (world.position(i), world.velocity(i)))
         });
         assert_eq!(first, second, "{}", method.name);

@@ -5,13 +5,14 @@ mod borders;
 #[path = "moving_oracle/crossing.rs"]
 mod crossing;
 mod moving_oracle;
-mod rational;
 
+use std::sync::Arc;
+
+use kit::meshes::{builtin, mesh, scaled};
+use kit::rational::rational;
+use moving_oracle::assert_rounded_down;
 use moving_oracle::brute::{brute_force, placed};
-use moving_oracle::inputs::{
-    builtin, lattice_soup, lattice_vector, points, random_soup, scaled, vector,
-};
-use moving_oracle::{assert_rounded_down, rational};
+use moving_oracle::inputs::{lattice_soup, lattice_vector, points, random_soup, vector};
 use proptest::prelude::*;
 use sim_core::collide::moving::{edge_meets_edge, point_meets_edge, point_meets_triangle};
 use sim_core::collide::touch::{first_touch, time_of_impact};
@@ -119,18 +120,18 @@ fn directions(count: u32) -> impl Iterator<Item = DVec3> {
 }
 
 /// Meshes of the gallery, and a turned cube.
-fn solids() -> Vec<Mesh> {
+fn solids() -> Vec<Arc<Mesh>> {
     let turn = DQuat::from_scaled_axis(DVec3::new(0.5, 0.3, 0.1));
     let cube = builtin("cube.obj");
     let turned = cube.transformed(turn, DVec3::ONE).expect("a mesh");
-    vec![cube, turned, builtin("cow.obj")]
+    vec![cube, Arc::new(turned), builtin("cow.obj")]
 }
 
 /// Surfaces are apart up to a hair before the time and meet a hair after it, where neither only
 /// grazes; and what is apart at the start and meets at the end has a first contact.
 #[test]
 fn surfaces_meet_after_the_first_touch_and_not_before() {
-    let trees: Vec<Bvh> = solids().iter().map(Bvh::build).collect();
+    let trees: Vec<Bvh> = solids().iter().map(|mesh| Bvh::build(mesh)).collect();
     for first in &trees {
         for second in &trees {
             let mut hits = 0;
@@ -188,7 +189,7 @@ fn trees_find_what_a_search_over_all_features_finds() {
 fn scale_does_not_matter() {
     let cube = builtin("cube.obj");
     // Coordinates of few digits, so that none is lost at the ends of f32.
-    let spike = Mesh::new(
+    let spike = mesh(
         [
             [0.0, 0.0, 0.0],
             [1.0, 0.25, 0.125],
@@ -198,8 +199,7 @@ fn scale_does_not_matter() {
         .map(Vec3::from_array)
         .to_vec(),
         vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
-    )
-    .expect("a mesh");
+    );
     for direction in directions(12) {
         let (offset, motion) = (3.0 * direction, -3.5 * direction + DVec3::splat(0.1));
         let touches = [-100, -61, -7, 0, 1, 64, 100].map(|exponent| {
@@ -219,7 +219,7 @@ fn scale_does_not_matter() {
 fn mirrored_and_exchanged_meshes_touch_alike() {
     let meshes = solids();
     let mirror = DVec3::new(-1.0, 1.0, 1.0);
-    let trees: Vec<Bvh> = meshes.iter().map(Bvh::build).collect();
+    let trees: Vec<Bvh> = meshes.iter().map(|mesh| Bvh::build(mesh)).collect();
     let mirrored: Vec<Bvh> = meshes
         .iter()
         .map(|m| Bvh::build(&scaled(m, mirror)))

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use kit::random::Random;
 use scene::{SCENES, Scene};
 use sim_core::{Collision, DVec3, METHODS, World};
 
@@ -48,14 +49,11 @@ fn orders(count: usize) -> Vec<Vec<usize>> {
         (0..count).rev().collect(),
         (0..count).map(|i| (i + 1 + count / 3) % count).collect(),
     ];
-    let mut state = 7_u64;
+    let mut random = Random::linear(7);
     for _ in 0..2 {
         let mut order: Vec<usize> = (0..count).collect();
         for last in (1..count).rev() {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            order.swap(last, (state >> 33) as usize % (last + 1));
+            order.swap(last, random.below(last + 1));
         }
         orders.push(order);
     }

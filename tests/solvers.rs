@@ -1,12 +1,10 @@
 //! The solvers that control their error, beside `ode_solvers`.
 
-mod problems;
-
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use kit::problems::{kepler, pleiades};
 use ode_solvers::SVector;
-use problems::{kepler, pleiades};
 use sim_core::ode::{Dop853Stages, Dopri5Stages, Pair, Solver};
 use sim_core::{Dop853, Dopri5, SolveError, Tolerance};
 

@@ -2,12 +2,12 @@
 
 use std::rc::Rc;
 
+use kit::oracle;
+use kit::random::Random;
 use sim_core::{DQuat, DVec3, Mesh, Vec3};
 
 use crate::meshes::{Shape, Solid, Solids};
 use crate::placements::Placement;
-use crate::random::Random;
-use crate::truth;
 
 /// Two solids where they touch, overlap, or are apart by little.
 pub(crate) struct Degenerate {
@@ -94,7 +94,7 @@ fn lattice(most: i32) -> impl Iterator<Item = DVec3> {
 /// Single triangles on a small lattice: many touch at corners and edges, lie in one plane, or
 /// have no area; every other is a sliver, a corner an ulp off the line of the others.
 fn triangles() -> Vec<Degenerate> {
-    let mut random = Random(1);
+    let mut random = Random::splitmix(1);
     let mut placements = Vec::new();
     for i in 0..300 {
         let scale = SCALES[i % 3];
@@ -127,7 +127,7 @@ fn triangles() -> Vec<Degenerate> {
             }
             * scale;
         let corners = [&first, &second].map(|mesh| mesh.corners(0).map(|v| v.as_dvec3()));
-        let meet = truth::triangles_meet(corners[0], corners[1].map(|v| v + offset));
+        let meet = oracle::triangles_meet(corners[0], corners[1].map(|v| v + offset));
         placements.push(Degenerate {
             first: Rc::new(Solid::of(first)),
             second: Rc::new(Solid::of(second)),

@@ -23,14 +23,10 @@ mod moller_trumbore;
 mod peers;
 mod placements;
 mod plot;
-mod random;
-#[path = "../../tests/rational/mod.rs"]
-mod rational;
 mod rays;
 mod report;
 mod sweep;
 mod table;
-mod truth;
 
 use crate::meshes::Solids;
 

@@ -7,12 +7,12 @@
 
 use std::rc::Rc;
 
+use kit::oracle;
 use sim_core::DVec3;
 use sim_core::collide::predicates::triangles_meet;
 
 use crate::meshes::{Shape, Solid, Solids};
 use crate::peers::parry_tree;
-use crate::truth;
 
 /// Where along its way the second mesh is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +75,8 @@ impl Pair {
             let line = approach(&first, &second, direction(i, directions));
             if i % CHECKED == 0 {
                 for (_, placement) in line.iter().flatten() {
-                    let meet = parry_tree(&first, &second, placement.offset, truth::triangles_meet);
+                    let meet =
+                        parry_tree(&first, &second, placement.offset, oracle::triangles_meet);
                     assert_eq!(meet, placement.meet, "{placement:?}");
                 }
             }

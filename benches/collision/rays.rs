@@ -7,6 +7,7 @@ use bvh::bvh::Bvh as BvhTree;
 use bvh::ray::Ray as BvhRay;
 use criterion::Criterion;
 use glam::Vec3A;
+use kit::random::Random;
 use nalgebra::{Point3, Vector3};
 use obvhs::BvhBuildParams;
 use obvhs::cwbvh::{CwBvh, builder::build_cwbvh_from_tris};
@@ -20,7 +21,6 @@ use sim_core::{DVec3, Mesh, Vec3};
 use crate::Scope;
 use crate::build::{BvhTriangle, bvh_triangles, obvhs_triangles};
 use crate::meshes::{Shape, Solid, Solids};
-use crate::random::Random;
 use crate::sweep::{median, sweep};
 use crate::table::{Table, three_digits};
 
@@ -142,8 +142,8 @@ fn truth(mesh: &Mesh, ray: &Ray) -> Option<f64> {
 
 /// From points around towards points in the box: some hit, some miss.
 fn around(mesh: &Mesh, count: usize) -> Vec<Ray> {
-    let mut random = Random(2);
-    let mut point = || DVec3::from_array([0; 3].map(|_: i32| 2.0 * random.unit() - 1.0));
+    let mut random = Random::splitmix(2);
+    let mut point = || random.vector();
     let half = mesh.bounds().half_extent();
     let rays = (0..count).map(|_| {
         let origin = (point().normalize() * 3.0).as_vec3();

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use kit::random::Random;
 use sim_core::{DVec3, Mesh, Vec3};
 
 use crate::ours;
 use crate::overlap::Depths;
-use crate::random::Random;
 use crate::rapier::Rapier;
 use crate::scene::{Form, HALF, Item, Scene, item};
 use crate::table::{Table, three_digits, time};
@@ -26,14 +26,14 @@ const BUDGET: f64 = 12.0;
 fn heap(form: &Form, count: usize, side: usize, restitution: f64, friction: f64) -> Scene {
     let pitch = 2.4 * half_of(form);
     let half = 0.5 * pitch * side as f64;
-    let mut random = Random(5);
+    let mut random = Random::splitmix(5);
     let mut items = vec![resting(Form::Wall(DVec3::Y), DVec3::ZERO)];
     for normal in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z] {
         items.push(resting(Form::Wall(normal), -half * normal));
     }
     for i in 0..count {
         let cell = [i % side, i / side / side, i / side % side].map(|c| c as f64 + 0.5);
-        let shake = DVec3::from_array([(); 3].map(|()| 2.0 * random.unit() - 1.0));
+        let shake = random.vector();
         let shake = 0.08 * half_of(form) * shake;
         let at = DVec3::from_array(cell) * pitch - DVec3::new(half.x, 0.0, half.z) + shake;
         items.push(resting(form.clone(), at));

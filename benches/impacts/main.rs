@@ -11,9 +11,6 @@ mod one;
 mod ours;
 mod overlap;
 mod pair;
-#[expect(dead_code, reason = "the other benchmark picks whole numbers too")]
-#[path = "../collision/random.rs"]
-mod random;
 mod rapier;
 mod scene;
 #[path = "../collision/table.rs"]

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
+use kit::random::Random;
 use sim_core::{DVec3, Mesh};
-
-use crate::random::Random;
 
 #[derive(Clone)]
 pub(crate) enum Form {
@@ -91,8 +90,8 @@ pub(crate) const HALF: f64 = 0.25;
 pub(crate) fn crowd(count: usize, form: &Form) -> (Scene, f64) {
     let side = (count as f64).cbrt().ceil() as usize;
     let half_box = 0.5 * side as f64;
-    let mut random = Random(count as u64);
-    let mut vector = || DVec3::from_array([(); 3].map(|()| 2.0 * random.unit() - 1.0));
+    let mut random = Random::splitmix(count as u64);
+    let mut vector = || random.vector();
     let mut items: Vec<Item> = [DVec3::X, DVec3::Y, DVec3::Z]
         .into_iter()
         .flat_map(|axis| [axis, -axis])

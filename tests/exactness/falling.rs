@@ -1,13 +1,14 @@
 //! A mesh that lies on another one, while both fall on a floor: energy does not grow.
 
+use kit::bodies::{body, immovable, wall};
+use kit::random::Random;
+use kit::worlds::{GRAVITY, add_gravity};
 use sim_core::collide::touch::time_of_impact;
 use sim_core::collide::tree;
-use sim_core::{Body, Bvh, DVec3, Force, Shape, Vec3};
+use sim_core::{Body, Bvh, DVec3, Shape, Vec3};
 
-use crate::scenes::{Random, body, energy, half_space, immovable, judge, judge_from, step, world};
+use crate::scenes::{energy, judge, judge_from, step, world};
 use crate::shapes::{channel, cube, globe, sheet, tetrahedron};
-
-const G: f64 = 9.81;
 
 fn case(random: &mut Random) -> Option<Result<(), String>> {
     let mut shape = || match random.below(5) {
@@ -36,7 +37,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
     let velocity = DVec3::new(random.from(-1.0, 1.0), random.from(-2.0, 0.0), 0.5);
     let restitution = random.pick(&[1.0, 1.0, 0.5, 0.0]);
     let floor = match random.one_in(2) {
-        true => half_space(DVec3::Y, DVec3::ZERO),
+        true => wall(DVec3::Y, DVec3::ZERO, DVec3::ZERO),
         false => {
             let floor = sheet(Vec3::new(20.0, 0.0, 20.0), Vec3::new(-20.0, 0.0, 20.0));
             immovable(body(&floor, DVec3::ZERO, DVec3::ZERO))
@@ -58,16 +59,13 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
     if !world.overlapping().is_empty() {
         return None;
     }
-    let weight = Force::Gravity {
-        acceleration: DVec3::Y * -G,
-    };
-    world.add_force(weight).expect("a force");
-    let mut before = energy(&world, G);
+    add_gravity(&mut world, DVec3::Y * -GRAVITY);
+    let mut before = energy(&world, GRAVITY);
     let scale = before.abs() + 10.0;
     let verdict = (|| {
         for at in 1..=30 {
             step(&mut world)?;
-            let now = energy(&world, G);
+            let now = energy(&world, GRAVITY);
             if now > before + 1e-10 * scale {
                 return Err(format!("step {at}: energy grows by {:e} J", now - before));
             }

@@ -1,9 +1,11 @@
 //! Sheets, channels and cubes whose coordinates are short numbers but for a rounding: many of them
 //! meet at once, in each other's planes, and on the border of a step.
 
+use kit::bodies::{body, wall};
+use kit::random::Random;
 use sim_core::{Body, DVec3, Vec3};
 
-use crate::scenes::{Random, body, half_space, judge, step, world};
+use crate::scenes::{judge, step, world};
 use crate::shapes::{channel, cube, sheet};
 
 fn case(random: &mut Random) -> Option<Result<(), String>> {
@@ -29,11 +31,11 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
     if has_wall {
         let axis = random.pick(&DVec3::AXES);
         let normal = random.pick(&[axis, -axis]);
-        bodies.push(half_space(normal, -2.0 * normal));
+        bodies.push(wall(normal, -2.0 * normal, DVec3::ZERO));
     }
     let far = random.whole(4, 8);
     for _ in 0..random.whole(2, 6) {
-        let shape = &shapes[random.below(5) as usize];
+        let shape = &shapes[random.below(5)];
         let mut short = |most: i64, part: f64| {
             let mut of = || random.whole(-most, most) as f64 / part;
             DVec3::new(of(), of(), of())

@@ -1,8 +1,12 @@
 //! Points in closed meshes: they bounce, slide, and rest, and none gets out.
 
-use sim_core::{Body, DVec3, Force, Shape, collide::Place, collide::locate};
+use kit::bodies::{body, immovable};
+use kit::random::Random;
+use kit::shapes::cow;
+use kit::worlds::add_gravity;
+use sim_core::{Body, DVec3, Shape, collide::Place, collide::locate};
 
-use crate::scenes::{Random, body, immovable, judge, world};
+use crate::scenes::{judge, world};
 use crate::shapes::{cube, globe, tetrahedron};
 
 /// Points that share a room, each of which meets its walls only.
@@ -14,10 +18,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         1 => tetrahedron(1.5),
         2 => globe(3, 1.0),
         3 => globe(12, 1.0),
-        _ => {
-            let cow = scene::mesh_file::builtin("cow.obj").expect("built in");
-            Shape::Mesh(cow)
-        }
+        _ => cow(),
     };
     let friction = random.pick(&[0.0, 0.0, 0.3]);
     let restitution = random.pick(&[0.0, 0.5, 0.9, 1.0]);
@@ -67,9 +68,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         return None;
     }
     let acceleration = weight * random.vector();
-    world
-        .add_force(Force::Gravity { acceleration })
-        .expect("a weight");
+    add_gravity(&mut world, acceleration);
     let verdict = (|| {
         for at in 1..=60 {
             world

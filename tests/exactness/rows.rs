@@ -1,8 +1,10 @@
 //! Two bodies that touch and move together, and a third that hits one of them: the blow goes through.
 
+use kit::bodies::body;
+use kit::random::Random;
 use sim_core::{DVec3, Shape};
 
-use crate::scenes::{Random, body, judge, step, world};
+use crate::scenes::{judge, step, world};
 use crate::shapes::cube;
 
 /// Three equal bodies in a row: the first hits the second, which touches the third. It takes over

@@ -2,54 +2,9 @@
 
 use std::env;
 
-use sim_core::{Body, Collision, DVec3, Impact, Settings, Shape, World};
-
-/// SplitMix64: numbers that look random and are the same on every run.
-pub(crate) struct Random(u64);
-
-impl Random {
-    pub(crate) fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ mixed >> 31
-    }
-
-    /// From 0 to 1.
-    pub(crate) fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    pub(crate) fn from(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    pub(crate) fn below(&mut self, count: u64) -> u64 {
-        self.bits() % count
-    }
-
-    /// A whole number.
-    pub(crate) fn whole(&mut self, low: i64, high: i64) -> i64 {
-        low + self.below((high - low + 1) as u64) as i64
-    }
-
-    pub(crate) fn one_in(&mut self, count: u64) -> bool {
-        self.below(count) == 0
-    }
-
-    pub(crate) fn pick<T: Copy>(&mut self, from: &[T]) -> T {
-        from[self.below(from.len() as u64) as usize]
-    }
-
-    /// Each component from -1 to 1.
-    pub(crate) fn vector(&mut self) -> DVec3 {
-        DVec3::new(
-            self.from(-1.0, 1.0),
-            self.from(-1.0, 1.0),
-            self.from(-1.0, 1.0),
-        )
-    }
-}
+use kit::random::Random;
+use kit::worlds::{meeting, world_of};
+use sim_core::{Body, Collision, Impact, Settings, World};
 
 /// What has been judged of a kind.
 #[derive(Default)]
@@ -84,7 +39,7 @@ pub(crate) fn judge_from(
             break;
         }
         // Each from its own number, so that it can be made again alone.
-        let mut random = Random((index as u64).wrapping_mul(0xd134_2543_de82_ef95));
+        let mut random = Random::splitmix((index as u64).wrapping_mul(0xd134_2543_de82_ef95));
         let Some(verdict) = case(&mut random) else {
             continue;
         };
@@ -112,31 +67,7 @@ pub(crate) fn world(dt: f64, bodies: Vec<Body>) -> World {
         collision: Collision::Continuous,
         ..Settings::default()
     };
-    let mut world = World::new(settings).expect("settings");
-    for body in bodies {
-        world.add(body).expect("a body");
-    }
-    world
-}
-
-pub(crate) fn body(shape: &Shape, position: DVec3, velocity: DVec3) -> Body {
-    Body {
-        shape: Some(shape.clone()),
-        position,
-        velocity,
-        ..Body::default()
-    }
-}
-
-pub(crate) fn immovable(body: Body) -> Body {
-    Body {
-        mass: f64::INFINITY,
-        ..body
-    }
-}
-
-pub(crate) fn half_space(normal: DVec3, position: DVec3) -> Body {
-    immovable(body(&Shape::HalfSpace { normal }, position, DVec3::ZERO))
+    world_of(settings, bodies)
 }
 
 /// Impacts that a step of a few bodies may have.
@@ -152,26 +83,11 @@ pub(crate) fn step(world: &mut World) -> Result<Vec<Impact>, String> {
     if impacts.len() > MOST {
         return Err(format!("step {at}: {} impacts", impacts.len()));
     }
-    let pairs = overlaps(world);
+    let pairs = meeting(world, *world.settings());
     match pairs.is_empty() {
         true => Ok(impacts),
         false => Err(format!("step {at}: {pairs:?} meet")),
     }
-}
-
-/// Who meets whom where bodies are now, by the exact test of a world in which they are placed afresh.
-pub(crate) fn overlaps(world: &World) -> Vec<(usize, usize)> {
-    let mut again = World::new(*world.settings()).expect("settings");
-    for i in 0..world.len() {
-        let body = Body {
-            shape: world.shape(i).cloned(),
-            position: world.position(i),
-            mass: world.mass(i),
-            ..Body::default()
-        };
-        again.add(body).expect("a body");
-    }
-    again.overlapping().to_vec()
 }
 
 /// Kinetic energy, and potential energy under a weight along -y, J.

@@ -1,13 +1,9 @@
 //! Meshes of these scenes.
 
 use std::f32::consts::PI;
-use std::sync::Arc;
 
-use sim_core::{DQuat, DVec3, Mesh, Shape, Vec3};
-
-pub(crate) fn mesh(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Shape {
-    Shape::Mesh(Arc::new(Mesh::new(vertices, triangles).expect("a mesh")))
-}
+use kit::shapes::{self, mesh, scaled};
+use sim_core::{DVec3, Shape, Vec3};
 
 /// A flat parallelogram about the origin, by two corners next to each other.
 pub(crate) fn sheet(p: Vec3, q: Vec3) -> Shape {
@@ -15,10 +11,7 @@ pub(crate) fn sheet(p: Vec3, q: Vec3) -> Shape {
 }
 
 pub(crate) fn cube(half: f32) -> Shape {
-    let cube = scene::mesh_file::builtin("cube.obj").expect("built in");
-    let scale = DVec3::splat(2.0 * f64::from(half));
-    let cube = cube.transformed(DQuat::IDENTITY, scale);
-    Shape::Mesh(Arc::new(cube.expect("a cube")))
+    scaled(&shapes::cube(), DVec3::splat(2.0 * f64::from(half)))
 }
 
 pub(crate) fn tetrahedron(size: f32) -> Shape {

@@ -1,9 +1,11 @@
 //! Flat sheets face on, at any tilt, that meet on the border of a step or beside it: they never pass
 //! through each other.
 
+use kit::bodies::body;
+use kit::random::Random;
 use sim_core::{Body, DVec3, Vec3};
 
-use crate::scenes::{Random, body, judge, step, world};
+use crate::scenes::{judge, step, world};
 use crate::shapes::sheet;
 
 /// A corner of a sheet: anywhere, or where many coordinates agree.

@@ -1,9 +1,13 @@
 //! Bodies put on oblique planes of triangles slide down them as if there were no seams.
 
-use sim_core::{Body, DVec3, Force, Shape, Vec3};
+use kit::bodies::{body, immovable};
+use kit::random::Random;
+use kit::shapes::mesh;
+use kit::worlds::add_gravity;
+use sim_core::{Body, DVec3, Shape, Vec3};
 
-use crate::scenes::{Random, body, energy, immovable, judge, step, world};
-use crate::shapes::{cube, globe, mesh};
+use crate::scenes::{energy, judge, step, world};
+use crate::shapes::{cube, globe};
 
 const G: f64 = 10.0;
 
@@ -71,10 +75,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         ..body
     });
     let mut world = world(1.0 / 60.0, bodies.to_vec());
-    let weight = Force::Gravity {
-        acceleration: DVec3::Y * -G,
-    };
-    world.add_force(weight).expect("a force");
+    add_gravity(&mut world, DVec3::Y * -G);
     let down = (DVec3::Y * -G).reject_from(normal);
     let start = energy(&world, G);
     let verdict = (|| {

@@ -1,11 +1,12 @@
 //! Bodies stacked flush at sizes that are no sums of powers of two: nobody moves.
 
-use sim_core::{Body, DVec3, Force, Shape, Vec3};
+use kit::bodies::{body, immovable, wall};
+use kit::random::Random;
+use kit::worlds::{GRAVITY, add_gravity};
+use sim_core::{Body, DVec3, Shape, Vec3};
 
-use crate::scenes::{Random, body, energy, half_space, immovable, judge, step, world};
+use crate::scenes::{energy, judge, step, world};
 use crate::shapes::{cube, sheet};
-
-const G: f64 = 9.81;
 
 fn case(random: &mut Random) -> Option<Result<(), String>> {
     let half = 0.05 * random.whole(1, 24) as f64;
@@ -20,7 +21,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         false => 2.0 * f64::from(half as f32),
     };
     let floor = match random.one_in(2) {
-        true => half_space(DVec3::Y, DVec3::ZERO),
+        true => wall(DVec3::Y, DVec3::ZERO, DVec3::ZERO),
         false => {
             let wide = 8.0 * half as f32;
             let floor = sheet(Vec3::new(wide, 0.0, wide), Vec3::new(-wide, 0.0, wide));
@@ -38,15 +39,12 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         ..body
     });
     let mut world = world(1.0 / 60.0, bodies.collect());
-    let weight = Force::Gravity {
-        acceleration: DVec3::Y * -G,
-    };
-    world.add_force(weight).expect("a force");
+    add_gravity(&mut world, DVec3::Y * -GRAVITY);
     let verdict = (|| {
         let mut before = f64::INFINITY;
         for _ in 0..20 {
             step(&mut world)?;
-            let now = energy(&world, G);
+            let now = energy(&world, GRAVITY);
             if now > before + 1e-12 * now.abs() {
                 return Err(format!("energy grows by {:e}", now - before));
             }

@@ -2,18 +2,12 @@
 
 use std::sync::Arc;
 
-use sim_core::{Body, DVec3, Force, METHODS, Method, Settings, Vec3, World};
+use kit::bodies::{immovable, wall};
+use kit::meshes::{boxes, cube};
+use kit::worlds::{GRAVITY, add_gravity, world_of};
+use sim_core::{Body, DVec3, METHODS, Method, Settings, Vec3, World};
 
-use crate::shapes::{boxes, cube};
-use crate::worlds::{DT, ball, immovable, mesh_body, run, settings, wall, world_with};
-
-pub(crate) const G: f64 = 9.81;
-
-fn weight() -> Force {
-    Force::Gravity {
-        acceleration: -G * DVec3::Y,
-    }
-}
+use crate::worlds::{DT, ball, mesh_body, run, settings};
 
 /// A body above a floor, under gravity.
 fn on_floor(method: &'static Method, dt: f64, body: Body, floor: Body) -> World {
@@ -21,8 +15,8 @@ fn on_floor(method: &'static Method, dt: f64, body: Body, floor: Body) -> World 
         method,
         ..settings(dt)
     };
-    let mut world = world_with(settings, &[floor, body]);
-    world.add_force(weight()).expect("a force");
+    let mut world = world_of(settings, &[floor, body]);
+    add_gravity(&mut world, -GRAVITY * DVec3::Y);
     world
 }
 
@@ -46,9 +40,9 @@ fn exact_in_flight() -> impl Iterator<Item = &'static Method> {
 
 /// Time, from 0, of bounce `n` (from 1), and the speed after it.
 fn bounce(n: i32, restitution: f64) -> (f64, f64) {
-    let fall = (2.0 / G).sqrt();
+    let fall = (2.0 / GRAVITY).sqrt();
     let flights: f64 = (1..n).map(|i| 2.0 * fall * restitution.powi(i)).sum();
-    (fall + flights, G * fall * restitution.powi(n))
+    (fall + flights, GRAVITY * fall * restitution.powi(n))
 }
 
 #[test]
@@ -93,8 +87,8 @@ fn an_elastic_ball_bounces_a_hundred_and_eleven_times() {
         let height = world.position(1).y;
         let error = (height - 0.7215811544474912).abs();
         assert!(error < 1e-11, "{}: off by {error:e}", method.name);
-        let energy = world.kinetic_energy() + G * height;
-        let error = (energy / G - 1.0).abs();
+        let energy = world.kinetic_energy() + GRAVITY * height;
+        let error = (energy / GRAVITY - 1.0).abs();
         // Flights under other methods than those for free fall round at each step.
         assert!(error < 1e-13, "{}: energy off by {error:e}", method.name);
     }
@@ -107,7 +101,7 @@ fn a_constant_force_makes_bodies_bounce_as_gravity_does() {
         let mut by_weight = dropped(method, DT, 0.8);
         let mut by_force = dropped(method, DT, 0.8);
         by_force.remove_force(0).expect("a force");
-        by_force.set_force(1, -G * DVec3::Y).expect("a force");
+        by_force.set_force(1, -GRAVITY * DVec3::Y).expect("a force");
         let counts = [&mut by_weight, &mut by_force].map(|world| run(world, 180).len());
         assert_eq!(counts[0], counts[1], "{}", method.name);
         let apart = by_weight.position(1) - by_force.position(1);
@@ -152,7 +146,7 @@ fn what_lies_on_a_floor_does_not_move() {
                     world.step().expect("a step");
                     let moved = (world.position(1) - start).length();
                     assert!(moved <= 1e-9, "{}, {what}: moved {moved:e}", method.name);
-                    let energy = world.kinetic_energy() + G * (world.position(1) - start).y;
+                    let energy = world.kinetic_energy() + GRAVITY * (world.position(1) - start).y;
                     assert!(energy <= 1e-8, "{}, {what}: energy {energy:e}", method.name);
                 }
             }
@@ -177,7 +171,7 @@ fn what_slides_down_a_slope_hits_nothing() {
             let what = format!("{}, e = {restitution}", method.name);
             assert_eq!(impacts, 0, "{what}");
             // It gathers speed as on a slope without friction, less half a step of it.
-            let pull = G * (DVec3::NEG_Y + slope.y * slope).length();
+            let pull = GRAVITY * (DVec3::NEG_Y + slope.y * slope).length();
             let speed = world.velocity(1).length();
             assert!(
                 (speed / (600.0 / 64.0 * pull) - 1.0).abs() < 2e-3,
@@ -199,7 +193,7 @@ fn stacks_stand() {
             method,
             ..settings(DT)
         };
-        let mut world = world_with(settings, &[floor()]);
+        let mut world = world_of(settings, &[floor()]);
         world
             .add(wall(DVec3::X, DVec3::ZERO, DVec3::ZERO))
             .expect("a wall");
@@ -211,7 +205,7 @@ fn stacks_stand() {
             };
             world.add(body).expect("a cube");
         }
-        world.add_force(weight()).expect("a force");
+        add_gravity(&mut world, -GRAVITY * DVec3::Y);
         let start: Vec<DVec3> = (0..world.len()).map(|i| world.position(i)).collect();
         for _ in 0..600 {
             world.step().expect("a step");
@@ -241,7 +235,7 @@ fn what_just_touches_at_its_turn_falls_back() {
                     force: -8.0 * DVec3::Y,
                     ..ball(0.0, 8.0)
                 };
-                let mut world = world_with(settings(dt), &[thrown, above]);
+                let mut world = world_of(settings(dt), &[thrown, above]);
                 run(&mut world, (1.5 / dt).ceil() as u64);
                 let t = world.time();
                 let exact = 8.0 * t - 4.0 * t * t;
@@ -267,7 +261,7 @@ fn the_end_of_a_step_takes_no_speed() {
                 ..ball(0.5, x * DVec3::X, DVec3::X)
             };
             let wall = wall(DVec3::NEG_X, DVec3::ZERO, DVec3::ZERO);
-            let mut world = world_with(settings(dt), &[thrown, wall]);
+            let mut world = world_of(settings(dt), &[thrown, wall]);
             run(&mut world, 8);
             let speed = -world.velocity(0).x;
             assert!(
@@ -288,7 +282,7 @@ fn what_leaves_at_once_and_comes_back_is_met_there() {
             force: DVec3::new(-16.0, -2.0, 0.0),
             ..ball(0.5, (1.0 + gap) * DVec3::Y, 2.0 * DVec3::X)
         };
-        let mut world = world_with(settings(0.5), &[under, rolling]);
+        let mut world = world_of(settings(0.5), &[under, rolling]);
         assert!(world.overlapping().is_empty());
         assert!(run(&mut world, 1).len() > 2);
         (world.position(1), world.velocity(1))

@@ -1,15 +1,11 @@
 //! Impacts where forces grow without bound: bodies that meet go through no centre, and gain nothing.
 
+use kit::bodies::immovable;
+use kit::random::Random;
+use kit::worlds::world_of;
 use sim_core::{Body, DVec3, Force, METHODS, Method, Settings, World};
 
-use crate::worlds::{ball, immovable, settings, world_with};
-
-fn random(state: &mut u64) -> f64 {
-    *state = state
-        .wrapping_mul(6364136223846793005)
-        .wrapping_add(1442695040888963407);
-    (*state >> 11) as f64 / (1_u64 << 53) as f64
-}
+use crate::worlds::{ball, settings};
 
 fn settings_of(method: &'static Method, dt: f64) -> Settings {
     Settings {
@@ -50,7 +46,7 @@ fn drift(world: &mut World, steps: u32) -> Result<f64, String> {
 }
 
 fn gravitating(method: &'static Method, dt: f64, stars: &[Body]) -> World {
-    let mut world = world_with(settings_of(method, dt), stars);
+    let mut world = world_of(settings_of(method, dt), stars);
     world
         .add_force(Force::Gravitation { constant: 1.0 })
         .expect("a force");
@@ -109,15 +105,15 @@ fn implicit_methods_are_asked_for_no_motion_through_a_star() {
 
 #[test]
 fn pairs_of_stars_keep_their_energy_through_many_impacts() {
-    let mut state = 7;
+    let mut random = Random::linear(7);
     let mut impacts = 0;
     for case in 0..16 {
-        let radius = 10_f64.powf(-1.0 - 3.0 * random(&mut state));
-        let mut vector = || DVec3::from_array([0; 3].map(|_| 2.0 * random(&mut state) - 1.0));
+        let radius = 10_f64.powf(-1.0 - 3.0 * random.unit());
+        let mut vector = || random.vector();
         let (away, velocity) = (vector().normalize(), vector());
         // So that the second passes the first, if at all, by about its radius.
         let velocity = 0.5 * velocity.normalize() * radius.sqrt();
-        let (first, second) = (1.0 + random(&mut state), 1.0 + random(&mut state));
+        let (first, second) = (1.0 + random.unit(), 1.0 + random.unit());
         let stars = [
             star(first, radius, DVec3::ZERO, DVec3::ZERO),
             star(second, radius, 0.5 * away, velocity),
@@ -139,16 +135,16 @@ fn pairs_of_stars_keep_their_energy_through_many_impacts() {
 /// A centre of attraction in a ball that stands still, hit from any side.
 #[test]
 fn what_falls_onto_a_ball_about_a_centre_bounces_off_it() {
-    let mut state = 5;
+    let mut random = Random::linear(5);
     for method in adaptive() {
         for _ in 0..6 {
-            let radius = 10_f64.powf(-1.0 - 4.0 * random(&mut state));
-            let from = DVec3::from_array([0; 3].map(|_| random(&mut state) + 0.2));
+            let radius = 10_f64.powf(-1.0 - 4.0 * random.unit());
+            let from = DVec3::from_array([0; 3].map(|_| random.unit() + 0.2));
             let bodies = [
                 immovable(ball(radius, DVec3::ZERO, DVec3::ZERO)),
                 ball(0.1 * radius, from, DVec3::ZERO),
             ];
-            let mut world = world_with(settings_of(method, 1.0 / 60.0), &bodies);
+            let mut world = world_of(settings_of(method, 1.0 / 60.0), &bodies);
             let force = Force::Attraction {
                 body: Some(1),
                 centre: DVec3::ZERO,

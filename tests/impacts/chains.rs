@@ -3,9 +3,11 @@
 use std::sync::mpsc;
 use std::time::Duration;
 
+use kit::bodies::wall;
+use kit::worlds::world_of;
 use sim_core::{Body, DVec3, World};
 
-use crate::worlds::{DT, Kept, ULP, assert_close, ball, run, settings, wall, world, world_with};
+use crate::worlds::{DT, Kept, ULP, assert_close, ball, run, settings, world};
 
 /// A wall, a block at rest and one of 100^k times its mass that comes.
 fn galperin(k: i32, radius: f64) -> World {
@@ -159,7 +161,7 @@ fn a_symmetric_break_stays_symmetric() {
                 ball(radius, DVec3::Y * -apart, DVec3::ZERO),
             ];
             let bodies = order.map(|i| balls[i].clone());
-            let mut world = world_with(settings(DT), &bodies);
+            let mut world = world_of(settings(DT), &bodies);
             let kept = Kept::of(&world);
             let impacts = run(&mut world, 240);
             let [cue, up, down] = [0, 1, 2].map(|ball| {

@@ -1,35 +1,20 @@
 //! A hundred bodies in a closed box: case 26; and heaps.
 
+use kit::bodies::{immovable, wall};
+use kit::meshes::{cube, cuboid};
+use kit::random::Random;
+use kit::worlds::GRAVITY;
 use sim_core::{Body, DVec3, Vec3, World};
 
-use crate::balls::G;
-use crate::shapes::{boxes, cube};
-use crate::worlds::{DT, Kept, ball, bits, immovable, mesh_body, run, wall, world};
+use crate::worlds::{DT, Kept, ball, bits, mesh_body, run, world};
 
 const HALF_BOX: f64 = 2.5;
 const HALF_CUBE: f64 = 0.25;
 
-/// SplitMix64: numbers from -1 to 1 that look random and are the same on every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        let mixed = mixed ^ mixed >> 31;
-        (mixed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-}
-
 /// Places in a grid of 5 by 5 by 4, shaken, that leave cubes and balls apart; velocities of up to
 /// 2 m/s along each axis.
 fn motions() -> impl Iterator<Item = (DVec3, DVec3)> {
-    let mut random = Random(26);
+    let mut random = Random::splitmix(26);
     (0..100).map(move |i| {
         let cell = DVec3::new(f64::from(i % 5), f64::from(i / 5 % 5), f64::from(i / 25));
         let place = cell - DVec3::new(2.0, 2.0, 1.5) + 0.2 * random.vector();
@@ -49,7 +34,7 @@ fn half_spaces() -> Vec<Body> {
 fn mesh_box() -> Vec<Body> {
     let half = Vec3::splat(HALF_BOX as f32);
     vec![immovable(mesh_body(
-        &boxes(&[[-half, half]]),
+        &cuboid(half),
         DVec3::ZERO,
         DVec3::ZERO,
     ))]
@@ -142,7 +127,7 @@ fn a_crowd_has_the_same_bits_twice() {
 /// Balls of 1 kg that fall in a column of square layers, between walls.
 fn heap(count: usize, restitution: f64) -> World {
     const RADIUS: f64 = 0.25;
-    let mut random = Random(5);
+    let mut random = Random::splitmix(5);
     let side = 2;
     let half = 0.3 * side as f64;
     let mut bodies = vec![wall(DVec3::Y, DVec3::ZERO, DVec3::ZERO)];
@@ -153,7 +138,7 @@ fn heap(count: usize, restitution: f64) -> World {
         let cell = [i % side, i / side / side, i / side % side].map(|c| 0.6 * c as f64 + 0.3);
         let at = DVec3::from_array(cell) - DVec3::new(half, 0.0, half);
         bodies.push(Body {
-            force: -G * DVec3::Y,
+            force: -GRAVITY * DVec3::Y,
             ..ball(RADIUS, at + 0.02 * random.vector(), DVec3::ZERO)
         });
     }
@@ -169,7 +154,7 @@ fn heaps_settle_without_gain() {
         let mut world = heap(12, restitution);
         let energy = |world: &World| {
             let heights = (5..world.len()).map(|ball| world.position(ball).y);
-            world.kinetic_energy() + G * heights.sum::<f64>()
+            world.kinetic_energy() + GRAVITY * heights.sum::<f64>()
         };
         let mut before = energy(&world);
         for step in 0..100 {

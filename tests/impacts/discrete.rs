@@ -1,9 +1,11 @@
 //! The discrete mode puts bodies back: case 24.
 
+use kit::meshes::cube;
+use kit::worlds::world_of;
 use sim_core::{Collision, DVec3, Settings};
 
-use crate::shapes::{cube, star};
-use crate::worlds::{DT, mesh_body, settings, world_with};
+use crate::shapes::star;
+use crate::worlds::{DT, mesh_body, settings};
 
 #[test]
 fn a_hit_puts_bodies_back_to_where_the_step_began() {
@@ -15,7 +17,7 @@ fn a_hit_puts_bodies_back_to_where_the_step_began() {
                 collision,
                 ..settings(DT)
             };
-            let mut world = world_with(
+            let mut world = world_of(
                 settings,
                 &[
                     mesh_body(&star, DVec3::ZERO, DVec3::ZERO),

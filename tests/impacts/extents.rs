@@ -1,17 +1,12 @@
 //! Bodies that are long along one axis: the time of an impact along another is as exact as without.
 
+use kit::bodies::immovable;
+use kit::meshes::{cube, cuboid};
+use kit::random::Random;
+use kit::worlds::world_of;
 use sim_core::{DVec3, METHODS, Settings, Vec3, World};
 
-use crate::shapes::{cube, cuboid};
-use crate::worlds::{DT, ULP, ball, immovable, mesh_body, run, settings, world_with};
-
-/// A number of its own for each call, from 0 to 1.
-fn random(state: &mut u64) -> f64 {
-    *state = state
-        .wrapping_mul(6364136223846793005)
-        .wrapping_add(1442695040888963407);
-    (*state >> 11) as f64 / (1_u64 << 53) as f64
-}
+use crate::worlds::{DT, ULP, ball, mesh_body, run, settings};
 
 /// A plate in the way of a bullet.
 #[derive(Debug)]
@@ -29,18 +24,18 @@ struct Shot {
 
 impl Shot {
     /// Along two axes the plate is of any size from 1e-30 to 1e30 m.
-    fn random(state: &mut u64) -> Shot {
-        let axis = (3.0 * random(state)) as usize;
+    fn random(random: &mut Random) -> Shot {
+        let axis = (3.0 * random.unit()) as usize;
         let mut half = Vec3::ZERO;
         for k in 0..3 {
-            half[k] = 10_f64.powf(60.0 * random(state) - 30.0) as f32;
+            half[k] = 10_f64.powf(60.0 * random.unit() - 30.0) as f32;
         }
-        half[axis] = 10_f64.powf(3.0 * random(state) - 4.0) as f32;
+        half[axis] = 10_f64.powf(3.0 * random.unit() - 4.0) as f32;
         Shot {
             axis,
             half,
-            distance: 2.0 + 8.0 * random(state),
-            speed: 10_f64.powf(4.0 * random(state)),
+            distance: 2.0 + 8.0 * random.unit(),
+            speed: 10_f64.powf(4.0 * random.unit()),
             along: 0.0,
         }
     }
@@ -50,7 +45,7 @@ impl Shot {
         let plate = mesh_body(&cuboid(self.half), self.distance * unit, DVec3::ZERO);
         let mut bullet = mesh_body(&cube(0.5), DVec3::ZERO, self.speed * unit);
         bullet.force = self.along * DVec3::AXES[(self.axis + 1) % 3];
-        world_with(settings, &[bullet, immovable(plate)])
+        world_of(settings, &[bullet, immovable(plate)])
     }
 
     /// How late the first impact is, s, and how late it may be found.
@@ -67,10 +62,10 @@ impl Shot {
 
 #[test]
 fn a_plate_that_is_long_another_way_is_hit_in_time() {
-    let mut state = 16;
+    let mut random = Random::linear(16);
     let mut wrong = Vec::new();
     for _ in 0..400 {
-        let shot = Shot::random(&mut state);
+        let shot = Shot::random(&mut random);
         let (error, most) = shot.error(&mut shot.world(settings(DT)));
         if error.is_nan() || error.abs() > most {
             wrong.push(format!("{error:e} s, more than {most:e}: {shot:?}"));
@@ -82,11 +77,11 @@ fn a_plate_that_is_long_another_way_is_hit_in_time() {
 /// On a way that bends along the plate, which the search goes along in chords.
 #[test]
 fn a_plate_is_hit_in_time_on_a_way_that_bends() {
-    let mut state = 3;
+    let mut random = Random::linear(3);
     let mut wrong = Vec::new();
     for method in METHODS.into_iter().filter(|method| method.order > 1) {
         for _ in 0..20 {
-            let mut shot = Shot::random(&mut state);
+            let mut shot = Shot::random(&mut random);
             shot.along = 9.81;
             let side = (shot.axis + 1) % 3;
             // So long that the bullet does not fall past it.
@@ -116,7 +111,7 @@ fn a_bullet_goes_to_and_fro_between_plates_of_any_length() {
         };
         let bullet = mesh_body(&cube(0.25), DVec3::ZERO, 1000.0 * DVec3::X);
         let bodies = [plate(-5.0, length), plate(5.0, 3.0), bullet];
-        let mut world = world_with(settings(DT), &bodies);
+        let mut world = world_of(settings(DT), &bodies);
         let impacts = run(&mut world, 60);
         // 9.499 m to and fro in a second.
         assert_eq!(impacts.len(), 105, "{length:e}");
@@ -134,7 +129,7 @@ fn a_small_ball_hits_a_large_one_in_time() {
     for radius in [1.0, 1e3, 1e6, 1e9] {
         let large = immovable(ball(radius, (radius + 2.0) * DVec3::X, DVec3::ZERO));
         let small = ball(0.5, DVec3::ZERO, 100.0 * DVec3::X);
-        let mut world = world_with(settings(DT), &[large, small]);
+        let mut world = world_of(settings(DT), &[large, small]);
         let impacts = run(&mut world, 2);
         let error = impacts[0].time - 0.015;
         assert!(

@@ -2,18 +2,19 @@
 
 use std::f64::consts::PI;
 
+use kit::bodies::{immovable, wall};
+use kit::meshes::{cube, cuboid};
+use kit::worlds::{GRAVITY, world_of};
 use sim_core::{Body, DVec3, Force, METHODS, Method, Settings, Vec3, World};
 
-use crate::balls::G;
-use crate::shapes::{cube, cuboid};
-use crate::worlds::{ball, immovable, mesh_body, run, settings, wall, world_with};
+use crate::worlds::{ball, mesh_body, run, settings};
 
 fn world(method: &'static Method, dt: f64, bodies: &[Body], force: Force) -> World {
     let settings = Settings {
         method,
         ..settings(dt)
     };
-    let mut world = world_with(settings, bodies);
+    let mut world = world_of(settings, bodies);
     world.add_force(force).expect("a force");
     world
 }
@@ -84,7 +85,7 @@ fn a_spring_sends_a_body_against_a_wall_as_often_as_it_should() {
 #[test]
 fn a_ball_bounces_in_time_under_every_method() {
     let gravity = Force::Gravity {
-        acceleration: -G * DVec3::Y,
+        acceleration: -GRAVITY * DVec3::Y,
     };
     // A force of no effect sends the body through the method's own step.
     let no_drag = Force::LinearDrag {
@@ -104,7 +105,7 @@ fn a_ball_bounces_in_time_under_every_method() {
                     world.add_force(no_drag.clone()).expect("a force");
                 }
                 let impacts = run(&mut world, u64::from(5 * rate / 2));
-                let fall = (2.0 / G).sqrt();
+                let fall = (2.0 / GRAVITY).sqrt();
                 assert_eq!(impacts.len(), 3, "{}", method.name);
                 let errors = (1..)
                     .zip(&impacts)

@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use kit::bodies::wall;
+use kit::meshes::cube;
 use sim_core::{Body, DVec3, Mesh, World};
 
-use crate::shapes::{cube, star};
-use crate::worlds::{DT, Kept, ball, bits, mesh_body, run, run_apart, wall, world};
+use crate::shapes::star;
+use crate::worlds::{DT, Kept, ball, bits, mesh_body, run, run_apart, world};
 
 /// A body that passes one at rest, on its way to a wall at x = 6 and back.
 fn passing(mover: &Body, still: &Body, aside: DVec3, velocity: DVec3) -> World {

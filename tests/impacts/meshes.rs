@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use kit::meshes::{boxes, builtin, cuboid};
 use sim_core::collide::touch::first_touch;
 use sim_core::{Bvh, DVec3, Mesh, Vec3};
 
-use crate::shapes::{boxes, builtin, cuboid, sheet, star, torus};
+use crate::shapes::{sheet, star, torus};
 use crate::worlds::{DT, Kept, mesh_body, run, run_apart, world};
 
 /// Two meshes that touch when the second one, coming along `way`, is at `touching`.

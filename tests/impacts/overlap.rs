@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use kit::bodies::wall;
+use kit::meshes::{builtin, cube};
 use sim_core::{Body, DVec3, Mesh};
 
-use crate::shapes::{builtin, cube, torus};
-use crate::worlds::{DT, ULP, ball, mesh_body, run, wall, world};
+use crate::shapes::torus;
+use crate::worlds::{DT, ULP, ball, mesh_body, run, world};
 
 fn of_mesh(mesh: &Arc<Mesh>) -> Body {
     mesh_body(mesh, DVec3::ZERO, DVec3::ZERO)

@@ -1,11 +1,11 @@
 //! Two bodies head on: cases 9, 10, 13, 14, 21.
 
+use kit::bodies::{immovable, wall};
+use kit::meshes::{cube, cuboid};
 use sim_core::{Body, DVec3, Shape, Vec3};
 
-use crate::shapes::{cube, cuboid, sheet};
-use crate::worlds::{
-    DT, ULP, assert_close, bits, immovable, mesh_body, run, run_apart, wall, world,
-};
+use crate::shapes::sheet;
+use crate::worlds::{DT, ULP, assert_close, bits, mesh_body, run, run_apart, world};
 
 const STEPS: u64 = 8;
 const PHASES: u32 = 16;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use kit::worlds::meeting;
 use proptest::prelude::*;
 use sim_core::{Body, DVec3, Mesh, Shape, Vec3, World};
 
@@ -61,20 +62,6 @@ fn apart(bodies: &[Option<Body>]) -> Option<World> {
     world.overlapping().is_empty().then_some(world)
 }
 
-/// Shapes of all kinds where they are now, in a world that tells what overlaps.
-fn overlaps(world: &World) -> Vec<(usize, usize)> {
-    let mut again = World::new(*world.settings()).expect("settings");
-    for i in 0..world.len() {
-        let body = Body {
-            shape: world.shape(i).cloned(),
-            position: world.position(i),
-            ..Body::default()
-        };
-        again.add(body).expect("a body");
-    }
-    again.overlapping().to_vec()
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 
@@ -86,7 +73,7 @@ proptest! {
         let kept = Kept::of(&world);
         for step in 1..=20 {
             run_apart(&mut world, 1);
-            let found = overlaps(&world);
+            let found = meeting(&world, *world.settings());
             prop_assert!(found.is_empty(), "step {}: {:?} overlap", step, found);
         }
         let tolerance = 1e-14 * (1.0 + world.impacts() as f64);

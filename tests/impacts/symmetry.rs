@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use kit::bodies::{immovable, wall};
+use kit::meshes::{builtin, cube};
 use sim_core::{Body, DVec3, Impact, Mesh, Shape, Vec3, World};
 
-use crate::shapes::{builtin, cube, star};
-use crate::worlds::{assert_close, ball, bits, immovable, mesh_body, run, wall, world};
+use crate::shapes::star;
+use crate::worlds::{assert_close, ball, bits, mesh_body, run, world};
 
 const STEPS: u64 = 96;
 const DT: f64 = 1.0 / 48.0;

@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use kit::bodies::body;
+use kit::shapes;
+use kit::worlds::world_of;
 use sim_core::collide::tree;
 use sim_core::{Body, Bvh, Collision, DVec3, Impact, Mesh, Settings, Shape, World};
 
@@ -19,52 +22,16 @@ pub(crate) fn settings(dt: f64) -> Settings {
     }
 }
 
-pub(crate) fn world_with(settings: Settings, bodies: &[Body]) -> World {
-    let mut world = World::new(settings).expect("settings");
-    for body in bodies {
-        world.add(body.clone()).expect("a body");
-    }
-    world
-}
-
 pub(crate) fn world(dt: f64, bodies: &[Body]) -> World {
-    world_with(settings(dt), bodies)
+    world_of(settings(dt), bodies)
 }
 
 pub(crate) fn mesh_body(mesh: &Arc<Mesh>, position: DVec3, velocity: DVec3) -> Body {
-    Body {
-        shape: Some(Shape::Mesh(mesh.clone())),
-        position,
-        velocity,
-        ..Body::default()
-    }
+    body(&Shape::Mesh(mesh.clone()), position, velocity)
 }
 
 pub(crate) fn ball(radius: f64, position: DVec3, velocity: DVec3) -> Body {
-    Body {
-        shape: Some(Shape::Sphere { radius }),
-        position,
-        velocity,
-        ..Body::default()
-    }
-}
-
-/// An immovable half-space, perhaps with a velocity of its own.
-pub(crate) fn wall(normal: DVec3, position: DVec3, velocity: DVec3) -> Body {
-    Body {
-        shape: Some(Shape::HalfSpace { normal }),
-        position,
-        velocity,
-        mass: f64::INFINITY,
-        ..Body::default()
-    }
-}
-
-pub(crate) fn immovable(body: Body) -> Body {
-    Body {
-        mass: f64::INFINITY,
-        ..body
-    }
+    body(&shapes::ball(radius), position, velocity)
 }
 
 /// Steps, and all impacts on the way.

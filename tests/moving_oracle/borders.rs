@@ -1,7 +1,9 @@
 //! Contacts at the borders of faces and at the start: what blocks and what slips past.
 
-use super::moving_oracle::inputs::{builtin, lattice_vector, scaled};
-use super::moving_oracle::{Q, assert_rounded_down, rational};
+use super::moving_oracle::assert_rounded_down;
+use super::moving_oracle::inputs::lattice_vector;
+use kit::meshes::{builtin, scaled};
+use kit::rational::{Q, rational};
 use proptest::prelude::*;
 use sim_core::collide::touch::{first_touch, time_of_impact};
 use sim_core::collide::{Feature, tree};

@@ -1,6 +1,6 @@
 //! First times of contact of two meshes, from all features of all pairs of triangles.
 
-use super::Q;
+use kit::rational::Q;
 use sim_core::{DVec3, Mesh};
 
 pub(crate) fn placed(mesh: &Mesh, offset: DVec3) -> Vec<[DVec3; 3]> {

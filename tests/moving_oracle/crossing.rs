@@ -1,6 +1,8 @@
 //! First contacts of meshes on a lattice: whether surfaces cross right after, in whole numbers, and
 //! whether they slip past each other where one is moved a little.
 
+use kit::meshes::{builtin, scaled};
+use kit::random::Random;
 use sim_core::collide::touch::{first_touch, time_of_impact};
 use sim_core::collide::{Touch, tree};
 use sim_core::{Bvh, DVec3, Mesh, Vec3};
@@ -25,26 +27,6 @@ impl Lattice {
     fn corners(&self) -> impl Iterator<Item = Triangle> + '_ {
         let corner = |v: u32| self.vertices[v as usize];
         self.triangles.iter().map(move |t| t.map(corner))
-    }
-}
-
-/// Numbers from a sequence of Marsaglia's (2003, "Xorshift RNGs").
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        ((self.0 >> 1) % count as u64) as usize
-    }
-
-    fn from(&mut self, low: i64, high: i64) -> i64 {
-        low + self.below((high - low + 1) as usize) as i64
-    }
-
-    fn point(&mut self, low: i64, high: i64) -> Point {
-        [0; 3].map(|_| self.from(low, high))
     }
 }
 
@@ -223,6 +205,11 @@ impl Pair {
 
 const SIDEWAYS: u32 = 24;
 
+/// A place next to the origin.
+fn point(random: &mut Random) -> Point {
+    [0; 3].map(|_| random.whole(-1, 1))
+}
+
 /// Triangles around a vertex, some up and some down, and closed below if so wanted.
 fn saddle(random: &mut Random) -> Lattice {
     let ring = [
@@ -239,7 +226,7 @@ fn saddle(random: &mut Random) -> Lattice {
     for (i, [x, y]) in ring.into_iter().enumerate() {
         // Straight ones and some of the slanted ones.
         if i % 2 == 0 || random.below(3) == 0 {
-            vertices.push([x, y, random.from(-1, 1)]);
+            vertices.push([x, y, random.whole(-1, 1)]);
         }
     }
     let count = vertices.len() as u32 - 1;
@@ -248,7 +235,7 @@ fn saddle(random: &mut Random) -> Lattice {
     let sectors = if is_closed || random.below(2) == 0 {
         count
     } else {
-        random.from(1, count.into()) as u32
+        random.whole(1, count.into()) as u32
     };
     vertices.push([0, 0, -3]);
     for i in 0..sectors {
@@ -267,7 +254,7 @@ fn saddle(random: &mut Random) -> Lattice {
 /// A sheet in a plane along `way`, with an edge or a corner ahead.
 fn sheet(random: &mut Random, way: Point) -> Lattice {
     let along = loop {
-        let along = random.point(-1, 1);
+        let along = point(random);
         let is_parallel = (0..3).all(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             along[j] * way[k] == along[k] * way[j]
@@ -276,9 +263,9 @@ fn sheet(random: &mut Random, way: Point) -> Lattice {
             break along;
         }
     };
-    let (from, to) = (random.from(-2, 0), random.from(1, 2));
+    let (from, to) = (random.whole(-2, 0), random.whole(1, 2));
     let at = |u: i64, back: i64| [0, 1, 2].map(|i| u * along[i] - back * way[i]);
-    let (lag, far) = (random.from(0, 1), random.from(0, 2));
+    let (lag, far) = (random.whole(0, 1), random.whole(0, 2));
     match random.below(3) {
         0 => Lattice {
             vertices: vec![at(from, 0), at(to, lag), at(far - 1, 1 + lag)],
@@ -297,9 +284,9 @@ fn sheet(random: &mut Random, way: Point) -> Lattice {
 }
 
 fn soup(random: &mut Random) -> Lattice {
-    let count = random.from(3, 6) as u32;
-    let vertices = (0..count).map(|_| random.point(-1, 1)).collect();
-    let triangles = (0..random.from(1, 4)).map(|_| {
+    let count = random.whole(3, 6) as u32;
+    let vertices = (0..count).map(|_| point(random)).collect();
+    let triangles = (0..random.whole(1, 4)).map(|_| {
         let first = random.below(count as usize) as u32;
         let step = 1 + random.below(count as usize - 2) as u32;
         [first, (first + step) % count, (first + step + 1) % count]
@@ -312,7 +299,7 @@ fn soup(random: &mut Random) -> Lattice {
 }
 
 fn tetrahedron(random: &mut Random) -> Lattice {
-    let vertices: Vec<Point> = (0..4).map(|_| random.point(-1, 1)).collect();
+    let vertices: Vec<Point> = (0..4).map(|_| point(random)).collect();
     let wide = |i: usize| vertices[i].map(i128::from);
     let mut triangles = vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
     if side([wide(0), wide(1), wide(2)], wide(3)) > 0 {
@@ -327,7 +314,7 @@ fn tetrahedron(random: &mut Random) -> Lattice {
 fn pair(random: &mut Random) -> Pair {
     let mut way = [0; 3];
     while way == [0; 3] {
-        way = random.point(-1, 1);
+        way = point(random);
     }
     let kind = random.below(6);
     let first = match kind {
@@ -341,11 +328,11 @@ fn pair(random: &mut Random) -> Pair {
         4 => saddle(random),
         _ => soup(random),
     };
-    let mut aim = random.point(-1, 1);
+    let mut aim = point(random);
     if random.below(2) == 0 {
         aim = [0; 3];
     }
-    let steps = random.from(3, 4);
+    let steps = random.whole(3, 4);
     let offset = [0, 1, 2].map(|i| aim[i] - steps * way[i]);
     let motion = way.map(|x| x * 2 * steps);
     Pair {
@@ -360,7 +347,7 @@ fn pair(random: &mut Random) -> Pair {
 #[test]
 fn first_touches_are_where_surfaces_come_to_cross() {
     let count = std::env::var("PAIRS").map_or(10_000, |count| count.parse().expect("a number"));
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let mut random = Random::xorshift(0x9e37_79b9_7f4a_7c15, 1);
     let (mut judged, mut wrong) = (0, vec![]);
     while judged < count {
         let pair = pair(&mut random);
@@ -432,7 +419,7 @@ fn a_sheet_does_not_fall_through_a_saddle() {
 /// A corner that comes to a wall from within, on the border between the wall's triangles.
 #[test]
 fn what_is_inside_a_shell_does_not_leave_between_triangles() {
-    let shell = super::scaled(&super::builtin("cube.obj"), DVec3::splat(8.0));
+    let shell = scaled(&builtin("cube.obj"), DVec3::splat(8.0));
     let corners = [[1, 0, 0], [0, 1, 1], [0, -1, 1], [0, 0, -1]];
     let spike = lattice(&corners, &[[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]);
     let (shell, spike) = (

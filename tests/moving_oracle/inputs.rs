@@ -1,7 +1,8 @@
 //! Points and meshes that touch more often than not, and any.
 
+use kit::inputs::{hard_coordinate, soup};
 use proptest::prelude::*;
-use sim_core::{DQuat, DVec3, Mesh, Vec3};
+use sim_core::{DVec3, Mesh, Vec3};
 
 /// Points that touch, coincide and lie in planes and lines more often than not: a small lattice, some
 /// of it moved by an ulp, scaled by a power of two and moved far away; and a motion likewise.
@@ -14,16 +15,8 @@ pub(crate) fn hard_points<const N: usize>() -> impl Strategy<Value = ([DVec3; N]
         |(points, motion, exponent, offset, nudge)| {
             let scale = 2.0_f64.powi(exponent);
             let at = |(cell, ulps): (i32, i32), offset: f64| {
-                let x = f64::from(cell) + offset;
-                // Next to zero an ulp would leave the range of exact products.
-                let x = match ulps {
-                    _ if !nudge => x,
-                    _ if x == 0.0 => f64::from(ulps) * f64::EPSILON,
-                    1 => x.next_up(),
-                    -1 => x.next_down(),
-                    _ => x,
-                };
-                x * scale
+                let ulps = if nudge { ulps } else { 0 };
+                hard_coordinate(cell, ulps, offset) * scale
             };
             (
                 points.map(|p| DVec3::from_array(p.map(|x| at(x, offset)))),
@@ -65,18 +58,7 @@ pub(crate) fn lattice_soup(cells: i32, most: usize) -> impl Strategy<Value = Mes
 pub(crate) fn random_soup(most: usize) -> impl Strategy<Value = Mesh> {
     let corner = prop::array::uniform3(-1.0f32..1.0);
     let triangle = (corner.clone(), prop::array::uniform2(corner));
-    prop::collection::vec(triangle, 1..most).prop_map(|soup| {
-        let corners = soup.iter().flat_map(|&(at, arms)| {
-            let at = Vec3::from_array(at);
-            [
-                at,
-                at + Vec3::from_array(arms[0]) * 0.3,
-                at + Vec3::from_array(arms[1]) * 0.3,
-            ]
-        });
-        let triangles = (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
-        Mesh::new(corners.collect(), triangles.collect()).expect("three corners each")
-    })
+    prop::collection::vec(triangle, 1..most).prop_map(|triangles| soup(&triangles))
 }
 
 pub(crate) fn vector(range: std::ops::Range<f64>) -> impl Strategy<Value = DVec3> {
@@ -85,12 +67,4 @@ pub(crate) fn vector(range: std::ops::Range<f64>) -> impl Strategy<Value = DVec3
 
 pub(crate) fn lattice_vector(most: i32) -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-most..=most).prop_map(|v| DVec3::from_array(v.map(f64::from)))
-}
-
-pub(crate) fn builtin(name: &str) -> Mesh {
-    (*scene::mesh_file::builtin(name).expect("built in")).clone()
-}
-
-pub(crate) fn scaled(mesh: &Mesh, scale: DVec3) -> Mesh {
-    mesh.transformed(DQuat::IDENTITY, scale).expect("a mesh")
 }

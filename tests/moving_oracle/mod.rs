@@ -7,11 +7,9 @@
 pub(crate) mod brute;
 pub(crate) mod inputs;
 
+use kit::rational::{Point, Q, cross, dot, rational, sub, zero};
 use proptest::prelude::*;
 use sim_core::DVec3;
-
-use crate::rational::{Point, cross, dot, sub, zero};
-pub(crate) use crate::rational::{Q, rational};
 
 fn point(p: DVec3) -> Point {
     p.to_array().map(rational)

@@ -1,10 +1,12 @@
 //! How deep bodies are in each other, against closed forms.
 
+use kit::bodies::{at, immovable};
+use kit::random::Random;
+use kit::shapes::{ball, cow, cuboid, half_space};
+use kit::worlds::{add_gravity, meet, world};
 use sim_core::{DVec3, World};
 
-use crate::shapes::{
-    Random, add_gravity, at, ball, cow, cube, cuboid, half_space, immovable, meet, touching, world,
-};
+use crate::{WEIGHT, touching};
 
 /// The only overlap of a world of two.
 fn only(world: &World) -> sim_core::Overlap {
@@ -16,7 +18,7 @@ fn only(world: &World) -> sim_core::Overlap {
 
 #[test]
 fn depths_of_spheres_and_half_spaces_are_exact() {
-    let mut random = Random(7);
+    let mut random = Random::xorshift(7, 33);
     for _ in 0..200 {
         let way = random.direction();
         let apart = 0.4 + 0.5 * random.signed().abs();
@@ -29,7 +31,10 @@ fn depths_of_spheres_and_half_spaces_are_exact() {
             "{overlap:?}"
         );
         assert!((overlap.normal - way).length() < 1e-14 && overlap.is_least);
-        for (shape, reach) in [(ball(0.5), 0.5), (cube(), 0.5 * way.abs().element_sum())] {
+        for (shape, reach) in [
+            (ball(0.5), 0.5),
+            (cuboid([0.5; 3]), 0.5 * way.abs().element_sum()),
+        ] {
             let floor = immovable(at(&half_space(way), way));
             let body = at(
                 &shape,
@@ -50,9 +55,9 @@ fn depths_of_spheres_and_half_spaces_are_exact() {
 
 #[test]
 fn depths_of_boxes_are_those_of_the_axis_that_parts_them_first() {
-    let mut random = Random(11);
+    let mut random = Random::xorshift(11, 33);
     let (first, second) = ([0.5, 1.0, 0.25], [0.75, 0.5, 0.5]);
-    let shapes = (cuboid(first.into()), cuboid(second.into()));
+    let shapes = (cuboid(first), cuboid(second));
     let reach = DVec3::new(1.25, 1.5, 0.75);
     let mut seen = 0;
     for _ in 0..300 {
@@ -74,7 +79,7 @@ fn depths_of_boxes_are_those_of_the_axis_that_parts_them_first() {
 
 #[test]
 fn depths_of_balls_in_faces_edges_and_corners_of_a_mesh_are_those_of_the_distance() {
-    let cube = at(&cube(), DVec3::ZERO);
+    let cube = at(&cuboid([0.5; 3]), DVec3::ZERO);
     for out in [
         DVec3::X,
         DVec3::NEG_Y,
@@ -113,8 +118,8 @@ fn free_way(out: DVec3) -> DVec3 {
 
 #[test]
 fn a_depth_parts_and_less_does_not() {
-    let mut random = Random(5);
-    let shapes = [cow(), cube(), ball(0.5), cow()];
+    let mut random = Random::xorshift(5, 33);
+    let shapes = [cow(), cuboid([0.5; 3]), ball(0.5), cow()];
     for _ in 0..40 {
         let (first, second) = (&shapes[random.below(4)], &shapes[random.below(4)]);
         let direction = random.direction();
@@ -137,7 +142,7 @@ fn a_depth_parts_and_less_does_not() {
 
 #[test]
 fn what_touches_by_rounding_is_no_overlap() {
-    let mut random = Random(3);
+    let mut random = Random::xorshift(3, 33);
     let (mut met, mut balls) = (0, 0);
     for _ in 0..400 {
         let normal = random.direction();
@@ -151,7 +156,7 @@ fn what_touches_by_rounding_is_no_overlap() {
             ),
         ];
         let mut world = world(bodies);
-        add_gravity(&mut world);
+        add_gravity(&mut world, WEIGHT);
         met += world.overlapping().len();
         balls += 1;
         assert_eq!(world.overlaps(), []);

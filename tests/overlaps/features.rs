@@ -1,12 +1,15 @@
 //! The vertices, edges and faces that touch in contacts.
 
+use kit::bodies::{at, immovable};
+use kit::shapes::{ball, cuboid, half_space};
+use kit::worlds::{add_gravity, world};
 use sim_core::{ContactFeature, DVec3, Feature, RestingContact, Touching, World};
 
-use crate::shapes::{add_gravity, at, ball, cube, cuboid, half_space, immovable, world};
+use crate::WEIGHT;
 
 /// The contacts of a world after a few steps, and what touches in each.
 fn touching(mut world: World) -> Vec<(RestingContact, Vec<Touching>)> {
-    add_gravity(&mut world);
+    add_gravity(&mut world, WEIGHT);
     for _ in 0..5 {
         world.step().expect("a step");
     }
@@ -41,7 +44,7 @@ fn has_points(touching: &[Touching], points: &[[f64; 3]]) {
 
 #[test]
 fn a_cube_stands_on_the_corners_of_its_face() {
-    let block = immovable(at(&cuboid([2.0, 0.5, 2.0].into()), DVec3::ZERO));
+    let block = immovable(at(&cuboid([2.0, 0.5, 2.0]), DVec3::ZERO));
     let floor = immovable(at(&half_space(DVec3::Y), 0.5 * DVec3::Y));
     let corners = [
         [-0.2, 0.5, -0.4],
@@ -50,7 +53,7 @@ fn a_cube_stands_on_the_corners_of_its_face() {
         [0.8, 0.5, 0.6],
     ];
     for ground in [block, floor] {
-        let stood = at(&cube(), DVec3::new(0.3, 1.0, 0.1));
+        let stood = at(&cuboid([0.5; 3]), DVec3::new(0.3, 1.0, 0.1));
         for is_first in [true, false] {
             let mut pair = [stood.clone(), ground.clone()];
             if !is_first {
@@ -87,8 +90,8 @@ fn a_cube_stands_on_the_corners_of_its_face() {
 #[test]
 fn faces_that_lie_across_each_other_touch_where_their_edges_cross_and_in_corners() {
     // Bars across each other.
-    let lower = immovable(at(&cuboid([2.0, 0.5, 0.25].into()), DVec3::ZERO));
-    let bar = at(&cuboid([0.25, 0.5, 2.0].into()), DVec3::Y);
+    let lower = immovable(at(&cuboid([2.0, 0.5, 0.25]), DVec3::ZERO));
+    let bar = at(&cuboid([0.25, 0.5, 2.0]), DVec3::Y);
     let touching = only(world([lower.clone(), bar]));
     has_points(
         &touching,
@@ -103,10 +106,7 @@ fn faces_that_lie_across_each_other_touch_where_their_edges_cross_and_in_corners
         |t: &Touching| matches!(t.feature, ContactFeature::Meshes(Feature::EdgeEdge { .. }));
     assert!(touching.iter().all(are_edges), "{touching:?}");
     // Over the end: two corners on it, two crossings, and two corners of the lower one in the upper.
-    let over = at(
-        &cuboid([0.5, 0.5, 0.125].into()),
-        DVec3::new(2.0, 1.0, 0.1875),
-    );
+    let over = at(&cuboid([0.5, 0.5, 0.125]), DVec3::new(2.0, 1.0, 0.1875));
     let touching = only(world([lower, over]));
     has_points(
         &touching,
@@ -121,7 +121,7 @@ fn faces_that_lie_across_each_other_touch_where_their_edges_cross_and_in_corners
 
 #[test]
 fn what_is_round_touches_a_face_an_edge_or_a_corner() {
-    let block = immovable(at(&cube(), DVec3::ZERO));
+    let block = immovable(at(&cuboid([0.5; 3]), DVec3::ZERO));
     for is_first in [true, false] {
         let touched = |position: DVec3, normal: DVec3| {
             let ball = at(&ball(0.25), position + (0.25 + 1e-13) * normal);
@@ -163,11 +163,15 @@ fn what_is_round_touches_a_face_an_edge_or_a_corner() {
 #[test]
 fn each_contact_of_a_corner_has_its_own_features() {
     let walls = [
-        at(&cuboid([2.0, 0.5, 2.0].into()), DVec3::new(0.0, -0.5, 0.0)),
-        at(&cuboid([0.5, 2.0, 2.0].into()), DVec3::new(-0.5, 2.0, 0.0)),
+        at(&cuboid([2.0, 0.5, 2.0]), DVec3::new(0.0, -0.5, 0.0)),
+        at(&cuboid([0.5, 2.0, 2.0]), DVec3::new(-0.5, 2.0, 0.0)),
     ];
     let [floor, wall] = walls.map(immovable);
-    let all = touching(world([floor, wall, at(&cube(), DVec3::new(0.5, 0.5, 0.0))]));
+    let all = touching(world([
+        floor,
+        wall,
+        at(&cuboid([0.5; 3]), DVec3::new(0.5, 0.5, 0.0)),
+    ]));
     assert_eq!(all.len(), 2, "{all:?}");
     for (contact, touching) in all {
         assert_eq!(touching.len(), 4, "{contact:?}");
@@ -181,7 +185,10 @@ fn each_contact_of_a_corner_has_its_own_features() {
         }
     }
     // And an overlap has none that are known.
-    let mut pair = world([at(&cube(), DVec3::ZERO), at(&cube(), 0.5 * DVec3::X)]);
+    let mut pair = world([
+        at(&cuboid([0.5; 3]), DVec3::ZERO),
+        at(&cuboid([0.5; 3]), 0.5 * DVec3::X),
+    ]);
     pair.step().expect("a step");
     let contact = pair.contacts().next().expect("it is held");
     assert!(contact.is_overlap && pair.contact_features(&contact).is_empty());

@@ -1,10 +1,12 @@
 //! What is put into the world in overlap is held: it gets no deeper, and energy does not rise.
 
+use kit::bodies::{at, immovable};
+use kit::random::Random;
+use kit::shapes::{ball, cow, cuboid, half_space};
+use kit::worlds::{add_gravity, world};
 use sim_core::{Body, DVec3, Shape, World};
 
-use crate::shapes::{
-    Random, add_gravity, at, ball, cow, cube, cuboid, half_space, immovable, touching, world,
-};
+use crate::{WEIGHT, touching};
 
 /// Steps, and after each looks that no overlap is deeper than it was at the start, nor a new one there,
 /// and that the energy is not more.
@@ -55,10 +57,10 @@ fn pair(first: &Shape, second: &Shape, direction: DVec3, depth: f64) -> [Body; 2
 
 #[test]
 fn overlaps_of_all_kinds_get_no_deeper_and_gain_no_energy() {
-    let shapes = [ball(0.5), cube(), cow(), cuboid([0.2, 0.7, 0.4].into())];
+    let shapes = [ball(0.5), cuboid([0.5; 3]), cow(), cuboid([0.2, 0.7, 0.4])];
     let mut held = 0;
     for seed in 1..=100 {
-        let mut random = Random(seed * 0x9e37_79b9);
+        let mut random = Random::xorshift(seed * 0x9e37_79b9, 33);
         let (first, second) = (&shapes[random.below(4)], &shapes[random.below(4)]);
         let direction = random.direction();
         let depth = [1e-9, 1e-6, 1e-3, 0.03, 0.2, 0.5][random.below(6)];
@@ -75,7 +77,7 @@ fn overlaps_of_all_kinds_get_no_deeper_and_gain_no_energy() {
         }
         let mut world = world(bodies);
         if random.below(2) == 0 {
-            add_gravity(&mut world);
+            add_gravity(&mut world, WEIGHT);
         }
         held += world.overlaps().len();
         assert_held(&mut world, 120, &format!("seed {seed}"));
@@ -85,9 +87,9 @@ fn overlaps_of_all_kinds_get_no_deeper_and_gain_no_energy() {
 
 #[test]
 fn overlaps_with_half_spaces_get_no_deeper_and_gain_no_energy() {
-    let shapes = [ball(0.5), cube(), cow(), ball(0.0)];
+    let shapes = [ball(0.5), cuboid([0.5; 3]), cow(), ball(0.0)];
     for seed in 1..=60 {
-        let mut random = Random(seed * 0x9e37_79b9);
+        let mut random = Random::xorshift(seed * 0x9e37_79b9, 33);
         let mut normal = random.direction();
         normal.y = normal.y.abs();
         let floor = immovable(at(&half_space(normal), DVec3::ZERO));
@@ -101,7 +103,7 @@ fn overlaps_with_half_spaces_get_no_deeper_and_gain_no_energy() {
             ..at(shape, (along - depth) * normal)
         };
         let mut world = world([floor, body]);
-        add_gravity(&mut world);
+        add_gravity(&mut world, WEIGHT);
         assert_held(&mut world, 120, &format!("seed {seed}"));
     }
 }
@@ -110,7 +112,7 @@ fn overlaps_with_half_spaces_get_no_deeper_and_gain_no_energy() {
 fn what_slides_in_a_floor_does_not_come_through_a_wall_of_the_same_mesh() {
     // A floor and a wall across it, as one mesh.
     let corner = {
-        let Shape::Mesh(floor) = cuboid([4.0, 0.5, 4.0].into()) else {
+        let Shape::Mesh(floor) = cuboid([4.0, 0.5, 4.0]) else {
             unreachable!("it is a mesh");
         };
         let mut vertices: Vec<_> = floor.vertices().to_vec();
@@ -127,13 +129,13 @@ fn what_slides_in_a_floor_does_not_come_through_a_wall_of_the_same_mesh() {
             sim_core::Mesh::new(vertices, triangles).expect("a mesh"),
         ))
     };
-    for (shape, reach) in [(ball(0.25), 0.25), (cuboid([0.25; 3].into()), 0.25)] {
+    for (shape, reach) in [(ball(0.25), 0.25), (cuboid([0.25; 3]), 0.25)] {
         let body = Body {
             velocity: DVec3::new(3.0, 0.0, 0.0),
             ..at(&shape, DVec3::new(0.0, 0.5 + reach - 0.05, 0.1))
         };
         let mut world = world([immovable(at(&corner, DVec3::ZERO)), body]);
-        add_gravity(&mut world);
+        add_gravity(&mut world, WEIGHT);
         assert_held(&mut world, 120, "along the floor");
         assert!(
             world.position(1).x < 1.75 - 0.5 * reach,

@@ -1,21 +1,12 @@
 //! Bodies in overlap are moved out of each other, and nothing overlaps afterwards.
 
-use sim_core::{Body, Collision, DVec3, SeparateError, Settings, Shape, World};
+use kit::bodies::{at, immovable};
+use kit::random::Random;
+use kit::shapes::{ball, cow, cuboid, half_space};
+use kit::worlds::{add_gravity, meeting, world, world_of};
+use sim_core::{Body, Collision, DVec3, SeparateError, Settings, World};
 
-use crate::shapes::{
-    Random, add_gravity, at, ball, cow, cube, cuboid, half_space, immovable, world,
-};
-
-/// The pairs that meet in a world as it stands, asked afresh.
-fn meeting(world: &World) -> Vec<(usize, usize)> {
-    let bodies = (0..world.len()).map(|i| Body {
-        shape: world.shape(i).cloned(),
-        position: world.position(i),
-        mass: world.mass(i),
-        ..Body::default()
-    });
-    crate::shapes::world(bodies).overlapping().to_vec()
-}
+use crate::WEIGHT;
 
 fn separated(world: &mut World, what: &str) -> Vec<usize> {
     let velocities: Vec<DVec3> = (0..world.len()).map(|i| world.velocity(i)).collect();
@@ -23,7 +14,7 @@ fn separated(world: &mut World, what: &str) -> Vec<usize> {
     let moved = world
         .separate()
         .unwrap_or_else(|error| panic!("{what}: {error}"));
-    assert_eq!(meeting(world), [], "{what}");
+    assert_eq!(meeting(world, Settings::default()), [], "{what}");
     assert_eq!(world.overlapping(), [], "{what}");
     assert_eq!(world.overlaps(), [], "{what}");
     for i in 0..world.len() {
@@ -41,13 +32,13 @@ fn separated(world: &mut World, what: &str) -> Vec<usize> {
 fn pairs_of_all_shapes_are_moved_out_of_each_other() {
     let shapes = [
         ball(0.5),
-        cube(),
+        cuboid([0.5; 3]),
         cow(),
-        cuboid([0.2, 0.7, 0.4].into()),
+        cuboid([0.2, 0.7, 0.4]),
         ball(0.0),
         half_space(DVec3::new(0.3, 1.0, -0.2)),
     ];
-    let mut random = Random(17);
+    let mut random = Random::xorshift(17, 33);
     for first in &shapes {
         for second in &shapes {
             for _ in 0..4 {
@@ -96,7 +87,7 @@ fn two_share_the_way_by_their_masses() {
 
 #[test]
 fn chains_and_heaps_are_moved_apart() {
-    for shape in [ball(0.5), cube()] {
+    for shape in [ball(0.5), cuboid([0.5; 3])] {
         let floor = immovable(at(&half_space(DVec3::Y), DVec3::ZERO));
         // Each in the next one, and the lowest in the floor.
         let chain = (0..20).map(|k| at(&shape, DVec3::Y * (0.2 + 0.7 * f64::from(k))));
@@ -104,7 +95,7 @@ fn chains_and_heaps_are_moved_apart() {
         assert_eq!(separated(&mut chain, "chain").len(), 20);
         let top = chain.position(20).y;
         assert!((19.5 - 1e-6..20.0).contains(&top), "{top}");
-        let mut random = Random(23);
+        let mut random = Random::xorshift(23, 33);
         let heap = (0..60).map(|_| {
             let place = 1.5 * random.vector() + 1.2 * DVec3::Y;
             Body {
@@ -123,7 +114,7 @@ fn chains_and_heaps_are_moved_apart() {
                 heap.position(body)
             );
         }
-        add_gravity(&mut heap);
+        add_gravity(&mut heap, WEIGHT);
         for _ in 0..30 {
             heap.step().expect("a step");
             assert_eq!(heap.overlapping(), []);
@@ -140,8 +131,8 @@ fn chains_and_heaps_are_moved_apart() {
 #[test]
 fn what_is_moved_out_of_a_floor_lies_on_it() {
     let floor = immovable(at(&half_space(DVec3::Y), DVec3::ZERO));
-    let mut world = world([floor, at(&cube(), DVec3::new(0.0, 0.3, 0.0))]);
-    add_gravity(&mut world);
+    let mut world = world([floor, at(&cuboid([0.5; 3]), DVec3::new(0.0, 0.3, 0.0))]);
+    add_gravity(&mut world, WEIGHT);
     separated(&mut world, "cube in a floor");
     for _ in 0..60 {
         world.step().expect("a step");
@@ -154,8 +145,8 @@ fn what_is_moved_out_of_a_floor_lies_on_it() {
 
 #[test]
 fn what_is_between_two_immovable_bodies_goes_out_aside() {
-    for shape in [ball(0.5), cube()] {
-        let block = cuboid([0.5, 2.0, 2.0].into());
+    for shape in [ball(0.5), cuboid([0.5; 3])] {
+        let block = cuboid([0.5, 2.0, 2.0]);
         let jaws = [-0.9, 0.9].map(|x| immovable(at(&block, DVec3::X * x)));
         let [left, right] = jaws;
         let mut world = world([left, at(&shape, DVec3::new(0.0, 1.6, 0.1)), right]);
@@ -179,7 +170,7 @@ fn what_is_between_two_immovable_bodies_goes_out_aside() {
 fn what_fits_nowhere_is_told_and_nothing_is_moved() {
     let walls = [DVec3::Y, DVec3::NEG_Y].map(|n| immovable(at(&half_space(n), -0.4 * n)));
     let [floor, ceiling] = walls;
-    for shape in [ball(0.5), cube()] {
+    for shape in [ball(0.5), cuboid([0.5; 3])] {
         let bystanders = [5.0, 5.5].map(|x| at(&ball(0.3), DVec3::X * x));
         let [one, other] = bystanders;
         let mut world = world([
@@ -198,7 +189,7 @@ fn what_fits_nowhere_is_told_and_nothing_is_moved() {
         assert_eq!(world.state_hash(), before);
         assert_eq!(world.overlaps().len(), 3);
         // It goes on all the same.
-        add_gravity(&mut world);
+        add_gravity(&mut world, WEIGHT);
         for _ in 0..30 {
             world.step().expect("a step");
         }
@@ -227,21 +218,17 @@ fn all_modes_go_on_from_where_bodies_were_moved_to() {
             collision,
             ..Settings::default()
         };
-        let mut world = World::new(settings).expect("settings");
-        let shapes: [Shape; 3] = [cube(), cow(), ball(0.5)];
-        for (k, shape) in shapes.iter().enumerate() {
-            world
-                .add(Body {
-                    velocity: DVec3::new(-(k as f64), 0.1, 0.0),
-                    ..at(shape, 0.2 * k as f64 * DVec3::X)
-                })
-                .expect("a body");
-        }
+        let shapes = [cuboid([0.5; 3]), cow(), ball(0.5)];
+        let bodies = shapes.iter().enumerate().map(|(k, shape)| Body {
+            velocity: DVec3::new(-(k as f64), 0.1, 0.0),
+            ..at(shape, 0.2 * k as f64 * DVec3::X)
+        });
+        let mut world = world_of(settings, bodies);
         separated(&mut world, "three");
         let energy = world.kinetic_energy();
         for _ in 0..120 {
             world.step().expect("a step");
-            assert_eq!(meeting(&world), []);
+            assert_eq!(meeting(&world, Settings::default()), []);
         }
         assert!((world.kinetic_energy() / energy - 1.0).abs() < 1e-13);
     }

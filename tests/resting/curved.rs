@@ -2,18 +2,16 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use sim_core::{Body, DVec3, Method, Settings, World};
+use kit::shapes::{ball, cube};
+use kit::worlds::{GRAVITY, set_rate};
+use sim_core::{Body, DVec3, World};
 
-use crate::meshes::{fixed, turned};
-use crate::scenes::{GRAVITY, ball, cube, world};
+use crate::meshes::turned;
+use crate::scenes::{fixed, ground, rk4, world};
 
-fn at_rate(name: &str, rate: f64) -> World {
-    let mut world = world(Method::named(name).expect("a method"));
-    let settings = Settings {
-        dt: 1.0 / rate,
-        ..*world.settings()
-    };
-    world.set_settings(settings).expect("settings");
+fn at_rate(rate: f64) -> World {
+    let mut world = world(rk4());
+    set_rate(&mut world, rate);
     world
 }
 
@@ -24,13 +22,9 @@ fn energy(world: &World, body: usize) -> f64 {
 /// A ball on top of a ball, pushed off: the speed along x that it keeps once it has left, m/s, and what
 /// energy it has gained in a step at most and lost in all until then, of `g R`.
 fn leave(rate: f64) -> (f64, f64, f64) {
-    let mut world = at_rate("rk4", rate);
+    let mut world = at_rate(rate);
     let radius = 1.5;
-    let below = Body {
-        restitution: 0.0,
-        ..fixed(&ball(1.0), DVec3::ZERO)
-    };
-    world.add(below).expect("a ball");
+    world.add(fixed(&ball(1.0), DVec3::ZERO)).expect("a ball");
     let rider = Body {
         shape: Some(ball(radius - 1.0)),
         position: radius * DVec3::Y,
@@ -76,15 +70,11 @@ fn a_ball_leaves_a_ball_where_it_must() {
 #[test]
 fn a_ramp_gives_a_body_the_speed_of_its_height() {
     for slope in [0.25_f64, 0.5, 1.0, 2.0] {
-        let mut world = at_rate("rk4", 60.0);
+        let mut world = at_rate(60.0);
         let normal = DVec3::new(slope, 1.0, 0.0).normalize();
         // A slope and a floor, one body each.
         for normal in [normal, DVec3::Y] {
-            let plane = Body {
-                restitution: 0.0,
-                ..fixed(&sim_core::Shape::HalfSpace { normal }, DVec3::ZERO)
-            };
-            world.add(plane).expect("a plane");
+            world.add(ground(normal, DVec3::ZERO)).expect("a plane");
         }
         let height = 1.0;
         let foot = 0.5 * normal / normal.y;
@@ -111,7 +101,7 @@ fn a_ramp_gives_a_body_the_speed_of_its_height() {
 
 /// A bowl of triangles: one outline of a sphere's lower half, for a small ball.
 fn in_bowl(rate: f64, sides: u32) -> World {
-    let mut world = at_rate("rk4", rate);
+    let mut world = at_rate(rate);
     let outline: Vec<[f64; 2]> = (0..=sides / 4)
         .map(|k| {
             let (sin, cos) = (FRAC_PI_2 * f64::from(k) / f64::from(sides / 4)).sin_cos();
@@ -167,7 +157,7 @@ fn balls_circle_in_a_bowl() {
 fn off_an_edge_a_ball_flies_or_rolls_over_it() {
     for rate in [60.0, 1000.0] {
         for (speed, flies) in [(3.0, true), (1.0, false)] {
-            let mut world = at_rate("rk4", rate);
+            let mut world = at_rate(rate);
             world.add(fixed(&cube(), -0.5 * DVec3::Y)).expect("a cube");
             let radius = 0.25;
             let rider = Body {

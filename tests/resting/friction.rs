@@ -1,12 +1,10 @@
 //! Coulomb friction of bodies that translate.
 
+use kit::shapes::{ball, cube};
+use kit::worlds::{GRAVITY, set_rate, step};
 use sim_core::{Body, DVec3, METHODS, Method, World};
 
-use crate::scenes::{GRAVITY, ball, cube, ground, step, world};
-
-fn rk4() -> &'static Method {
-    Method::named("rk4").expect("a method")
-}
+use crate::scenes::{ground, rk4, world};
 
 /// A floor and a body on it, both with a coefficient of friction.
 fn on_floor(method: &'static Method, friction: f64, body: Body) -> World {
@@ -70,12 +68,8 @@ fn first_order_methods_err_in_proportion_to_the_step() {
                 ..Body::default()
             };
             let mut world = on_floor(method, 0.4, slider);
-            let settings = sim_core::Settings {
-                dt: 1.0 / rate,
-                ..*world.settings()
-            };
-            world.set_settings(settings).expect("settings");
-            step(&mut world, (2.0 * rate) as u32);
+            set_rate(&mut world, rate);
+            step(&mut world, (2.0 * rate) as u64);
             (world.position(1).x - 25.0 / (0.8 * GRAVITY)).abs()
         };
         let ratio = error(60.0) / error(240.0);
@@ -133,11 +127,7 @@ fn sliding_across_a_slope_converges_to_second_order() {
         let cos = 1.0 / (1.0 + slope * slope).sqrt();
         let normal = DVec3::new(-slope * cos, cos, 0.0);
         let mut world = world(rk4());
-        let settings = sim_core::Settings {
-            dt: 1.0 / rate,
-            ..*world.settings()
-        };
-        world.set_settings(settings).expect("settings");
+        set_rate(&mut world, rate);
         let ramp = Body {
             friction: 0.3,
             ..ground(normal, DVec3::ZERO)
@@ -152,7 +142,7 @@ fn sliding_across_a_slope_converges_to_second_order() {
             ..Body::default()
         };
         world.add(stone).expect("a stone");
-        step(&mut world, rate as u32);
+        step(&mut world, rate as u64);
         world.position(1)
     };
     let exact = end(3840.0);
@@ -286,12 +276,8 @@ fn what_is_pushed_moves_by_what_friction_leaves() {
                     ..Body::default()
                 };
                 let mut world = on_floor(rk4(), friction, pushed);
-                let settings = sim_core::Settings {
-                    dt: 1.0 / rate,
-                    ..*world.settings()
-                };
-                world.set_settings(settings).expect("settings");
-                step(&mut world, (seconds * rate) as u32);
+                set_rate(&mut world, rate);
+                step(&mut world, (seconds * rate) as u64);
                 let way = 0.5 * friction * GRAVITY * excess.max(0.0) * seconds * seconds;
                 let error = (world.position(1).x - way).abs();
                 assert!(

@@ -1,12 +1,11 @@
 //! Heaps and stacks settle, stand, overlap nowhere and gain no energy.
 
-use sim_core::{Body, DVec3, Method, World};
+use kit::random::Random;
+use kit::shapes::{ball, cube};
+use kit::worlds::{GRAVITY, set_rate, step};
+use sim_core::{Body, DVec3, World};
 
-use crate::scenes::{GRAVITY, ball, cube, ground, step, world};
-
-fn rk4() -> &'static Method {
-    Method::named("rk4").expect("a method")
-}
+use crate::scenes::{ground, rk4, world};
 
 fn energy(world: &World) -> f64 {
     let movable = (0..world.len()).filter(|&body| world.mass(body).is_finite());
@@ -36,13 +35,8 @@ fn bin(balls: usize, restitution: f64, friction: f64, seed: u64) -> World {
         };
         world.add(wall).expect("a wall");
     }
-    let mut state = seed;
-    let mut random = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
+    let mut random = Random::linear(seed);
+    let mut random = || random.unit() - 0.5;
     for i in 0..balls {
         let side = |bit: usize| 0.28 * ((i >> bit & 1) as f64 * 2.0 - 1.0);
         let level = 0.3 + 0.55 * (i / 4) as f64;
@@ -179,11 +173,7 @@ fn what_bundling_costs_shrinks_with_the_step() {
     let mut figures = Vec::new();
     for rate in [60.0, 120.0, 240.0, 480.0] {
         let mut world = bin(12, 0.0, 0.0, 7);
-        let settings = sim_core::Settings {
-            dt: 1.0 / rate,
-            ..*world.settings()
-        };
-        world.set_settings(settings).expect("settings");
+        set_rate(&mut world, rate);
         let (mut distance, mut energy, mut steps) = (0.0, 0.0, 0);
         for _ in 0..(3.0 * rate) as u32 {
             step(&mut world, 1);

@@ -1,11 +1,13 @@
 //! Wedges, cones and funnels: what is put into them settles, and then costs nothing.
 
+use kit::meshes::{self, builtin};
+use kit::random::Random;
+use kit::shapes::{ball, cube, mesh, scaled};
 use sim_core::collide::{ball_meets, tree};
-use sim_core::{Body, Bvh, DQuat, DVec3, Shape, Vec3, World};
-use std::sync::Arc;
+use sim_core::{Body, Bvh, DVec3, Shape, Vec3, World};
 
-use crate::meshes::{Random, fixed, mesh, turned};
-use crate::scenes::{ball, cube, world};
+use crate::meshes::turned;
+use crate::scenes::{fixed, rk4, world};
 
 /// A groove along z with walls of a slope, open at its ends, deep enough for what is put in.
 fn wedge(slope: f32) -> Shape {
@@ -31,11 +33,10 @@ fn funnel(sides: u32, rings: u32, slope: f64) -> Shape {
     turned(&outline, sides)
 }
 
-fn cow() -> Shape {
-    let cow = scene::mesh_file::builtin("cow.obj").expect("built in");
+fn small_cow() -> Shape {
+    let cow = builtin("cow.obj");
     let size = cow.bounds().half_extent().max_element();
-    let cow = cow.transformed(DQuat::IDENTITY, DVec3::splat(0.4 / size));
-    Shape::Mesh(Arc::new(cow.expect("a cow")))
+    Shape::Mesh(meshes::scaled(&cow, DVec3::splat(0.4 / size)))
 }
 
 /// Steps until a body has come to rest, with the exact test at each; and then it stays, to the bit.
@@ -88,7 +89,7 @@ fn settle(world: &mut World, seconds: f64) -> Result<(), String> {
 }
 
 fn put_into(hollow: &Shape, shape: &Shape, at: DVec3, restitution: f64, friction: f64) -> World {
-    let mut world = world(sim_core::Method::named("rk4").expect("a method"));
+    let mut world = world(rk4());
     let hollow = Body {
         restitution,
         friction,
@@ -110,8 +111,12 @@ fn put_into(hollow: &Shape, shape: &Shape, at: DVec3, restitution: f64, friction
 /// settles. Along the groove nothing stops it.
 #[test]
 fn bodies_settle_in_wedges_and_funnels() {
-    let shapes = [("ball", ball(0.3)), ("cube", cube_of(0.5)), ("cow", cow())];
-    let mut random = Random(3);
+    let shapes = [
+        ("ball", ball(0.3)),
+        ("cube", scaled(&cube(), DVec3::splat(0.5))),
+        ("cow", small_cow()),
+    ];
+    let mut random = Random::splitmix(3);
     let mut wrong = Vec::new();
     let mut count = 0;
     let hollows = [
@@ -147,8 +152,4 @@ fn bodies_settle_in_wedges_and_funnels() {
         wrong.len(),
         wrong.join("\n")
     );
-}
-
-fn cube_of(side: f64) -> Shape {
-    crate::meshes::scaled(&cube(), DVec3::splat(side))
 }

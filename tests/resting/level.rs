@@ -1,9 +1,12 @@
 //! Slides over surfaces that are level, whatever triangles and bodies they are made of.
 
-use sim_core::{Body, DVec3, METHODS, Method, Settings, Shape, Vec3, World};
+use kit::random::Random;
+use kit::shapes::{ball, cube, mesh, scaled};
+use kit::worlds::{GRAVITY, step};
+use sim_core::{Body, DVec3, METHODS, Settings, Shape, Vec3, World};
 
-use crate::meshes::{Random, fan, fixed, grid, mesh, scaled};
-use crate::scenes::{GRAVITY, ball, cube, step, world};
+use crate::meshes::{fan, grid};
+use crate::scenes::{fixed, rk4, world};
 
 /// What slides, with how far it reaches down.
 fn sliders(size: f64) -> [(&'static str, Shape, f64); 3] {
@@ -133,7 +136,6 @@ fn seams_of_tiles_stop_nothing() {
 /// Through the vertex that all triangles share, past it, and along an edge.
 #[test]
 fn vertices_of_many_triangles_stop_nothing() {
-    let rk4 = Method::named("rk4").expect("a method");
     let mut tally = Tally::default();
     for triangles in [3, 64, 1000] {
         for scale in [1e-6, 1.0, 1e6] {
@@ -145,7 +147,7 @@ fn vertices_of_many_triangles_stop_nothing() {
                     (0.01, DVec3::X),
                     (-0.125, DVec3::X),
                 ] {
-                    let mut world = world(rk4);
+                    let mut world = world(rk4());
                     world.add(fixed(&disc, DVec3::ZERO)).expect("a disc");
                     let at = scale * (aside * DVec3::Z - 0.5 * way) + reach * DVec3::Y;
                     let way = scale * way;
@@ -162,8 +164,7 @@ fn vertices_of_many_triangles_stop_nothing() {
 /// At places and sizes that are no short numbers.
 #[test]
 fn floors_of_many_triangles_stop_nothing() {
-    let rk4 = Method::named("rk4").expect("a method");
-    let mut random = Random(5);
+    let mut random = Random::splitmix(5);
     let mut tally = Tally::default();
     let kinds = [((100, 100), [3.0, 3.0]), ((1, 10_000), [3.0, 3.0])];
     for scale in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
@@ -171,7 +172,7 @@ fn floors_of_many_triangles_stop_nothing() {
             let floor = grid(cells, size.map(|size| size * scale), &mut random);
             for (name, shape, reach) in sliders(0.1 * scale) {
                 for way in [DVec3::new(0.7, 0.0, 0.3), DVec3::new(-0.4, 0.0, 1.0)] {
-                    let mut world = world(rk4);
+                    let mut world = world(rk4());
                     let far = scale * DVec3::new(0.1, 0.3, 1.7);
                     world.add(fixed(&floor, far)).expect("a floor");
                     let at = far + reach * DVec3::Y - 0.5 * scale * way;
@@ -221,7 +222,7 @@ fn a_ledge_is_a_wall() {
 /// are those of falls from the height of a tile.
 #[test]
 fn ledges_of_rounding_are_none() {
-    let mut random = Random(9);
+    let mut random = Random::splitmix(9);
     let mut tally = Tally::default();
     for scale in [0.1, 1.0, 1e6] {
         let unit = (GRAVITY * scale).sqrt();
@@ -231,7 +232,7 @@ fn ledges_of_rounding_are_none() {
                 if name == "top" && speed < 0.1 {
                     continue;
                 }
-                let mut world = world(Method::named("rk4").expect("a method"));
+                let mut world = world(rk4());
                 let settings = Settings {
                     dt: 0.05 * scale / unit,
                     ..*world.settings()

@@ -1,38 +1,10 @@
 //! Floors and hollows made of triangles.
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
-use sim_core::{Body, DQuat, DVec3, Mesh, Shape, Vec3};
-
-/// SplitMix64: numbers that look random and are the same on every run.
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ mixed >> 31
-    }
-
-    pub(crate) fn from(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
-pub(crate) fn mesh(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Shape {
-    Shape::Mesh(Arc::new(Mesh::new(vertices, triangles).expect("a mesh")))
-}
-
-/// A mesh, stretched.
-pub(crate) fn scaled(shape: &Shape, scale: DVec3) -> Shape {
-    let Shape::Mesh(mesh) = shape else {
-        panic!("a mesh");
-    };
-    let mesh = mesh.transformed(DQuat::IDENTITY, scale);
-    Shape::Mesh(Arc::new(mesh.expect("a mesh")))
-}
+use kit::random::Random;
+use kit::shapes::mesh;
+use sim_core::{DVec3, Shape, Vec3};
 
 /// A level grid of cells in the plane y = 0, about its origin, with its inner vertices put aside by
 /// part of a cell, and with its diagonals either way.
@@ -107,15 +79,4 @@ pub(crate) fn turned(outline: &[[f64; 2]], sides: u32) -> Shape {
         }
     }
     mesh(vertices, triangles)
-}
-
-/// A body that nothing moves.
-pub(crate) fn fixed(shape: &Shape, position: DVec3) -> Body {
-    Body {
-        shape: Some(shape.clone()),
-        position,
-        mass: f64::INFINITY,
-        restitution: 0.0,
-        ..Body::default()
-    }
 }

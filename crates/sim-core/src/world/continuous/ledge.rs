@@ -107,27 +107,20 @@ impl World {
         time: f64,
         restarted: &mut Vec<usize>,
     ) -> Result<bool, (usize, Cause)> {
-        let &Slide {
-            body,
-            ledge,
-            up,
-            along,
-            most,
-            ..
-        } = slide;
-        let Some(forward) = along.try_normalize() else {
+        let Some(forward) = slide.along.try_normalize() else {
             return Ok(false);
         };
-        let pair = (body.min(ledge), body.max(ledge));
+        let (up, most) = (slide.up, slide.most);
+        let pair = (slide.body.min(slide.ledge), slide.body.max(slide.ledge));
         let hover = self.hover_gap(pair.0, pair.1);
         let Some(forms) = self.form(pair.0).zip(self.form(pair.1)) else {
             return Ok(false);
         };
-        let sign = if body == pair.1 { 1.0 } else { -1.0 };
+        let sign = if slide.body == pair.1 { 1.0 } else { -1.0 };
         let start = &self.continuous.start;
         let offset = start.position[pair.1] - start.position[pair.0];
         // As far as until what is round is over it.
-        let size = self.extent(body).half;
+        let size = self.extent(slide.body).half;
         let far = 4.0 * libm::sqrt(most * size) + 4.0 * most + 64.0 * hover;
         let is_free = |lift: f64| {
             let from = offset + sign * lift * up;
@@ -175,24 +168,19 @@ impl World {
         time: f64,
         restarted: &mut Vec<usize>,
     ) -> Result<bool, (usize, Cause)> {
-        let &Slide {
-            body,
-            ledge,
-            up,
-            along,
-            ..
-        } = slide;
+        let (slider, up) = (slide.body, slide.up);
         let mut visited = Visited::default();
         visited.begin(self.len());
-        let Some(island) = self.island_of(body, &mut visited) else {
+        let Some(island) = self.island_of(slider, &mut visited) else {
             return Ok(false);
         };
         let applied = &self.continuous.applied_acceleration;
         let weight = |&body: &usize| -self.mass[body] * applied[body].dot(up);
         let work = lift * island.bodies.iter().map(weight).sum::<f64>();
-        let left = along.length_squared() - 2.0 * work.max(0.0) / self.mass[body];
-        let climbs = self.continuous.climbs.get(body).copied().unwrap_or(0);
-        if visited.has(ledge) || left <= 0.0 || climbs == MOST_CLIMBS {
+        let squared = slide.along.length_squared();
+        let left = squared - 2.0 * work.max(0.0) / self.mass[slider];
+        let climbs = self.continuous.climbs.get(slider).copied().unwrap_or(0);
+        if visited.has(slide.ledge) || left <= 0.0 || climbs == MOST_CLIMBS {
             return Ok(false);
         }
         for &body in &island.bodies {
@@ -228,9 +216,9 @@ impl World {
         }
         let bodies = self.len();
         self.continuous.climbs.resize(bodies, 0);
-        self.continuous.climbs[body] += 1;
-        let slower = libm::sqrt(left / along.length_squared());
-        self.continuous.start.velocity[body] += (slower - 1.0) * along;
+        self.continuous.climbs[slider] += 1;
+        let slower = libm::sqrt(left / squared);
+        self.continuous.start.velocity[slider] += (slower - 1.0) * slide.along;
         self.hand_over(&slide.constraint)?;
         Ok(true)
     }

@@ -2,34 +2,14 @@
 //! them by a fixed seed. `COWBELL_FUZZ_RUNS` sets how many there are of each case, `COWBELL_FUZZ_SEED`
 //! the seed, and `COWBELL_FUZZ_CASE` the only one.
 
-mod cases;
-#[path = "../oracle/mod.rs"]
-mod oracle;
-#[path = "../rational/mod.rs"]
-mod rational;
-
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
-use cases::CASES;
+use kit::cases::CASES;
+use kit::random::Random;
 
 const RUNS: u64 = 2_000;
-
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11
-    }
-
-    fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound.max(1) as u64) as usize
-    }
-}
 
 fn setting(name: &str, usual: u64) -> u64 {
     let given = std::env::var(name).ok();
@@ -80,7 +60,7 @@ fn mutate(random: &mut Random, from: &[u8], other: &[u8]) -> Vec<u8> {
             4 => bytes.truncate(place.max(1)),
             _ => {
                 let count = 1 + random.below(8);
-                let fresh: Vec<u8> = (0..count).map(|_| random.next() as u8).collect();
+                let fresh: Vec<u8> = (0..count).map(|_| random.bits() as u8).collect();
                 bytes.splice(place..end, fresh);
             }
         }
@@ -92,7 +72,7 @@ fn mutate(random: &mut Random, from: &[u8], other: &[u8]) -> Vec<u8> {
 /// Bytes by chance, for cases that read them as numbers.
 fn fresh(random: &mut Random) -> Vec<u8> {
     (0..24 + random.below(160))
-        .map(|_| random.next() as u8)
+        .map(|_| random.bits() as u8)
         .collect()
 }
 
@@ -107,7 +87,7 @@ fn nothing_that_is_tried_breaks_what_must_hold() {
             continue;
         }
         let corpus = corpus(name);
-        let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+        let mut random = Random::scrambled(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
         let known = corpus.len() as u64;
         for run in 0..runs.max(known) {
             let input = match corpus.get(run as usize) {

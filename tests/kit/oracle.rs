@@ -44,7 +44,7 @@ impl Interval {
 }
 
 /// Whether the closed segment `pq` and the closed triangle share a point.
-pub(crate) fn segment_meets_triangle(p: DVec3, q: DVec3, corners: [DVec3; 3]) -> bool {
+pub fn segment_meets_triangle(p: DVec3, q: DVec3, corners: [DVec3; 3]) -> bool {
     let (p, q) = (rational(p), rational(q));
     let corners = corners.map(rational);
     let [a, b, c] = &corners;
@@ -69,6 +69,14 @@ pub(crate) fn segment_meets_triangle(p: DVec3, q: DVec3, corners: [DVec3; 3]) ->
         left.keep_positive(&at_p, &at_q);
     }
     !left.is_empty()
+}
+
+/// Whether two closed triangles share a point: an edge of one meets the other.
+pub fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
+    let edge_meets = |s: [DVec3; 3], t: [DVec3; 3]| {
+        (0..3).any(|i| segment_meets_triangle(s[i], s[(i + 1) % 3], t))
+    };
+    edge_meets(s, t) || edge_meets(t, s)
 }
 
 /// Whether two closed segments, or points, share a point.

@@ -2,11 +2,12 @@
 
 /// Pleiades: seven bodies of mass 1 to 7 in a plane under their own gravitation with `G = 1`
 /// (Hairer, Nørsett, Wanner 1993, Solving Ordinary Differential Equations I, sec. II.10, p. 245).
-pub(crate) mod pleiades {
+pub mod pleiades {
     /// Numbers of a state: x, y, x', y' of seven bodies each.
-    pub(crate) const N: usize = 28;
+    pub const N: usize = 28;
 
-    pub(crate) const START: [f64; N] = [
+    /// The state at t = 0.
+    pub const START: [f64; N] = [
         3.0, 3.0, -1.0, -3.0, 2.0, -2.0, 2.0, //
         3.0, -3.0, 2.0, 0.0, 0.0, -4.0, 4.0, //
         0.0, 0.0, 0.0, 0.0, 0.0, 1.75, -1.5, //
@@ -14,7 +15,7 @@ pub(crate) mod pleiades {
     ];
 
     /// Positions at t = 3 to the digits printed in the book's test set.
-    pub(crate) const END: [f64; 14] = [
+    pub const END: [f64; 14] = [
         0.3706139143970502,
         3.237284092057233,
         -3.222559032418324,
@@ -31,7 +32,8 @@ pub(crate) mod pleiades {
         1.09144924042898,
     ];
 
-    pub(crate) fn slope(y: &[f64; N], dy: &mut [f64; N]) {
+    /// The derivative of a state.
+    pub fn slope(y: &[f64; N], dy: &mut [f64; N]) {
         let (position, velocity) = y.split_at(14);
         let (x, z) = position.split_at(7);
         let (motion, pull) = dy.split_at_mut(14);
@@ -53,8 +55,9 @@ pub(crate) mod pleiades {
 }
 
 /// A planet around a sun with `G M = 1` and half axis 1, from its perihelion: one orbit takes 2π.
-pub(crate) mod kepler {
-    pub(crate) fn start(eccentricity: f64) -> [f64; 4] {
+pub mod kepler {
+    /// The state x, y, x', y' there.
+    pub fn start(eccentricity: f64) -> [f64; 4] {
         let e = eccentricity;
         [1.0 - e, 0.0, 0.0, ((1.0 + e) / (1.0 - e)).sqrt()]
     }

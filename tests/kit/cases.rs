@@ -11,9 +11,10 @@ use sim_core::{Body, Bvh, Collision, DVec3, METHODS, Mesh, Settings, Shape, Vec3
 use crate::oracle::segment_meets_triangle;
 
 /// A name and what is done with bytes.
-pub(crate) type Case = (&'static str, fn(&[u8]));
+pub type Case = (&'static str, fn(&[u8]));
 
-pub(crate) const CASES: [Case; 8] = [
+/// All of them.
+pub const CASES: [Case; 8] = [
     ("obj", |bytes| mesh("obj", bytes)),
     ("collada", |bytes| mesh("dae", bytes)),
     ("stl", |bytes| mesh("stl", bytes)),
@@ -25,8 +26,7 @@ pub(crate) const CASES: [Case; 8] = [
 ];
 
 /// Tries bytes in the case of a name.
-#[allow(dead_code)]
-pub(crate) fn try_case(name: &str, bytes: &[u8]) {
+pub fn try_case(name: &str, bytes: &[u8]) {
     let case = CASES.into_iter().find(|case| case.0 == name);
     case.expect("a case of that name").1(bytes);
 }

@@ -1,0 +1,19 @@
+//! Naive and BVH, at every level of vectors, agree.
+
+use sim_core::collide::{Level, Placement, naive, tree};
+use sim_core::{Bvh, Mesh};
+
+/// Panics unless both ways give the same answer and the same hits, to the bit; tells whether meshes meet.
+#[track_caller]
+pub fn assert_same(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> bool {
+    let at = at.into();
+    let (a, b) = (Bvh::build(first), Bvh::build(second));
+    let hits = naive::hits(first, second, at);
+    let meet = !hits.is_empty();
+    assert_eq!(meet, naive::intersect(first, second, at));
+    for level in Level::ALL {
+        assert_eq!(hits, tree::hits_at(level, &a, &b, at));
+        assert_eq!(meet, tree::intersect_at(level, &a, &b, at));
+    }
+    meet
+}

@@ -1,0 +1,33 @@
+//! Bodies.
+
+use sim_core::{Body, DVec3, Shape};
+
+use crate::shapes::half_space;
+
+/// A body of a shape at a place.
+pub fn at(shape: &Shape, position: DVec3) -> Body {
+    body(shape, position, DVec3::ZERO)
+}
+
+/// A body of a shape at a place, on its way.
+pub fn body(shape: &Shape, position: DVec3, velocity: DVec3) -> Body {
+    Body {
+        shape: Some(shape.clone()),
+        position,
+        velocity,
+        ..Body::default()
+    }
+}
+
+/// The same body, which nothing moves.
+pub fn immovable(body: Body) -> Body {
+    Body {
+        mass: f64::INFINITY,
+        ..body
+    }
+}
+
+/// A half-space that nothing moves, below a plane through a place, perhaps with a velocity of its own.
+pub fn wall(normal: DVec3, position: DVec3, velocity: DVec3) -> Body {
+    immovable(body(&half_space(normal), position, velocity))
+}

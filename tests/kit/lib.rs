@@ -1,0 +1,13 @@
+//! What the tests of this package share: numbers, shapes, bodies, worlds, and oracles.
+
+pub mod agree;
+pub mod bodies;
+pub mod cases;
+pub mod inputs;
+pub mod meshes;
+pub mod oracle;
+pub mod problems;
+pub mod random;
+pub mod rational;
+pub mod shapes;
+pub mod worlds;
