@@ -11,7 +11,10 @@ use alloc::{collections::BTreeMap, vec::Vec};
 use glam::DVec3;
 
 use super::{World, penetration::compass};
-use crate::{Shape, collide::reach};
+use crate::{
+    Shape,
+    collide::{first_contact, reach, snap},
+};
 
 /// Rounds in which planes are added, at most.
 const ROUNDS: usize = 64;
@@ -101,10 +104,16 @@ impl World {
     fn places_together(&self, at: &[DVec3]) -> Option<Vec<DVec3>> {
         let mut place = at.to_vec();
         let mut planes: BTreeMap<(usize, usize), Plane> = BTreeMap::new();
+        let mut found = None;
         for _ in 0..ROUNDS {
             let meeting = self.meeting_at(&place);
             if meeting.is_empty() {
-                return Some(place);
+                let is_tight = !self.tighten(planes.values_mut(), &place);
+                found = Some(place);
+                if is_tight {
+                    break;
+                }
+                place = at.to_vec();
             }
             for bodies in meeting {
                 let (i, j) = bodies;
@@ -121,10 +130,33 @@ impl World {
             }
             let mut all: Vec<&mut Plane> = planes.values_mut().collect();
             if !self.push_beyond(&mut all, &mut place) {
-                return None;
+                break;
             }
         }
-        None
+        found
+    }
+
+    /// Turns planes to where those that they have pushed would touch now, and tells whether some do not: what is
+    /// round has been moved along a plane as well.
+    fn tighten<'a>(&self, planes: impl Iterator<Item = &'a mut Plane>, place: &[DVec3]) -> bool {
+        let mut is_wide = false;
+        for plane in planes.filter(|plane| plane.pushed > 0.0) {
+            let ((i, j), before) = (plane.bodies, plane.normal);
+            let (offset, hover) = (place[j] - place[i], self.hover_gap(i, j));
+            let length = offset.length() + hover;
+            let Some((first, second)) = self.form(i).zip(self.form(j)) else {
+                continue;
+            };
+            let way = -length * before;
+            if let Some(contact) = first_contact(first, second, snap(offset), snap(way))
+                && contact.time * length > 8.0 * hover
+            {
+                plane.normal = contact.normal;
+                plane.level = contact.normal.dot(offset + contact.time * way) + hover;
+                is_wide = true;
+            }
+        }
+        is_wide
     }
 
     /// Moves bodies to the far sides of planes, by the least in the norm of masses (Hildreth 1957, "A

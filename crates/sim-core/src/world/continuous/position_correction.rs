@@ -234,9 +234,10 @@ impl World {
                 *room = if free < 1.0 { 0.5 * free } else { 1.0 };
             }
         }
-        let (first, _) = shares(self.is_movable(i), self.is_movable(j));
-        let second = (1.0 - room[0].min(first)).min(room[1]);
-        let first = (1.0 - second).min(room[0]);
+        let share = shares(self.is_movable(i), self.is_movable(j));
+        let lacking = ((share.0 - room[0]).max(0.0), (share.1 - room[1]).max(0.0));
+        let first = (share.0 + lacking.1).min(room[0]);
+        let second = (share.1 + lacking.0).min(room[1]);
         let position = &mut self.continuous.start.position;
         position[i] -= first * by;
         position[j] += second * by;
