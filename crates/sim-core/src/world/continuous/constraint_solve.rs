@@ -551,7 +551,7 @@ impl World {
             if load <= 0.0 {
                 continue;
             }
-            match self.course_below(&constraint, motion, length, load) {
+            match self.course_below(&constraint, motion, (length, time == 0.0), load) {
                 Course::Flat => {}
                 Course::Receding(recession) => {
                     solution.recession[k] += recession;

@@ -235,12 +235,12 @@ impl World {
     }
 
     /// How the surface of a contact goes on below a body that moves over it from an offset on with a
-    /// velocity and an acceleration, for a time, while a load presses it down.
+    /// velocity and an acceleration, for a time, from the start of the step or not, while a load presses it down.
     pub(super) fn course_below(
         &self,
         constraint: &ContactConstraint,
         (offset, velocity, acceleration): (DVec3, DVec3, DVec3),
-        length: f64,
+        (length, is_at_start): (f64, bool),
         load: f64,
     ) -> Course {
         let ((i, j), normal) = (constraint.bodies, constraint.normal);
@@ -280,9 +280,10 @@ impl World {
         }
         // What turns all the time is seen to have turned after this.
         let soon = (4.0 * turn * radius / way).clamp(1e-5, 0.0625) * length;
-        // What is round has to turn by more than rounding.
-        let soon = if radius > 0.0 { soon } else { 1e-6 * soon };
-        let (mut time, mut now) = (soon, below(soon));
+        // What is round has to turn by more than rounding; what goes on after an event is not asked at once.
+        let next = if radius > 0.0 { soon } else { 1e-6 * soon };
+        let first = if is_at_start { next } else { soon };
+        let (mut time, mut now) = (first, below(first));
         for _ in 0..MAX_FEATURES {
             let Below::Flat(surface) = now else { break };
             // Where what touches leaves what it touches, another feature may go on in the plane.
@@ -295,7 +296,7 @@ impl World {
                 break;
             };
             let end = time + after;
-            time = end + soon;
+            time = end + next;
             if time >= length {
                 return Course::Flat;
             }
