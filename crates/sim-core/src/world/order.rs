@@ -62,9 +62,10 @@ pub(super) fn of_vector(vector: DVec3) -> [i64; 3] {
     vector.to_array().map(ordinal)
 }
 
-/// A number that is greater where another number is, as `f64::total_cmp` has it.
+/// A number that is greater where another number is, as `f64::total_cmp` has it, but for the sign of zero, which
+/// an order of bodies may leave either way.
 pub(super) fn ordinal(number: f64) -> i64 {
-    let bits = number.to_bits() as i64;
+    let bits = (number + 0.0).to_bits() as i64;
     bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
@@ -74,8 +75,10 @@ mod tests {
 
     #[test]
     fn keys_have_the_order_of_numbers() {
-        let mut numbers = [0.0, 1.0, -1.0, 1e-310, 1e300, f64::INFINITY].to_vec();
+        assert_eq!(ordinal(-0.0), ordinal(0.0));
+        let mut numbers = [1.0, 1e-310, 1e300, f64::INFINITY].to_vec();
         numbers.extend(numbers.clone().iter().map(|x| -x));
+        numbers.push(0.0);
         for &one in &numbers {
             for &other in &numbers {
                 let order = ordinal(one).cmp(&ordinal(other));
