@@ -54,9 +54,9 @@ impl World {
             for &other in &partners {
                 let bodies = (body.min(other), body.max(other));
                 // Up from what bears it.
-                let normal = match (body == j) == (body == bodies.1) {
-                    true => ended.normal,
-                    false => -ended.normal,
+                let up = match (body == j) == (body == bodies.1) {
+                    true => 1.0,
+                    false => -1.0,
                 };
                 if bodies == ended.bodies || !self.may_collide(bodies.0, bodies.1) {
                     continue;
@@ -65,7 +65,8 @@ impl World {
                 self.need_bvh(other);
                 let level = ContactConstraint {
                     bodies,
-                    normal,
+                    normal: up * ended.normal,
+                    friction: up * ended.friction,
                     ..*ended
                 };
                 let time = self.continuous.since[body];
