@@ -261,7 +261,11 @@ impl World {
                 .continuous
                 .broad
                 .each_partner(body, |other| partners.push(other)),
-            false => partners.extend(self.solid.iter().filter(|&&other| other != body)),
+            // Where bodies have just been placed, those that it touches.
+            false => partners.extend(self.contacts.of_body(body).iter().map(|&index| {
+                let (i, j) = self.contacts.all()[index as usize].bodies;
+                i + j - body
+            })),
         }
         let mut free = Ok(1.0_f64);
         for &other in &partners {
