@@ -1,7 +1,7 @@
 //! Gallery scenes against closed forms.
 
 use scene::Scene;
-use sim_core::{Collision, DVec3, METHODS, Method, World};
+use sim_core::{Collision, DVec3, METHODS, Method, Settings, World};
 
 /// How far each method's height is from `v t - t²/2` under a constant acceleration of -1 m/s², in
 /// units of `t dt / 2`.
@@ -329,6 +329,34 @@ fn body(scene: &Scene, name: &str) -> usize {
 }
 
 const GRAVITY: f64 = 9.81;
+
+/// Bricks that land among others were lifted into these, and thrown back to where the step began.
+#[test]
+fn bricks_without_friction_gain_nothing_at_any_rate() {
+    for rate in [120.0, 480.0] {
+        let mut world = Scene::load("wall")
+            .expect("a scene")
+            .world()
+            .expect("a world");
+        let settings = Settings {
+            dt: 1.0 / rate,
+            ..*world.settings()
+        };
+        world.set_settings(settings).expect("settings");
+        for body in 0..world.len() {
+            world.set_friction(body, 0.0).expect("a friction");
+        }
+        let energy = |world: &World| world.kinetic_energy() + world.potential_energy();
+        let start = energy(&world);
+        let mut before = start;
+        for step in 0..(2.0 * rate) as u32 {
+            world.step().expect("a step");
+            let gained = energy(&world) - before;
+            assert!(gained <= 1e-12 * start, "{rate} Hz, {step}: {gained:e} J");
+            before += gained;
+        }
+    }
+}
 
 /// Steps a gallery scene under gravity in which only friction and impacts change the energy.
 fn settle(name: &str, steps: u32) -> (Scene, World) {
