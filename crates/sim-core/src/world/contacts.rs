@@ -28,7 +28,8 @@ pub struct RestingContact {
 ///
 /// Where bodies come to rest on each other again and again within a step, all that they lie with is
 /// solved at once: contacts stop closing before their gaps are closed, and flights of less than a step
-/// are none. Distances shrink with the step, by a factor of 10 to 70 from 60 to 960 Hz in the heaps of the gallery.
+/// are none. Distances shrink with the step: from 60 to 960 Hz by a factor of 12 to 70 in `wall`, `funnel` and `bin`
+/// of the gallery (example `heap_energy` of the crate `scene`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Bundled {
