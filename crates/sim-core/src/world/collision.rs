@@ -36,7 +36,7 @@ impl World {
     /// Whether two bodies with shapes can have an impact: not if nothing moves either, nor if they
     /// began in overlap and have not parted since.
     pub(super) fn may_collide(&self, i: usize, j: usize) -> bool {
-        let is_movable = self.mass[i].is_finite() || self.mass[j].is_finite();
+        let is_movable = self.bodies.is_movable(i) || self.bodies.is_movable(j);
         let pair = (i.min(j), i.max(j));
         is_movable && self.overlapping.binary_search(&pair).is_err()
     }
@@ -48,7 +48,7 @@ impl World {
         let known = self.overlapping();
         near.retain(|&(i, j)| {
             let offset = self.current.position[j] - self.current.position[i];
-            known.binary_search(&(i, j)).is_err() && self.meet_at(i, j, offset)
+            known.binary_search(&(i, j)).is_err() && self.bodies.meet_at(i, j, offset)
         });
         near
     }
@@ -57,11 +57,11 @@ impl World {
     pub(super) fn meet(&self, i: usize, j: usize) -> bool {
         let offset = self.current.position[j] - self.current.position[i];
         let meshes = match self.settings.collision {
-            Collision::Naive => self.mesh(i).zip(self.mesh(j)),
+            Collision::Naive => self.bodies.mesh(i).zip(self.bodies.mesh(j)),
             Collision::Bvh | Collision::Continuous => None,
         };
         let Some((first, second)) = meshes else {
-            return self.meet_at(i, j, offset);
+            return self.bodies.meet_at(i, j, offset);
         };
         if !first.bounds().meets(&second.bounds(), snap(offset)) {
             return false;
@@ -70,25 +70,6 @@ impl World {
             true => naive::intersect(second, first, -offset),
             false => naive::intersect(first, second, offset),
         }
-    }
-
-    /// Whether two bodies meet, through trees, with the second one at `offset` from the first.
-    pub(super) fn meet_at(&self, i: usize, j: usize, offset: DVec3) -> bool {
-        if let Some((first, second)) = self.mesh(i).zip(self.mesh(j))
-            && !first.bounds().meets(&second.bounds(), snap(offset))
-        {
-            return false;
-        }
-        self.need_bvh(i);
-        self.need_bvh(j);
-        self.meet_built(i, j, offset)
-    }
-
-    /// The same with the trees there.
-    pub(super) fn meet_built(&self, i: usize, j: usize, offset: DVec3) -> bool {
-        let offset = snap(offset);
-        let forms = self.form(i).zip(self.form(j));
-        forms.is_some_and(|(first, second)| collide::meet(first, second, offset))
     }
 
     /// Exchanges an impulse along the normal of the feature that touched first.
@@ -102,12 +83,12 @@ impl World {
     /// Where two bodies that meet have touched first on the straight way of the step, in the world;
     /// `None` if nothing moves them against each other.
     pub(super) fn contact_on_way(&self, i: usize, j: usize) -> Option<Contact> {
-        self.need_bvh(i);
-        self.need_bvh(j);
+        self.bodies.need_bvh(i);
+        self.bodies.need_bvh(j);
         let (start, end) = (&self.previous.position, &self.current.position);
         let offset = start[j] - start[i];
         let motion = (end[j] - end[i]) - offset;
-        let forms = self.form(i).zip(self.form(j));
+        let forms = self.bodies.forms(i, j);
         let contact = forms.and_then(|(a, b)| collide::first_contact(a, b, offset, motion));
         // Bodies that meet after a motion have touched on the way. Should rounding hide where,
         // the motion itself is turned back.
@@ -128,8 +109,8 @@ impl World {
     /// Lets two bodies that approach part by their restitution, now.
     pub(super) fn exchange_now(&mut self, (i, j): (usize, usize), contact: &Contact, time: f64) {
         let before = (self.current.velocity[i], self.current.velocity[j]);
-        let restitution = self.pair_restitution(i, j);
-        let masses = (self.mass[i], self.mass[j]);
+        let restitution = self.bodies.pair_restitution(i, j);
+        let masses = (self.bodies.mass[i], self.bodies.mass[j]);
         let after = self.exchange((i, j), contact, (masses, before), restitution, time);
         (self.current.velocity[i], self.current.velocity[j]) = after;
     }
@@ -150,8 +131,8 @@ impl World {
         };
         let mut after = given.after;
         let speeds = ((v1 - v2).dot(normal), (after.1 - after.0).dot(normal));
-        if !self.friction.is_empty() {
-            let friction = self.pair_friction(bodies.0, bodies.1);
+        if !self.bodies.friction.is_empty() {
+            let friction = self.bodies.pair_friction(bodies.0, bodies.1);
             after = impulse::rub((m1, m2), after, normal, friction, given.impulse);
         }
         self.note_impact(bodies, contact, given.impulse, speeds, time);
@@ -167,7 +148,7 @@ impl World {
         time: f64,
     ) {
         self.impacts += 1;
-        let masses = (self.mass[bodies.0], self.mass[bodies.1]);
+        let masses = (self.bodies.mass[bodies.0], self.bodies.mass[bodies.1]);
         self.continuous
             .progress
             .note_impulse(impulse, speeds.0, masses);
@@ -185,20 +166,5 @@ impl World {
             report.push(impact.clone());
         }
         self.last_impact = Some(impact);
-    }
-
-    pub(super) fn pair_restitution(&self, i: usize, j: usize) -> f64 {
-        self.restitution(i).min(self.restitution(j))
-    }
-
-    /// The coefficient of friction between two bodies: the geometric mean of theirs, and 0 where one
-    /// is smooth, whatever the other is.
-    pub(super) fn pair_friction(&self, i: usize, j: usize) -> f64 {
-        let (first, second) = (self.friction(i), self.friction(j));
-        if first == 0.0 || second == 0.0 {
-            return 0.0;
-        }
-        // Of the product, so that two equal coefficients give themselves to the bit.
-        libm::sqrt(first * second)
     }
 }

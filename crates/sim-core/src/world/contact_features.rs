@@ -55,11 +55,11 @@ impl World {
     /// Costs time that grows with the triangles that are near the other body.
     pub fn contact_features(&self, contact: &RestingContact) -> Vec<Touching> {
         let (i, j) = contact.bodies;
-        if contact.is_overlap || i.max(j) >= self.len() {
+        if contact.is_overlap || i.max(j) >= self.bodies.len() {
             return Vec::new();
         }
-        self.need_bvh(i);
-        self.need_bvh(j);
+        self.bodies.need_bvh(i);
+        self.bodies.need_bvh(j);
         let offset = self.current.position[j] - self.current.position[i];
         let mut touching = Near {
             normal: contact.normal,
@@ -68,7 +68,7 @@ impl World {
             least: -self.flush(i, j),
             found: BTreeMap::new(),
         };
-        match (self.shape(i), self.shape(j)) {
+        match (self.bodies.shape(i), self.bodies.shape(j)) {
             (Some(Shape::Mesh(first)), Some(Shape::Mesh(second))) => {
                 if let Some(trees) = self.bvh(i).zip(self.bvh(j)) {
                     touching.meshes((first, trees.0), (second, trees.1));
@@ -116,7 +116,7 @@ impl World {
             offset + hover * contact.normal,
             -(reach + hover) * contact.normal,
         );
-        let forms = self.form(i).zip(self.form(j));
+        let forms = self.bodies.forms(i, j);
         let touch = forms.and_then(|(a, b)| first_contact(a, b, snap(start), snap(way)));
         touch.map_or(contact.gap, |touch| touch.time * (reach + hover) - hover)
     }

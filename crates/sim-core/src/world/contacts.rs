@@ -49,7 +49,7 @@ impl World {
         self.contacts.all().iter().map(|contact| {
             let (i, j) = contact.bodies;
             let closing = contact.load_speed / self.settings.dt;
-            let along = closing / (1.0 / self.mass[i] + 1.0 / self.mass[j]);
+            let along = closing / (1.0 / self.bodies.mass[i] + 1.0 / self.bodies.mass[j]);
             RestingContact {
                 bodies: contact.bodies,
                 normal: contact.normal,

@@ -103,8 +103,8 @@ impl World {
         let mut meeting = mem::take(&mut self.discrete.meeting);
         meeting.clear();
         if self.is_few() {
-            for (second, &j) in self.solid.iter().enumerate() {
-                for &i in &self.solid[..second] {
+            for (second, &j) in self.bodies.solid.iter().enumerate() {
+                for &i in &self.bodies.solid[..second] {
                     if self.collides(i, j) {
                         meeting.push((i, j));
                     }
@@ -123,7 +123,7 @@ impl World {
         let mut broad = mem::take(&mut self.discrete.broad);
         let way = |body: usize| (self.previous.position[body], self.current.position[body]);
         broad.fill(
-            &self.solid,
+            &self.bodies.solid,
             |body| self.swept_box(body, way(body).0, way(body).1),
             |body| self.swept_front(body, way(body).0, way(body).1),
         );
@@ -134,7 +134,7 @@ impl World {
     }
 
     fn is_few(&self) -> bool {
-        self.solid.len() <= FEW
+        self.bodies.solid.len() <= FEW
     }
 
     /// Bounces and puts back until no pair collides.
@@ -145,7 +145,7 @@ impl World {
         let mut is_back = mem::take(&mut self.discrete.is_back);
         let mut put_back = mem::take(&mut self.discrete.put_back);
         is_back.clear();
-        is_back.resize(self.len(), false);
+        is_back.resize(self.bodies.len(), false);
         let pairs = self.discrete.meeting.iter();
         meetings.extend(pairs.map(|&pair| self.meeting_of(pair, &is_back)));
         while let Some(first) = next(&mut meetings, f64::INFINITY, &is_back) {
@@ -183,7 +183,7 @@ impl World {
     /// Every other body whose box meets that of a body on the way of the step.
     fn each_near(&self, body: usize, mut found: impl FnMut(usize)) {
         if self.is_few() {
-            let others = self.solid.iter().copied();
+            let others = self.bodies.solid.iter().copied();
             others.filter(|&other| other != body).for_each(found);
         } else {
             self.discrete.broad.each_partner(body, &mut found);
@@ -221,13 +221,13 @@ impl World {
         // What an immovable body is given does not reach others.
         let mut pieces = Pieces::new(bodies.len());
         for Touching { bodies: [i, j], .. } in &touching {
-            if self.mass[*i].is_finite() && self.mass[*j].is_finite() {
+            if self.bodies.is_movable(*i) && self.bodies.is_movable(*j) {
                 pieces.join(place(*i), place(*j));
             }
         }
         let mut piece_of = |touching: &Touching| {
             let [i, j] = touching.bodies;
-            pieces.first(place(if self.mass[i].is_finite() { i } else { j }))
+            pieces.first(place(if self.bodies.is_movable(i) { i } else { j }))
         };
         let mut in_pieces: Vec<(usize, Touching)> = touching
             .into_iter()
@@ -283,9 +283,15 @@ impl World {
         });
         let joined: Vec<Joined> = joined.collect();
         let restitution = piece()
-            .map(|touching| self.pair_restitution(touching.bodies[0], touching.bodies[1]))
+            .map(|touching| {
+                self.bodies
+                    .pair_restitution(touching.bodies[0], touching.bodies[1])
+            })
             .fold(1.0, f64::min);
-        let inverse_mass: Vec<f64> = bodies.iter().map(|&body| 1.0 / self.mass[body]).collect();
+        let inverse_mass: Vec<f64> = bodies
+            .iter()
+            .map(|&body| 1.0 / self.bodies.mass[body])
+            .collect();
         let velocity = bodies.iter().map(|&body| self.current.velocity[body]);
         let before: Vec<DVec3> = velocity.collect();
         let mut after = before.clone();

@@ -87,10 +87,10 @@ impl World {
 
     /// What constant forces and weight do to a body, m/s²; nothing to an immovable one.
     pub(super) fn constant_acceleration(&self, body: usize) -> DVec3 {
-        if self.mass[body].is_infinite() {
+        if self.bodies.mass[body].is_infinite() {
             return DVec3::ZERO;
         }
-        self.force[body] / self.mass[body] + self.weight
+        self.bodies.force[body] / self.bodies.mass[body] + self.weight
     }
 
     /// Forces have changed, a weight among them or not: many are added one by one.
@@ -108,8 +108,8 @@ impl World {
         let weight = weights.sum();
         if weight != self.weight {
             self.weight = weight;
-            for body in 0..self.len() {
-                self.acceleration[body] = self.constant_acceleration(body);
+            for body in 0..self.bodies.len() {
+                self.bodies.acceleration[body] = self.constant_acceleration(body);
             }
         }
     }

@@ -29,7 +29,7 @@ impl World {
     /// ```
     pub fn state_hash(&self) -> u64 {
         let mut hash = Fnv::new();
-        hash.word(self.len() as u64);
+        hash.word(self.bodies.len() as u64);
         let columns = [
             &self.current.position,
             &self.current.velocity,

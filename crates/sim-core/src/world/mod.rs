@@ -1,5 +1,6 @@
 //! The running state of a scene.
 
+mod bodies;
 mod collision;
 mod contact_features;
 mod contacts;
@@ -20,16 +21,15 @@ mod system;
 #[cfg(test)]
 mod tests;
 
-use alloc::{boxed::Box, collections::BTreeMap, sync::Arc, vec::Vec};
+use alloc::{sync::Arc, vec::Vec};
 use core::ops::RangeInclusive;
 use glam::DVec3;
-use once_cell::race::OnceBox;
 
 use crate::{
-    Body, Bvh, Extent, Force, Mesh, Shape,
-    collide::Form,
+    Body, Bvh, Force, Mesh, Shape,
     integrate::{Method, Scratch},
 };
+use bodies::Bodies;
 pub use collision::Impact;
 pub use contact_features::{ContactFeature, Touching};
 pub use contacts::{Bundled, RestingContact};
@@ -70,10 +70,7 @@ pub struct World {
     previous: State,
     /// The state before that, in a step, for who fails.
     earlier: State,
-    mass: Vec<f64>,
-    force: Vec<DVec3>,
-    /// What constant forces and weight do to each body, m/s².
-    acceleration: Vec<DVec3>,
+    bodies: Bodies,
     /// Acceleration by all weights.
     weight: DVec3,
     forces: Vec<Force>,
@@ -85,17 +82,6 @@ pub struct World {
     speed_scale: Option<f64>,
     /// The motion from which growth is counted, and on the way since.
     marks: Marks,
-    /// What bodies keep of an approaching speed; empty while all are elastic.
-    restitution: Vec<f64>,
-    /// Coefficients of friction; empty while all bodies are smooth.
-    friction: Vec<f64>,
-    /// The shape of each body, as an index of `solids`; `None` is a point.
-    shape: Vec<Option<u32>>,
-    solids: Vec<Solid>,
-    /// Where a shape is among the solids.
-    known_shapes: BTreeMap<ShapeKey, u32>,
-    /// The bodies that have a shape.
-    solid: Vec<usize>,
     /// Pairs that began in overlap, in order; without those of bodies that have just been placed.
     overlapping: Vec<(usize, usize)>,
     placed: Placed,
@@ -112,39 +98,6 @@ pub struct World {
     discrete: Discrete,
     /// Time and step at which `dt` was last set: time since is steps times `dt`, without drift.
     since: (f64, u64),
-}
-
-/// A shape, shared by all bodies that have it, and its tree once one is needed.
-#[derive(Clone, Debug)]
-struct Solid {
-    shape: Shape,
-    extent: Extent,
-    bvh: OnceBox<Arc<Bvh>>,
-}
-
-impl Solid {
-    fn bvh(&self) -> Option<&Bvh> {
-        self.bvh.get().map(|bvh| &**bvh)
-    }
-}
-
-/// What makes two shapes the same: of meshes their place in memory, as comparing triangles takes too
-/// long; of others the bits of their numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum ShapeKey {
-    Mesh(usize),
-    Sphere(u64),
-    HalfSpace([u64; 3]),
-}
-
-impl ShapeKey {
-    fn of(shape: &Shape) -> ShapeKey {
-        match shape {
-            Shape::Mesh(mesh) => ShapeKey::Mesh(Arc::as_ptr(mesh) as usize),
-            Shape::Sphere { radius } => ShapeKey::Sphere(radius.to_bits()),
-            Shape::HalfSpace { normal } => ShapeKey::HalfSpace(normal.to_array().map(f64::to_bits)),
-        }
-    }
 }
 
 /// How a world steps.
@@ -202,21 +155,13 @@ impl World {
             current: State::default(),
             previous: State::default(),
             earlier: State::default(),
-            mass: Vec::new(),
-            force: Vec::new(),
-            acceleration: Vec::new(),
+            bodies: Bodies::default(),
             weight: DVec3::ZERO,
             forces: Vec::new(),
             plan: None,
             scratch: Scratch::default(),
             speed_scale: None,
             marks: Marks::default(),
-            restitution: Vec::new(),
-            friction: Vec::new(),
-            shape: Vec::new(),
-            solids: Vec::new(),
-            known_shapes: BTreeMap::new(),
-            solid: Vec::new(),
             overlapping: Vec::new(),
             placed: Placed::default(),
             steps: 0,
@@ -242,18 +187,17 @@ impl World {
         error::check_restitution(index, body.restitution)?;
         error::check_friction(index, body.friction)?;
         let shape = body.shape.map(|shape| error::check_shape(index, shape));
-        let shape = shape.transpose()?.map(|shape| self.share(shape));
+        let shape = shape.transpose()?;
         self.current.push(body.position, body.velocity);
         self.previous.push(body.position, body.velocity);
-        self.mass.push(body.mass);
-        self.force.push(body.force);
-        self.acceleration.push(self.constant_acceleration(index));
+        self.bodies.push(
+            (body.mass, body.force),
+            (body.restitution, body.friction),
+            shape,
+        );
+        self.bodies.acceleration[index] = self.constant_acceleration(index);
         self.plan = None;
         self.speed_scale = None;
-        self.set_restitution_column(index, body.restitution);
-        self.set_friction_column(index, body.friction);
-        self.solid.extend(shape.map(|_| index));
-        self.shape.push(shape);
         self.note_placed(index);
         Ok(index)
     }
@@ -269,7 +213,7 @@ impl World {
         core::mem::swap(&mut self.previous, &mut self.current);
         self.current.match_len(&self.previous);
         self.integrate()?;
-        if self.solid.len() > 1 {
+        if self.bodies.solid.len() > 1 {
             match self.settings.collision {
                 Collision::Naive | Collision::Bvh => self.collide(),
                 Collision::Continuous => self.collide_continuously()?,
@@ -293,12 +237,12 @@ impl World {
 
     /// How many bodies there are.
     pub fn len(&self) -> usize {
-        self.mass.len()
+        self.bodies.mass.len()
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.mass.is_empty()
+        self.bodies.mass.is_empty()
     }
 
     /// Simulated time, s.
@@ -345,27 +289,27 @@ impl World {
 
     /// Mass of a body, kg.
     pub fn mass(&self, body: usize) -> f64 {
-        self.mass[body]
+        self.bodies.mass[body]
     }
 
     /// Constant resultant force on a body, N.
     pub fn force(&self, body: usize) -> DVec3 {
-        self.force[body]
+        self.bodies.force[body]
     }
 
     /// Part of the approaching speed with which a body leaves an impact; of two the lesser counts.
     pub fn restitution(&self, body: usize) -> f64 {
-        self.restitution.get(body).copied().unwrap_or(1.0)
+        self.bodies.restitution(body)
     }
 
     /// Coefficient of friction of a body ([`Body::friction`]); of two the geometric mean counts.
     pub fn friction(&self, body: usize) -> f64 {
-        self.friction.get(body).copied().unwrap_or(0.0)
+        self.bodies.friction(body)
     }
 
     /// Shape of a body, unless it is a point that meets nothing.
     pub fn shape(&self, body: usize) -> Option<&Shape> {
-        self.solid_of(body).map(|solid| &solid.shape)
+        self.bodies.shape(body)
     }
 
     /// Mesh of a body, if it has one.
@@ -375,13 +319,13 @@ impl World {
 
     /// Tree over a body's mesh, if one has been needed so far.
     pub fn bvh(&self, body: usize) -> Option<&Bvh> {
-        self.solid_of(body).and_then(Solid::bvh)
+        self.bodies.bvh(body)
     }
 
     /// Builds the trees that no step has needed yet, to look at them or to aim rays.
     pub fn build_bvhs(&mut self) {
         for body in 0..self.len() {
-            self.need_bvh(body);
+            self.bodies.need_bvh(body);
         }
     }
 
@@ -411,8 +355,8 @@ impl World {
     pub fn set_force(&mut self, body: usize, force: DVec3) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_vector(body, "force", force)?;
-        self.force[body] = force;
-        self.acceleration[body] = self.constant_acceleration(body);
+        self.bodies.force[body] = force;
+        self.bodies.acceleration[body] = self.constant_acceleration(body);
         self.continuous.wake_all();
         Ok(())
     }
@@ -422,10 +366,10 @@ impl World {
         self.check_body(body)?;
         error::check_mass(body, mass)?;
         self.forget_contacts_of(body);
-        self.mass[body] = mass;
+        self.bodies.mass[body] = mass;
         // Immovable bodies may be in each other.
         self.note_placed(body);
-        self.acceleration[body] = self.constant_acceleration(body);
+        self.bodies.acceleration[body] = self.constant_acceleration(body);
         self.speed_scale = None;
         Ok(())
     }
@@ -434,7 +378,7 @@ impl World {
     pub fn set_restitution(&mut self, body: usize, restitution: f64) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_restitution(body, restitution)?;
-        self.set_restitution_column(body, restitution);
+        self.bodies.set_restitution(body, restitution);
         self.continuous.wake_all();
         Ok(())
     }
@@ -443,7 +387,7 @@ impl World {
     pub fn set_friction(&mut self, body: usize, friction: f64) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_friction(body, friction)?;
-        self.set_friction_column(body, friction);
+        self.bodies.set_friction(body, friction);
         Ok(())
     }
 
@@ -470,67 +414,5 @@ impl World {
         (body < bodies)
             .then_some(())
             .ok_or(WorldError::NoBody { body, bodies })
-    }
-
-    fn set_restitution_column(&mut self, body: usize, restitution: f64) {
-        if !self.restitution.is_empty() || restitution != 1.0 {
-            self.restitution.resize(self.len(), 1.0);
-            self.restitution[body] = restitution;
-        }
-    }
-
-    fn set_friction_column(&mut self, body: usize, friction: f64) {
-        if !self.friction.is_empty() || friction != 0.0 {
-            self.friction.resize(self.len(), 0.0);
-            self.friction[body] = friction;
-        }
-    }
-
-    fn solid_of(&self, body: usize) -> Option<&Solid> {
-        self.shape[body].map(|s| &self.solids[s as usize])
-    }
-
-    /// The index of a shape among the solids, which bodies with the same one share.
-    fn share(&mut self, shape: Shape) -> u32 {
-        let next = self.solids.len() as u32;
-        let place = *self
-            .known_shapes
-            .entry(ShapeKey::of(&shape))
-            .or_insert(next);
-        if place == next {
-            self.solids.push(Solid {
-                extent: shape.extent(),
-                shape,
-                bvh: OnceBox::new(),
-            });
-        }
-        place
-    }
-
-    fn need_bvh(&self, body: usize) {
-        if let Some(Solid {
-            shape: Shape::Mesh(mesh),
-            bvh,
-            ..
-        }) = self.solid_of(body)
-        {
-            bvh.get_or_init(|| Box::new(Arc::new(Bvh::build(mesh))));
-        }
-    }
-
-    /// How far a body's shape reaches about its position.
-    fn extent(&self, body: usize) -> Extent {
-        self.solid_of(body)
-            .map_or_else(Extent::default, |solid| solid.extent)
-    }
-
-    /// A body's shape for questions about pairs; a mesh has one once its tree is built.
-    fn form(&self, body: usize) -> Option<Form<'_>> {
-        let solid = self.solid_of(body)?;
-        match solid.shape {
-            Shape::Mesh(_) => solid.bvh().map(Form::Mesh),
-            Shape::Sphere { radius } => Some(Form::Sphere(radius)),
-            Shape::HalfSpace { normal } => Some(Form::HalfSpace(normal)),
-        }
     }
 }

@@ -14,8 +14,8 @@ impl World {
     pub(super) fn motion_key(&self, body: usize) -> Key {
         let [x, y, z] = self.previous.position[body].to_array();
         let [u, v, w] = self.previous.velocity[body].to_array();
-        let [a, b, c] = self.acceleration[body].to_array();
-        [x, y, z, u, v, w, self.mass[body], a, b, c].map(ordinal)
+        let [a, b, c] = self.bodies.acceleration[body].to_array();
+        [x, y, z, u, v, w, self.bodies.mass[body], a, b, c].map(ordinal)
     }
 
     /// Those of some pairs, once each, in that order.

@@ -81,7 +81,7 @@ impl World {
     pub(super) fn note_placed(&mut self, body: usize) {
         self.keep_found_overlaps();
         self.continuous.placed = true;
-        if self.shape[body].is_none() {
+        if !self.bodies.has_shape(body) {
             return;
         }
         let Placed {
@@ -100,9 +100,9 @@ impl World {
     fn all_overlapping(&self) -> Vec<(usize, usize)> {
         let mut pairs = self.overlapping.clone();
         let mut ask = |i: usize, j: usize| {
-            let is_movable = self.mass[i].is_finite() || self.mass[j].is_finite();
+            let is_movable = self.bodies.is_movable(i) || self.bodies.is_movable(j);
             let offset = self.current.position[j] - self.current.position[i];
-            if is_movable && self.meet_at(i, j, offset) {
+            if is_movable && self.bodies.meet_at(i, j, offset) {
                 pairs.push((i, j));
             }
         };
@@ -111,13 +111,17 @@ impl World {
         if self.placed.bodies.len() <= FEW {
             for &body in &self.placed.bodies {
                 let own = self.swept_box(body, at(body), at(body));
-                for &other in &self.solid {
+                for &other in &self.bodies.solid {
                     // Of two that have been placed, the pair is asked once.
                     if other == body || is_placed(other) && other < body {
                         continue;
                     }
-                    let is_wall =
-                        self.extent(body).half.max(self.extent(other).half) == f64::INFINITY;
+                    let is_wall = self
+                        .bodies
+                        .extent(body)
+                        .half
+                        .max(self.bodies.extent(other).half)
+                        == f64::INFINITY;
                     if is_wall || own.meets(&self.swept_box(other, at(other), at(other))) {
                         ask(body.min(other), body.max(other));
                     }
@@ -126,7 +130,7 @@ impl World {
         } else {
             let mut broad = Broad::default();
             broad.fill(
-                &self.solid,
+                &self.bodies.solid,
                 |body| self.swept_box(body, at(body), at(body)),
                 |body| self.swept_front(body, at(body), at(body)),
             );
@@ -147,7 +151,7 @@ impl World {
             high,
             farthest,
             ..
-        } = self.extent(body);
+        } = self.bodies.extent(body);
         // More than is lost in rounding, here and where vertices are placed.
         let margin = 8.0 * f64::EPSILON * (from.abs() + to.abs() + 2.0 * farthest);
         Swept {
@@ -159,7 +163,7 @@ impl World {
 
     /// The farthest that the plane of a body comes on a straight way, if it is a half-space.
     pub(super) fn swept_front(&self, wall: usize, from: DVec3, to: DVec3) -> Option<Front> {
-        let &Shape::HalfSpace { normal } = self.shape(wall)? else {
+        let &Shape::HalfSpace { normal } = self.bodies.shape(wall)? else {
             return None;
         };
         Some(Front {
@@ -179,7 +183,7 @@ impl World {
         let mut pairs = core::mem::take(&mut self.overlapping);
         pairs.retain(|&(i, j)| {
             let offset = self.current.position[j] - self.current.position[i];
-            self.meet_at(i, j, offset)
+            self.bodies.meet_at(i, j, offset)
         });
         self.contacts.retain(|constraint| {
             !constraint.is_overlap || pairs.binary_search(&constraint.bodies).is_ok()
@@ -215,7 +219,7 @@ impl World {
         for &((i, j), _) in &closing {
             for body in [i, j]
                 .into_iter()
-                .filter(|&body| self.mass[body].is_finite())
+                .filter(|&body| self.bodies.is_movable(body))
             {
                 *shares.entry(body).or_insert(0) += 1;
             }
@@ -239,8 +243,11 @@ impl World {
                 continue;
             }
             let velocity = &self.current.velocity;
-            let (before, masses) = ((velocity[i], velocity[j]), (self.mass[i], self.mass[j]));
-            let restitution = self.pair_restitution(i, j);
+            let (before, masses) = (
+                (velocity[i], velocity[j]),
+                (self.bodies.mass[i], self.bodies.mass[j]),
+            );
+            let restitution = self.bodies.pair_restitution(i, j);
             let given = impulse::between(
                 (masses.0, before.0),
                 (masses.1, before.1),
@@ -274,7 +281,7 @@ impl World {
 
     /// The same; `None` where their centres are in one place, and no direction is closer.
     fn line_apart(&self, i: usize, j: usize) -> Option<DVec3> {
-        match (self.shape(i), self.shape(j)) {
+        match (self.bodies.shape(i), self.bodies.shape(j)) {
             (Some(&Shape::HalfSpace { normal }), _) => Some(normal),
             (_, Some(&Shape::HalfSpace { normal })) => Some(-normal),
             _ => (self.centre(j) - self.centre(i)).try_normalize(),
@@ -302,7 +309,10 @@ mod tests {
         let pairs = (0..world.len()).flat_map(|i| (i + 1..world.len()).map(move |j| (i, j)));
         let is_overlap = |&(i, j): &(usize, usize)| {
             let is_movable = world.mass(i).is_finite() || world.mass(j).is_finite();
-            is_movable && world.meet_at(i, j, world.position(j) - world.position(i))
+            is_movable
+                && world
+                    .bodies
+                    .meet_at(i, j, world.position(j) - world.position(i))
         };
         pairs.filter(is_overlap).collect()
     }

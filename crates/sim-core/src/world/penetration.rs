@@ -92,7 +92,7 @@ impl World {
     /// Positions that are computed for bodies to lie flush, on a slope or by turned meshes, are wrong by
     /// as much. Such bodies are moved apart when the next step begins, and then touch.
     pub fn flush(&self, i: usize, j: usize) -> f64 {
-        let sizes = self.extent(i).farthest + self.extent(j).farthest;
+        let sizes = self.bodies.extent(i).farthest + self.bodies.extent(j).farthest;
         FLUSH_ROUNDINGS * f64::from(f32::EPSILON) * sizes + FLUSH_GAPS * self.hover_gap(i, j)
     }
 
@@ -104,9 +104,9 @@ impl World {
     /// The shortest way out that is known of two bodies that meet, the second one at `offset` from the
     /// first.
     pub(super) fn penetration(&self, i: usize, j: usize, offset: DVec3) -> Penetration {
-        self.need_bvh(i);
-        self.need_bvh(j);
-        let Some((first, second)) = self.form(i).zip(self.form(j)) else {
+        self.bodies.need_bvh(i);
+        self.bodies.need_bvh(j);
+        let Some((first, second)) = self.bodies.forms(i, j) else {
             return self.unknown_penetration(i, j);
         };
         if let Some(exact) = in_closed_form(first, second, offset) {
@@ -134,12 +134,12 @@ impl World {
 
     /// Farther than any pair that meets has to be moved, m.
     fn farthest_out(&self, i: usize, j: usize) -> f64 {
-        4.0 * (self.extent(i).farthest + self.extent(j).farthest)
+        4.0 * (self.bodies.extent(i).farthest + self.bodies.extent(j).farthest)
     }
 
     /// Unit vectors along which the second of two bodies may leave the first.
     pub(super) fn ways_out(&self, i: usize, j: usize, offset: DVec3) -> Vec<DVec3> {
-        let forms = self.form(i).zip(self.form(j));
+        let forms = self.bodies.forms(i, j);
         let surfaces = forms.map_or_else(Vec::new, |(a, b)| parting_normals(a, b, offset));
         let mut ways: Vec<DVec3> = alloc::vec![self.apart_along(i, j)];
         let both = surfaces.iter().flat_map(|&normal| [normal, -normal]);
@@ -160,7 +160,7 @@ impl World {
         offset: DVec3,
         directions: &[DVec3],
     ) -> Option<(DVec3, f64)> {
-        let is_apart = |by: DVec3| !self.meet_built(i, j, offset + by);
+        let is_apart = |by: DVec3| !self.bodies.meet_built(i, j, offset + by);
         let some_part = |far: f64| directions.iter().any(|&way| is_apart(far * way));
         let (least, most) = (self.hover_gap(i, j), self.farthest_out(i, j));
         // What is held is about as deep as it was.
@@ -198,10 +198,10 @@ impl World {
         offset: DVec3,
         mut best: (DVec3, f64),
     ) -> (DVec3, f64) {
-        let Some((first, second)) = self.form(i).zip(self.form(j)) else {
+        let Some((first, second)) = self.bodies.forms(i, j) else {
             return best;
         };
-        let is_apart = |by: DVec3| !self.meet_built(i, j, offset + by);
+        let is_apart = |by: DVec3| !self.bodies.meet_built(i, j, offset + by);
         let hover = self.hover_gap(i, j);
         for _ in 0..TURNS {
             let (normal, depth) = best;
@@ -227,7 +227,7 @@ impl World {
     fn are_boxes_in_boxes(&self, i: usize, j: usize) -> bool {
         let is_box = |body: usize| self.bvh(body).is_some_and(|bvh| bvh.cuboid().is_some());
         let size = |body: usize| {
-            let extent = self.extent(body);
+            let extent = self.bodies.extent(body);
             extent.high - extent.low
         };
         is_box(i) && is_box(j) && {

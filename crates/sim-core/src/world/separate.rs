@@ -82,7 +82,9 @@ impl World {
             Some(place) => place,
             None => self.places_one_by_one(at)?,
         };
-        let moved: Vec<usize> = (0..self.len()).filter(|&i| place[i] != at[i]).collect();
+        let moved: Vec<usize> = (0..self.bodies.len())
+            .filter(|&i| place[i] != at[i])
+            .collect();
         for &body in &moved {
             self.current.position[body] = place[body];
             self.previous.position[body] = place[body];
@@ -96,7 +98,7 @@ impl World {
     /// Pairs that meet at some places, one of which may move.
     fn meeting_at(&self, place: &[DVec3]) -> Vec<(usize, usize)> {
         let mut pairs = self.near_pairs(place, |i, j| 8.0 * self.hover_gap(i, j));
-        pairs.retain(|&(i, j)| self.meet_built(i, j, place[j] - place[i]));
+        pairs.retain(|&(i, j)| self.bodies.meet_built(i, j, place[j] - place[i]));
         pairs
     }
 
@@ -144,7 +146,7 @@ impl World {
             let ((i, j), before) = (plane.bodies, plane.normal);
             let (offset, hover) = (place[j] - place[i], self.hover_gap(i, j));
             let length = offset.length() + hover;
-            let Some((first, second)) = self.form(i).zip(self.form(j)) else {
+            let Some((first, second)) = self.bodies.forms(i, j) else {
                 continue;
             };
             let way = -length * before;
@@ -163,7 +165,7 @@ impl World {
     /// quadratic programming procedure": plane after plane, over and over), and tells whether there
     /// is hope that they have a common one.
     fn push_beyond(&self, planes: &mut [&mut Plane], place: &mut [DVec3]) -> bool {
-        let inverse = |body: usize| 1.0 / self.mass[body];
+        let inverse = |body: usize| 1.0 / self.bodies.mass[body];
         let sweeps = SWEEPS.min(1 + LOOKS / planes.len());
         let (mut first, mut worst) = (0.0_f64, 0.0_f64);
         for plane in &mut *planes {
@@ -201,10 +203,15 @@ impl World {
     fn places_one_by_one(&self, at: &[DVec3]) -> Result<Vec<DVec3>, SeparateError> {
         let mut place = at.to_vec();
         let (mut there, mut movable): (Vec<usize>, Vec<usize>) = self
+            .bodies
             .solid
             .iter()
-            .partition(|&&body| !self.mass[body].is_finite());
-        movable.sort_by(|&i, &j| self.mass[j].total_cmp(&self.mass[i]).then(i.cmp(&j)));
+            .partition(|&&body| !self.bodies.is_movable(body));
+        movable.sort_by(|&i, &j| {
+            self.bodies.mass[j]
+                .total_cmp(&self.bodies.mass[i])
+                .then(i.cmp(&j))
+        });
         for body in movable {
             place[body] = self.free_place(body, &there, &place)?;
             there.push(body);
@@ -227,17 +234,18 @@ impl World {
                 } else {
                     at - place[other]
                 };
-                let is_wall = self.extent(i).half.max(self.extent(j).half) == f64::INFINITY;
+                let is_wall =
+                    self.bodies.extent(i).half.max(self.bodies.extent(j).half) == f64::INFINITY;
                 let swept = |body: usize, at: DVec3| self.swept_box(body, at, at);
                 (is_wall || swept(body, at).meets(&swept(other, place[other])))
-                    && self.meet_built(i, j, offset)
+                    && self.bodies.meet_built(i, j, offset)
             };
             there.iter().filter(meets).copied().collect()
         };
         let walls: Vec<usize> = there
             .iter()
             .copied()
-            .filter(|&other| matches!(self.shape(other), Some(Shape::HalfSpace { .. })))
+            .filter(|&other| matches!(self.bodies.shape(other), Some(Shape::HalfSpace { .. })))
             .collect();
         let inside = |at: DVec3| self.out_of_walls(body, at, &walls, place);
         let first = inside(place[body]).ok_or_else(|| SeparateError::Caught {
@@ -256,7 +264,7 @@ impl World {
             let at = inside(first + length * way)?;
             blockers(at).is_empty().then_some(at)
         };
-        let size = |other: usize| self.extent(other).farthest;
+        let size = |other: usize| self.bodies.extent(other).farthest;
         let most = there.iter().fold(8.0 * size(body), |most, &other| {
             most.max(4.0 * (size(body) + size(other) + (place[other] - first).length()))
         });
@@ -288,10 +296,10 @@ impl World {
     /// The planes of half-spaces against a body, at which its position is kept.
     fn wall_planes(&self, body: usize, walls: &[usize], place: &[DVec3]) -> Vec<(DVec3, f64)> {
         let of = |&wall: &usize| {
-            let &Shape::HalfSpace { normal } = self.shape(wall)? else {
+            let &Shape::HalfSpace { normal } = self.bodies.shape(wall)? else {
                 return None;
             };
-            let (reach, _) = reach(self.form(body)?, normal);
+            let (reach, _) = reach(self.bodies.form(body)?, normal);
             let level = normal.dot(place[wall]) + reach + self.hover_gap(wall, body);
             Some((normal, level))
         };
@@ -306,7 +314,7 @@ impl World {
         walls: &[usize],
         place: &[DVec3],
     ) -> Option<DVec3> {
-        if matches!(self.shape(body), Some(Shape::HalfSpace { .. })) {
+        if matches!(self.bodies.shape(body), Some(Shape::HalfSpace { .. })) {
             return Some(at);
         }
         let planes = self.wall_planes(body, walls, place);

@@ -38,7 +38,7 @@ impl World {
         if let Some(fall) = self.settings.method.fall.filter(|_| is_free) {
             let within = ballistic::step(
                 (&self.previous.position, &self.previous.velocity),
-                &self.acceleration,
+                &self.bodies.acceleration,
                 (&mut self.current.position, &mut self.current.velocity),
                 (self.settings.dt, fall),
                 error::LARGEST,
@@ -54,7 +54,7 @@ impl World {
     #[cold]
     fn make_plan(&mut self) {
         let key = |body: usize| self.motion_key(body);
-        self.plan = Some(Plan::new(&self.forces, self.len(), key));
+        self.plan = Some(Plan::new(&self.forces, self.bodies.len(), key));
     }
 
     // Apart, so that free bodies do not pay for its frame.
@@ -75,7 +75,7 @@ impl World {
             self.forced(plan, section, &mut fastest)?;
             done = section.bodies.end;
         }
-        self.free(plan, done..self.len(), &mut fastest)?;
+        self.free(plan, done..self.bodies.len(), &mut fastest)?;
         self.watch_growth(plan, fastest)
     }
 
@@ -104,7 +104,7 @@ impl World {
                 &self.previous.position[bodies.clone()],
                 &self.previous.velocity[bodies.clone()],
             ),
-            &self.acceleration[bodies.clone()],
+            &self.bodies.acceleration[bodies.clone()],
             (
                 &mut self.current.position[bodies.clone()],
                 &mut self.current.velocity[bodies.clone()],
@@ -143,7 +143,7 @@ impl World {
             let block = Block {
                 bodies: bodies.clone(),
                 is_coupled: section.is_coupled,
-                acceleration: &self.acceleration[bodies.clone()],
+                acceleration: &self.bodies.acceleration[bodies.clone()],
                 from: &self.previous,
                 since: 0.0,
                 length: self.settings.dt,
@@ -248,7 +248,7 @@ impl World {
             forces: &self.forces,
             plan,
             is_coupled: block.is_coupled && bodies.len() > 1,
-            mass: &self.mass[bodies.clone()],
+            mass: &self.bodies.mass[bodies.clone()],
             acceleration: &block.acceleration[first..first + bodies.len()],
             bodies,
             group,
@@ -274,7 +274,7 @@ impl World {
             x[i] = block.from.position[body];
             v[i] = block.from.velocity[body];
             acceleration[i] = block.acceleration[body - block.bodies.start];
-            mass[i] = self.mass[body];
+            mass[i] = self.bodies.mass[body];
         }
         let mut watch = watch.map(|watch| {
             |time: f64, x: &[DVec3], y: &[DVec3]| watch(time, &|place| group.bodies[place], x, y)
@@ -347,10 +347,10 @@ impl World {
     fn count_growth_from(&mut self, plan: &Plan, speed: f64) {
         let coupled = plan.sections.iter().filter(|section| section.is_coupled);
         let most = coupled.map(|section| section.bodies.len()).max();
-        self.marks.begin(self.len(), most.unwrap_or(1));
+        self.marks.begin(self.bodies.len(), most.unwrap_or(1));
         self.speed_scale = (speed > 0.0).then_some(speed);
         if speed > 0.0 {
-            let (all, time) = (0..self.len(), self.time());
+            let (all, time) = (0..self.bodies.len(), self.time());
             self.marks.add(time, speed, all, &self.previous);
         }
     }
@@ -366,8 +366,8 @@ impl World {
             forces: &self.forces,
             plan,
             is_coupled: section.is_coupled,
-            mass: &self.mass[bodies.clone()],
-            acceleration: &self.acceleration[bodies.clone()],
+            mass: &self.bodies.mass[bodies.clone()],
+            acceleration: &self.bodies.acceleration[bodies.clone()],
             bodies: bodies.clone(),
             group: None,
         };

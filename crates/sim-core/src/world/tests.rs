@@ -297,7 +297,7 @@ fn values_out_of_range_are_refused_by_field_and_disturb_nothing() {
 #[test]
 fn friction_is_kept_for_each_body_once_one_is_rough() {
     let mut world = world([Body::default(), Body::default()]);
-    assert!(world.friction.is_empty());
+    assert!(world.bodies.friction.is_empty());
     assert_eq!((world.friction(0), world.friction(1)), (0.0, 0.0));
     world.set_friction(0, 0.3).unwrap();
     let rough = Body {
@@ -306,7 +306,7 @@ fn friction_is_kept_for_each_body_once_one_is_rough() {
     };
     assert_eq!(world.add(rough), Ok(2));
     assert_eq!(world.add(Body::default()), Ok(3));
-    assert_eq!(world.friction, [0.3, 0.0, f64::INFINITY, 0.0]);
+    assert_eq!(world.bodies.friction, [0.3, 0.0, f64::INFINITY, 0.0]);
     for bad in [-1.0, -f64::MIN_POSITIVE, f64::NEG_INFINITY, f64::NAN] {
         let refused = [
             world.set_friction(1, bad).unwrap_err(),
@@ -325,7 +325,7 @@ fn friction_is_kept_for_each_body_once_one_is_rough() {
     }
     let nobody = WorldError::NoBody { body: 4, bodies: 4 };
     assert_eq!(world.set_friction(4, 0.5), Err(nobody));
-    assert_eq!(world.friction, [0.3, 0.0, f64::INFINITY, 0.0]);
+    assert_eq!(world.bodies.friction, [0.3, 0.0, f64::INFINITY, 0.0]);
     world.set_friction(0, 0.0).unwrap();
     assert_eq!(world.friction(0), 0.0);
 }
@@ -349,7 +349,11 @@ fn two_bodies_have_the_geometric_mean_of_their_friction() {
         };
         let world = world([of(first), of(second)]);
         for (i, j) in [(0, 1), (1, 0)] {
-            assert_eq!(world.pair_friction(i, j), expected, "{first} and {second}");
+            assert_eq!(
+                world.bodies.pair_friction(i, j),
+                expected,
+                "{first} and {second}"
+            );
         }
     }
 }

@@ -97,7 +97,7 @@ impl Visited {
 impl World {
     /// The island of a body, unless it has been visited.
     pub(super) fn island_of(&self, seed: usize, visited: &mut Visited) -> Option<Island> {
-        if !self.is_movable(seed) || !visited.visit(seed) {
+        if !self.bodies.is_movable(seed) || !visited.visit(seed) {
             return None;
         }
         let mut island = Island {
@@ -111,10 +111,10 @@ impl World {
                 let (i, j) = self.contacts.all()[index as usize].bodies;
                 let other = i + j - body;
                 // Of two that may move, the lower one names it.
-                if !self.is_movable(other) || body < other {
+                if !self.bodies.is_movable(other) || body < other {
                     island.constraints.push(index as usize);
                 }
-                if self.is_movable(other) && visited.visit(other) {
+                if self.bodies.is_movable(other) && visited.visit(other) {
                     island.bodies.push(other);
                 }
             }
@@ -148,7 +148,7 @@ impl World {
         restarted: &mut Vec<usize>,
     ) -> Result<(), (usize, Cause)> {
         let mut visited = mem::take(&mut self.continuous.visited);
-        visited.begin(self.len());
+        visited.begin(self.bodies.len());
         let mut now = Now {
             time,
             restarted,
@@ -188,7 +188,7 @@ impl World {
         for &index in &island.constraints {
             let (i, j) = self.contacts.all()[index].bodies;
             for body in [i, j] {
-                if !self.is_movable(body) {
+                if !self.bodies.is_movable(body) {
                     self.restart_at(body, now.time)?;
                 }
             }
@@ -204,7 +204,7 @@ impl World {
         hands_over: bool,
     ) -> Result<(), (usize, Cause)> {
         let mut again = Visited::default();
-        again.begin(self.len());
+        again.begin(self.bodies.len());
         for &body in &island.bodies {
             if let Some(island) = self.island_of(body, &mut again) {
                 self.start_island(&island, now)?;
@@ -301,7 +301,7 @@ impl World {
         let (mut given, target) =
             self.stop_closing(island, places, &mut velocity, (&held, &still, rounding));
         let mut spent = None;
-        if self.is_rough() {
+        if self.bodies.is_rough() {
             let bundled = is_bundled.then_some(left);
             let checks = (rounding, &target[..]);
             let rubbed = self.rub(island, places, &mut velocity, &mut given, checks, bundled);
@@ -338,7 +338,7 @@ impl World {
             force: Vec::new(),
             friction: Friction::default(),
         };
-        if self.is_rough() {
+        if self.bodies.is_rough() {
             solution.friction = self.friction_of(island, places, &velocity, spent, time);
         }
         if !self.constrain(island, places, &mut solution) && !is_bundled {
@@ -447,7 +447,7 @@ impl World {
         given: &[f64],
         left: f64,
     ) -> (f64, f64) {
-        let masses = places.bodies.iter().map(|&body| self.mass[body]);
+        let masses = places.bodies.iter().map(|&body| self.bodies.mass[body]);
         let lost =
             masses
                 .zip(before.iter().zip(after))
@@ -474,11 +474,11 @@ impl World {
             [i, j]
         };
         let walls = island.constraints.iter().flat_map(both);
-        let mut walls = walls.filter(|&body| !self.is_movable(body));
+        let mut walls = walls.filter(|&body| !self.bodies.is_movable(body));
         let first = walls.next()?;
         let velocity = &self.previous.velocity;
         let other = walls.find(|&wall| velocity[wall] != velocity[first])?;
-        let body = if self.is_movable(i) { i } else { j };
+        let body = if self.bodies.is_movable(i) { i } else { j };
         Some((body, Cause::Squeezed((first.min(other), first.max(other)))))
     }
 
@@ -508,7 +508,7 @@ impl World {
         }
         self.note_forces(island, places, solution, time);
         for (place, &body) in places.bodies.iter().enumerate() {
-            if self.is_movable(body) {
+            if self.bodies.is_movable(body) {
                 let by = solution.acceleration[place] - solution.free[place];
                 self.continuous.acceleration[body] =
                     self.continuous.applied_acceleration[body] + by;
@@ -664,26 +664,25 @@ impl World {
             true => ROUNDING,
             false => UNBALANCED,
         };
-        let at_rest =
-            time == 0.0
-                && places.bodies.iter().enumerate().all(|(place, &body)| {
-                    match self.is_movable(body) {
-                        false => self.previous.velocity[body] == DVec3::ZERO,
-                        true => {
-                            is_still(self.continuous.start.velocity[body])
-                                && acceleration[place].length() <= unbalanced * push
-                                && self.coupled_group(body).is_none()
-                        }
+        let at_rest = time == 0.0
+            && places.bodies.iter().enumerate().all(|(place, &body)| {
+                match self.bodies.is_movable(body) {
+                    false => self.previous.velocity[body] == DVec3::ZERO,
+                    true => {
+                        is_still(self.continuous.start.velocity[body])
+                            && acceleration[place].length() <= unbalanced * push
+                            && self.coupled_group(body).is_none()
                     }
-                })
-                && island
-                    .constraints
-                    .iter()
-                    .zip(force)
-                    .all(|(&index, &force)| {
-                        let constraint = &self.contacts.all()[index];
-                        constraint.target == 0.0 || force <= 0.0
-                    });
+                }
+            })
+            && island
+                .constraints
+                .iter()
+                .zip(force)
+                .all(|(&index, &force)| {
+                    let constraint = &self.contacts.all()[index];
+                    constraint.target == 0.0 || force <= 0.0
+                });
         if at_rest {
             for &body in &island.bodies {
                 self.continuous.start.velocity[body] = DVec3::ZERO;
@@ -741,7 +740,9 @@ impl World {
             for &index in self.contacts.of_body(body) {
                 let constraint = &self.contacts.all()[index as usize];
                 let i = constraint.bodies.0;
-                if constraint.ends_at < self.settings.dt && (body == i || !self.is_movable(i)) {
+                if constraint.ends_at < self.settings.dt
+                    && (body == i || !self.bodies.is_movable(i))
+                {
                     events.push(Event {
                         kind: EventKind::ContactEnd,
                         outcome: Outcome::Rest,
@@ -780,7 +781,10 @@ impl Places {
             })
             .collect();
         let bodies = order.bodies;
-        let inverse_mass = bodies.iter().map(|&body| 1.0 / world.mass[body]).collect();
+        let inverse_mass = bodies
+            .iter()
+            .map(|&body| 1.0 / world.bodies.mass[body])
+            .collect();
         Places {
             bodies,
             joined,

@@ -92,7 +92,7 @@ impl World {
     /// The gap at which two bodies in contact are kept, m.
     pub(in crate::world) fn hover_gap(&self, i: usize, j: usize) -> f64 {
         let at = &self.current.position;
-        let far = |body: usize| at[body].abs().max_element() + self.extent(body).farthest;
+        let far = |body: usize| at[body].abs().max_element() + self.bodies.extent(body).farthest;
         HOVER_ULPS * f64::EPSILON * (far(i) + far(j))
     }
 
@@ -112,7 +112,7 @@ impl World {
         reach: f64,
     ) -> Option<Surface> {
         let ((i, j), normal) = (constraint.bodies, constraint.normal);
-        let (first, second) = self.form(i).zip(self.form(j))?;
+        let (first, second) = self.bodies.forms(i, j)?;
         let others = self.contacts.of_pair(i, j);
         let others = others.filter(|other| other.normal != normal);
         let aside: DVec3 = others.map(|other| reach * other.normal).sum();
@@ -127,7 +127,7 @@ impl World {
             touched: match (contact.feature, contact.face) {
                 (Some(feature), _) => Touched::Feature(feature),
                 (None, Some(face)) => {
-                    let body = if self.mesh(i).is_some() { i } else { j };
+                    let body = if self.bodies.mesh(i).is_some() { i } else { j };
                     Touched::Face { body, face }
                 }
                 (None, None) => Touched::Nothing,
@@ -249,11 +249,11 @@ impl World {
         let (velocity, acceleration) = (level(velocity), level(acceleration));
         let moved = |time: f64| time * (velocity + 0.5 * time * acceleration);
         let way = (length * velocity.length()).max(length * length * acceleration.length());
-        if way <= 16.0 * hover || self.is_half_space(i) || self.is_half_space(j) {
+        if way <= 16.0 * hover || self.bodies.is_half_space(i) || self.bodies.is_half_space(j) {
             return Course::Flat;
         }
         let near = 16.0 * hover;
-        let radius = |body: usize| match self.shape(body) {
+        let radius = |body: usize| match self.bodies.shape(body) {
             Some(&Shape::Sphere { radius }) if radius > 0.0 => radius,
             _ => 0.0,
         };
@@ -264,7 +264,7 @@ impl World {
             false => 1e-12,
         };
         // A surface that rises is an impact to come.
-        let has_risen = |time: f64| self.meet_built(i, j, offset + moved(time));
+        let has_risen = |time: f64| self.bodies.meet_built(i, j, offset + moved(time));
         // The feature that touches at a time, or why there is none.
         let below = |time: f64| {
             let surface = self.surface_below(constraint, offset + moved(time), near);
@@ -340,15 +340,16 @@ impl World {
         // Lines that bound the feature, as a direction across and how far the offset is along it.
         let mut lines: [(DVec3, f64); 4] = [(DVec3::ZERO, 0.0); 4];
         let corner = |body: usize, vertex: u32| {
-            self.mesh(body)
+            self.bodies
+                .mesh(body)
                 .map(|mesh| mesh.vertices()[vertex as usize].as_dvec3())
         };
         let face = |body: usize, face: u32| {
-            let mesh = self.mesh(body)?;
+            let mesh = self.bodies.mesh(body)?;
             Some(mesh.corners(face as usize).map(|v| v.as_dvec3()))
         };
         let edge = |body: usize, edge: u32| {
-            let ends = self.mesh(body)?.edges()[edge as usize];
+            let ends = self.bodies.mesh(body)?.edges()[edge as usize];
             Some((corner(body, ends[0])?, corner(body, ends[1])?))
         };
         // Corners come before the offset, so that rounding is the same whichever of the bodies is the first.
@@ -397,10 +398,6 @@ impl World {
                 .min_by(f64::total_cmp)
         };
         lines.iter().filter_map(first_root).min_by(f64::total_cmp)
-    }
-
-    fn is_half_space(&self, body: usize) -> bool {
-        matches!(self.shape(body), Some(Shape::HalfSpace { .. }))
     }
 
     /// The greater of what forces alone do to two bodies all along their trajectories, m/s².

@@ -258,7 +258,7 @@ impl World {
 
     /// Adds a contact, in the place of one of the same bodies along the same normal.
     pub(super) fn add_contact(&mut self, new: ContactConstraint) {
-        let mass = &self.mass;
+        let mass = &self.bodies.mass;
         self.contacts.insert(new, |body| mass[body].is_finite());
     }
 }

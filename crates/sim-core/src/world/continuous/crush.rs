@@ -55,7 +55,7 @@ impl World {
                 continue;
             }
             let (i, j) = event.bodies;
-            let (wall, body) = match (self.is_movable(i), self.is_movable(j)) {
+            let (wall, body) = match (self.bodies.is_movable(i), self.bodies.is_movable(j)) {
                 (true, true) => {
                     if !crush.walls.is_empty() {
                         crush.walls.swap(i, j);
@@ -65,8 +65,8 @@ impl World {
                 (true, false) => (j, i),
                 (false, _) => (i, j),
             };
-            crush.walls.resize(self.len(), [None; 2]);
-            crush.impacts.resize(self.len(), 0);
+            crush.walls.resize(self.bodies.len(), [None; 2]);
+            crush.impacts.resize(self.bodies.len(), 0);
             let velocity = |wall: usize| self.previous.velocity[wall];
             let walls = &mut crush.walls[body];
             match walls[0] {

@@ -115,17 +115,12 @@ impl Friction {
 }
 
 impl World {
-    /// Whether some body is not smooth.
-    pub(super) fn is_rough(&self) -> bool {
-        !self.friction.is_empty()
-    }
-
     /// The coefficients of the contacts of an island; none where all are smooth.
     fn coefficients(&self, island: &Island) -> Option<Vec<f64>> {
         let all = self.contacts.all();
         let of = |&index: &usize| {
             let (i, j) = all[index].bodies;
-            self.pair_friction(i, j)
+            self.bodies.pair_friction(i, j)
         };
         let coefficients: Vec<f64> = island.constraints.iter().map(of).collect();
         coefficients

@@ -44,7 +44,7 @@ impl World {
         let (i, j) = ended.bodies;
         for body in [i, j] {
             let handed = self.continuous.handed.get(body).copied().unwrap_or(0);
-            if !self.is_movable(body) || handed >= MOST_HANDED {
+            if !self.bodies.is_movable(body) || handed >= MOST_HANDED {
                 continue;
             }
             let mut partners: Vec<usize> = mem::take(&mut self.continuous.partners);
@@ -61,8 +61,8 @@ impl World {
                 if bodies == ended.bodies || !self.may_collide(bodies.0, bodies.1) {
                     continue;
                 }
-                self.need_bvh(body);
-                self.need_bvh(other);
+                self.bodies.need_bvh(body);
+                self.bodies.need_bvh(other);
                 let level = ContactConstraint {
                     bodies,
                     normal: up * ended.normal,
@@ -79,7 +79,7 @@ impl World {
                 let offset = sign * (start.position[body] - at);
                 let velocity = sign * (start.velocity[body] - moving);
                 if let Some(level) = self.level_with(&level, offset, velocity) {
-                    let count = self.len();
+                    let count = self.bodies.len();
                     self.continuous.handed.resize(count, 0);
                     self.continuous.handed[body] += 1;
                     self.add_contact(level);

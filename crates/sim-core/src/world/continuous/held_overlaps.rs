@@ -89,7 +89,7 @@ impl World {
             let most = start + SLACK * self.hover_gap(i, j);
             let offset = self.current.position[j] - self.current.position[i];
             !self.is_held(i, j)
-                && self.meet_at(i, j, offset)
+                && self.bodies.meet_at(i, j, offset)
                 && self.penetration(i, j, offset).depth > most
         };
         let new: Vec<(usize, usize)> = self.overlapping.iter().filter(deepened).copied().collect();
@@ -109,7 +109,7 @@ impl World {
         for place in 0..self.overlapping.len() {
             let (i, j) = self.overlapping[place];
             let is_overlap = |known: &ContactConstraint| known.is_overlap;
-            if (self.is_movable(i) || self.is_movable(j))
+            if (self.bodies.is_movable(i) || self.bodies.is_movable(j))
                 && !self.contacts.of_pair(i, j).any(is_overlap)
             {
                 let at = &self.previous.position;

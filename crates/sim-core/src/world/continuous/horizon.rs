@@ -104,7 +104,7 @@ impl World {
 
     /// Notes how far the trajectories of some bodies are known.
     pub(in crate::world) fn set_horizon(&mut self, bodies: core::ops::Range<usize>, time: f64) {
-        let (all, dt) = (self.len(), self.settings.dt);
+        let (all, dt) = (self.bodies.len(), self.settings.dt);
         let horizon = &mut self.continuous.horizon;
         if horizon.is_empty() && time == dt {
             return;
@@ -150,7 +150,7 @@ impl World {
     /// Whether forces on these bodies may grow without bound where contact keeps them from going.
     fn has_horizon(&self, block: &Block<'_>) -> bool {
         self.settings.collision == crate::Collision::Continuous
-            && self.solid.len() > 1
+            && self.bodies.solid.len() > 1
             && self.forces.iter().any(|force| match force {
                 Force::Attraction { body, .. } | Force::Body { body, .. } => {
                     body.is_none_or(|body| block.bodies.contains(&body))
@@ -175,7 +175,7 @@ impl World {
         let ways = || before.iter().zip(after).enumerate();
         for (place, from) in ways() {
             let i = body(place);
-            if self.shape[i].is_none() {
+            if !self.bodies.has_shape(i) {
                 continue;
             }
             let others = ways().skip(place + 1);
@@ -185,7 +185,12 @@ impl World {
             {
                 return true;
             }
-            for &wall in self.solid.iter().filter(|&&body| !self.is_movable(body)) {
+            for &wall in self
+                .bodies
+                .solid
+                .iter()
+                .filter(|&&body| !self.bodies.is_movable(body))
+            {
                 let at = self.previous.position[wall] + time * self.previous.velocity[wall];
                 if self.touch_on_chord((i, wall), from, (&at, &at))
                     && ways().all(|(place, _)| body(place) != wall)
@@ -204,14 +209,14 @@ impl World {
         first: (&DVec3, &DVec3),
         second: (&DVec3, &DVec3),
     ) -> bool {
-        if i == j || self.shape[j].is_none() {
+        if i == j || !self.bodies.has_shape(j) {
             return false;
         }
         let (from, to) = (second.0 - first.0, second.1 - first.1);
         let motion = to - from;
-        let size = |body: usize| match self.shape(body) {
+        let size = |body: usize| match self.bodies.shape(body) {
             Some(Shape::HalfSpace { .. }) => f64::INFINITY,
-            _ => self.extent(body).reach.length(),
+            _ => self.bodies.extent(body).reach.length(),
         };
         let way = motion.length_squared();
         let part = if way > 0.0 {
@@ -226,9 +231,9 @@ impl World {
         {
             return false;
         }
-        self.need_bvh(i);
-        self.need_bvh(j);
-        let forms = self.form(i).zip(self.form(j));
+        self.bodies.need_bvh(i);
+        self.bodies.need_bvh(j);
+        let forms = self.bodies.forms(i, j);
         forms.is_some_and(|(a, b)| first_contact(a, b, snap(from), snap(motion)).is_some())
     }
 }

@@ -73,7 +73,7 @@ impl World {
         j: usize,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
-        let Some(forms) = self.form(i).zip(self.form(j)) else {
+        let Some(forms) = self.bodies.forms(i, j) else {
             return Ok(None);
         };
         let pair = Pair {
@@ -102,7 +102,11 @@ impl World {
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         let (start, end) = (self.start_of(pair), self.end_of(pair));
-        let size = self.extent(pair.i).half.min(self.extent(pair.j).half);
+        let size = self
+            .bodies
+            .extent(pair.i)
+            .half
+            .min(self.bodies.extent(pair.j).half);
         let length = end - start;
         let mut from = (start, self.offset_at(pair, start, probe)?);
         // A point has no extent: its trajectory must do.
@@ -283,7 +287,7 @@ impl World {
             room / (4.0 * along(pair.deviation, contact.normal)),
         ));
         let mut back = back.max(f64::MIN_POSITIVE);
-        if self.extent(i).half.max(self.extent(j).half) == 0.0 {
+        if self.bodies.extent(i).half.max(self.bodies.extent(j).half) == 0.0 {
             // Points that have passed each other by a rounding of the time do not meet.
             back = back.max(RESOLUTION_ULPS * f64::EPSILON * touching);
         }
@@ -292,7 +296,7 @@ impl World {
             time = (touching - back).min(last).max(start);
             back *= 2.0;
             let offset = self.offset_at(pair, time, probe)?;
-            if !self.meet_built(i, j, offset) {
+            if !self.bodies.meet_built(i, j, offset) {
                 break;
             }
         }
@@ -341,7 +345,7 @@ impl World {
             let (from, to) = (continuous.start.position[body], self.current.position[body]);
             let bend = 4.0 * self.chord_deviation(body);
             let (place, motion) = (from.abs().max(to.abs()) + bend, (to - from).abs() + bend);
-            5.0 * place + 7.0 * motion + 2.0 * self.extent(body).reach
+            5.0 * place + 7.0 * motion + 2.0 * self.bodies.extent(body).reach
         };
         0.5 * f64::EPSILON * (of(pair.i) + of(pair.j))
     }
@@ -389,9 +393,9 @@ impl World {
     fn resolution_by_axis(&self, i: usize, j: usize) -> DVec3 {
         let (from, to) = (&self.previous.position, &self.current.position);
         let at = |body: usize| from[body].abs().max(to[body].abs());
-        let far = |body: usize| at(body) + self.extent(body).reach;
+        let far = |body: usize| at(body) + self.bodies.extent(body).reach;
         let far = far(i) + far(j);
-        match (self.shape(i), self.shape(j)) {
+        match (self.bodies.shape(i), self.bodies.shape(j)) {
             // A distance is a sum over all axes.
             (Some(Shape::Mesh(_)), Some(Shape::Sphere { .. }))
             | (Some(Shape::Sphere { .. }), Some(Shape::Mesh(_))) => {

@@ -74,7 +74,7 @@ impl World {
             }
         }
         let at = self.previous.position.clone();
-        pairs.retain(|&(i, j)| self.meet_at(i, j, at[j] - at[i]));
+        pairs.retain(|&(i, j)| self.bodies.meet_at(i, j, at[j] - at[i]));
         for &(i, j) in &pairs {
             let out = self.penetration(i, j, at[j] - at[i]);
             self.note_depth((i, j), out.depth);
@@ -89,11 +89,11 @@ impl World {
         offset: DVec3,
     ) -> Option<Meeting> {
         let (i, j) = bodies;
-        self.need_bvh(i);
-        self.need_bvh(j);
-        let forms = self.form(i).zip(self.form(j))?;
+        self.bodies.need_bvh(i);
+        self.bodies.need_bvh(j);
+        let forms = self.bodies.forms(i, j)?;
         let farthest = self.flush(i, j);
-        let is_apart = |to: DVec3| !self.meet_built(i, j, offset + to);
+        let is_apart = |to: DVec3| !self.bodies.meet_built(i, j, offset + to);
         let mut directions: Vec<DVec3> = Vec::new();
         let mut surfaces = parting_normals(forms.0, forms.1, offset);
         // Those of planes with the one body on one side and the other one on the other side first.
@@ -150,7 +150,12 @@ impl World {
     ) -> Option<(Vec<DVec3>, Vec<Plane>)> {
         let near = self.near_pairs(at, |i, j| {
             16.0 * self.hover_gap(i, j)
-                + 1e-6 * (self.extent(i).farthest.min(self.extent(j).farthest))
+                + 1e-6
+                    * (self
+                        .bodies
+                        .extent(i)
+                        .farthest
+                        .min(self.bodies.extent(j).farthest))
         });
         let mut place = at.to_vec();
         let mut planes: Vec<Plane> = Vec::new();
@@ -161,12 +166,12 @@ impl World {
                 if round > 0
                     && !is_known
                     && before != now
-                    && self.meet_built(i, j, now)
-                    && !self.meet_built(i, j, before)
+                    && self.bodies.meet_built(i, j, now)
+                    && !self.bodies.meet_built(i, j, before)
                 {
                     let reach = f64::from(f32::EPSILON)
                         * 64.0
-                        * (self.extent(i).farthest + self.extent(j).farthest)
+                        * (self.bodies.extent(i).farthest + self.bodies.extent(j).farthest)
                         * near.len() as f64;
                     meeting.push(Meeting {
                         bodies: (i, j),
@@ -179,11 +184,11 @@ impl World {
             for pair in meeting.iter() {
                 let (i, j) = pair.bodies;
                 let offset = place[j] - place[i];
-                if round > 0 && !self.meet_built(i, j, offset) {
+                if round > 0 && !self.bodies.meet_built(i, j, offset) {
                     continue;
                 }
                 is_new = true;
-                let forms = self.form(i).zip(self.form(j))?;
+                let forms = self.bodies.forms(i, j)?;
                 // Beyond where they meet, as times are rounded where shapes have closed forms.
                 let motion = 2.0 * (offset - pair.apart);
                 let contact = first_contact(forms.0, forms.1, snap(pair.apart), snap(motion))?;
@@ -240,14 +245,14 @@ impl World {
             if !self.may_collide(i, j) {
                 continue;
             }
-            self.need_bvh(i);
-            self.need_bvh(j);
+            self.bodies.need_bvh(i);
+            self.bodies.need_bvh(j);
             let hover = self.hover_gap(i, j);
-            let Some((first, second)) = self.form(i).zip(self.form(j)) else {
+            let Some((first, second)) = self.bodies.forms(i, j) else {
                 continue;
             };
             // Where rounding is larger than a body, nothing is known of what it touches.
-            let size = self.extent(i).half.min(self.extent(j).half);
+            let size = self.bodies.extent(i).half.min(self.bodies.extent(j).half);
             if size > 0.0 && hover > size {
                 continue;
             }
@@ -283,7 +288,7 @@ impl World {
     ) -> Vec<(usize, usize)> {
         let mut broad = Broad::default();
         let swept = |body: usize| {
-            let extent = self.extent(body);
+            let extent = self.bodies.extent(body);
             let wide = DVec3::splat(margin(body, body));
             Swept {
                 min: at[body] + extent.low - wide,
@@ -296,10 +301,10 @@ impl World {
             front.slack += margin(body, body);
             Some(front)
         };
-        broad.fill(&self.solid, swept, front);
+        broad.fill(&self.bodies.solid, swept, front);
         let mut pairs = Vec::new();
         broad.each_pair(|i, j| {
-            if self.is_movable(i) || self.is_movable(j) {
+            if self.bodies.is_movable(i) || self.bodies.is_movable(j) {
                 pairs.push((i, j));
             }
         });

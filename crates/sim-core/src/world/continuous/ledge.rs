@@ -78,7 +78,8 @@ impl World {
             true => event.contact.normal,
             false => -event.contact.normal,
         };
-        if !self.is_movable(body) || constraint.is_overlap || (normal - up).length() <= LEVEL {
+        if !self.bodies.is_movable(body) || constraint.is_overlap || (normal - up).length() <= LEVEL
+        {
             return None;
         }
         let start = &self.continuous.start;
@@ -113,14 +114,14 @@ impl World {
         let (up, most) = (slide.up, slide.most);
         let pair = (slide.body.min(slide.ledge), slide.body.max(slide.ledge));
         let hover = self.hover_gap(pair.0, pair.1);
-        let Some(forms) = self.form(pair.0).zip(self.form(pair.1)) else {
+        let Some(forms) = self.bodies.form(pair.0).zip(self.bodies.form(pair.1)) else {
             return Ok(false);
         };
         let sign = if slide.body == pair.1 { 1.0 } else { -1.0 };
         let start = &self.continuous.start;
         let offset = start.position[pair.1] - start.position[pair.0];
         // As far as until what is round is over it.
-        let size = self.extent(slide.body).half;
+        let size = self.bodies.extent(slide.body).half;
         let far = 4.0 * libm::sqrt(most * size) + 4.0 * most + 64.0 * hover;
         let is_free = |lift: f64| {
             let from = offset + sign * lift * up;
@@ -170,15 +171,15 @@ impl World {
     ) -> Result<bool, (usize, Cause)> {
         let (slider, up) = (slide.body, slide.up);
         let mut visited = Visited::default();
-        visited.begin(self.len());
+        visited.begin(self.bodies.len());
         let Some(island) = self.island_of(slider, &mut visited) else {
             return Ok(false);
         };
         let applied = &self.continuous.applied_acceleration;
-        let weight = |&body: &usize| -self.mass[body] * applied[body].dot(up);
+        let weight = |&body: &usize| -self.bodies.mass[body] * applied[body].dot(up);
         let work = lift * island.bodies.iter().map(weight).sum::<f64>();
         let squared = slide.along.length_squared();
-        let left = squared - 2.0 * work.max(0.0) / self.mass[slider];
+        let left = squared - 2.0 * work.max(0.0) / self.bodies.mass[slider];
         let climbs = self.continuous.climbs.get(slider).copied().unwrap_or(0);
         if visited.has(slide.ledge) || left <= 0.0 || climbs == MOST_CLIMBS {
             return Ok(false);
@@ -198,7 +199,7 @@ impl World {
             if !self.may_collide(body.min(other), body.max(other)) {
                 continue;
             }
-            self.need_bvh(other);
+            self.bodies.need_bvh(other);
             is_blocked = self.motion_at(other, time, &mut probe).map(|(at, _)| {
                 let from = self.continuous.start.position[body] - at;
                 self.is_stopped(body, other, from, [lift * up, by - lift * up])
@@ -214,7 +215,7 @@ impl World {
         for &body in &island.bodies {
             self.continuous.start.position[body] += by;
         }
-        let bodies = self.len();
+        let bodies = self.bodies.len();
         self.continuous.climbs.resize(bodies, 0);
         self.continuous.climbs[slider] += 1;
         let slower = libm::sqrt(left / squared);
@@ -226,7 +227,7 @@ impl World {
     /// Whether a body on a way of two parts from an offset meets another one: a point, or a sheet, has to be
     /// seen on the way.
     fn is_stopped(&self, body: usize, other: usize, from: DVec3, parts: [DVec3; 2]) -> bool {
-        let Some((other, body)) = self.form(other).zip(self.form(body)) else {
+        let Some((other, body)) = self.bodies.forms(other, body) else {
             return false;
         };
         let mut at = from;

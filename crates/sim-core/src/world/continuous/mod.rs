@@ -275,7 +275,7 @@ impl World {
     /// Finds the first impact of every pair that may have one.
     fn find_all_impacts(&mut self) -> Result<(), (usize, Cause)> {
         self.find_candidate_pairs();
-        self.queue_horizons(0..self.len());
+        self.queue_horizons(0..self.bodies.len());
         self.find_impacts_of_candidates()
     }
 
@@ -284,7 +284,7 @@ impl World {
         let mut broad = mem::take(&mut self.continuous.broad);
         let mut pairs = mem::take(&mut self.continuous.candidate_pairs);
         broad.fill(
-            &self.solid,
+            &self.bodies.solid,
             |body| self.swept(body),
             |body| self.front(body),
         );
@@ -297,8 +297,8 @@ impl World {
         self.continuous.candidate_pairs = pairs;
         for place in 0..count {
             let (i, j) = self.continuous.candidate_pairs[place];
-            self.need_bvh(i);
-            self.need_bvh(j);
+            self.bodies.need_bvh(i);
+            self.bodies.need_bvh(j);
         }
     }
 
@@ -340,7 +340,7 @@ impl World {
 
     /// Resolves events in the order of time until none is left.
     fn resolve_all(&mut self) -> Result<(), (usize, Cause)> {
-        let bodies = self.len();
+        let bodies = self.bodies.len();
         self.continuous.crush.begin();
         self.continuous.progress.begin(bodies);
         let mut group = mem::take(&mut self.continuous.group);
@@ -411,7 +411,7 @@ impl World {
     fn update_swept(&mut self, body: usize) {
         if let Some(front) = self.front(body) {
             self.continuous.broad.replace_front(front);
-        } else if self.shape[body].is_some() {
+        } else if self.bodies.has_shape(body) {
             let swept = self.swept(body);
             self.continuous.broad.replace(swept);
         }
@@ -419,7 +419,7 @@ impl World {
 
     /// Finds the next impacts of a body whose trajectory is new. Of two such, the pair is asked once.
     fn find_impacts_of(&mut self, body: usize, restarted: &[usize]) -> Result<(), (usize, Cause)> {
-        if self.shape(body).is_none() {
+        if self.bodies.shape(body).is_none() {
             return Ok(());
         }
         let mut partners = mem::take(&mut self.continuous.partners);
@@ -433,8 +433,8 @@ impl World {
                 continue;
             }
             self.continuous.candidate_pairs.push(pair);
-            self.need_bvh(body);
-            self.need_bvh(other);
+            self.bodies.need_bvh(body);
+            self.bodies.need_bvh(other);
             let mut probe = mem::take(&mut self.continuous.probe);
             let event = self.find_impact(pair.0, pair.1, &mut probe);
             self.continuous.probe = probe;
@@ -457,7 +457,7 @@ impl World {
             high,
             farthest,
             ..
-        } = self.extent(body);
+        } = self.bodies.extent(body);
         // More than is lost in rounding, here and where vertices are placed, and than a search goes beyond
         // the end of the step; and as far as bodies may be moved where others that meet are parted.
         let bend = self.chord_deviation(body);
@@ -472,7 +472,7 @@ impl World {
 
     /// The plane of a body at a place, if it is a half-space.
     fn front_at(&self, wall: usize, at: DVec3) -> Option<Front> {
-        let &Shape::HalfSpace { normal } = self.shape(wall)? else {
+        let &Shape::HalfSpace { normal } = self.bodies.shape(wall)? else {
             return None;
         };
         Some(Front {
@@ -485,7 +485,7 @@ impl World {
 
     /// The farthest that the plane of a body comes on its trajectory, if it is a half-space.
     fn front(&self, wall: usize) -> Option<Front> {
-        let &Shape::HalfSpace { normal } = self.shape(wall)? else {
+        let &Shape::HalfSpace { normal } = self.bodies.shape(wall)? else {
             return None;
         };
         let (from, to) = (

@@ -131,14 +131,14 @@ impl World {
 
     fn meet_now(&mut self, i: usize, j: usize) -> bool {
         let offset = self.current.position[j] - self.current.position[i];
-        self.may_collide(i, j) && self.meet_at(i, j, offset)
+        self.may_collide(i, j) && self.bodies.meet_at(i, j, offset)
     }
 
     /// Moves two bodies apart by the least that does it, but for a factor of two, if that is no more
     /// than a length.
     fn part(&mut self, i: usize, j: usize, most: f64) -> bool {
         let before = (self.current.position[i], self.current.position[j]);
-        let forms = self.form(i).zip(self.form(j));
+        let forms = self.bodies.forms(i, j);
         let offset = before.1 - before.0;
         let mut normals = forms.map_or_else(Vec::new, |(a, b)| parting_normals(a, b, offset));
         normals.push(self.apart_along(i, j));
@@ -164,21 +164,21 @@ impl World {
     /// and bodies go back to where the step began, where nothing met, no faster than they were there; so
     /// does all that they meet there. Immovable ones go on, and take what they meet along.
     fn roll_back(&mut self, pair: (usize, usize), back: &mut Back) -> Result<(), (usize, Cause)> {
-        back.with.resize(self.len(), None);
-        let solid = self.in_order(self.solid.iter().map(|&body| (body, body)));
+        back.with.resize(self.bodies.len(), None);
+        let solid = self.in_order(self.bodies.solid.iter().map(|&body| (body, body)));
         let mut pairs = alloc::vec![pair];
         while let Some((i, j)) = pairs.pop() {
             if !self.meet_now(i, j) {
                 continue;
             }
             self.bounce(i, j);
-            let frame = |body: usize| match self.mass[body].is_finite() {
+            let frame = |body: usize| match self.bodies.is_movable(body) {
                 true => back.of(body),
                 false => Some(Frame::Of(body)),
             };
             let frame = match (frame(i), frame(j)) {
                 (Some(one), Some(other)) if self.moves_of(one) != self.moves_of(other) => {
-                    let body = if self.mass[i].is_finite() { i } else { j };
+                    let body = if self.bodies.is_movable(i) { i } else { j };
                     let (one, other) = (one.wall().unwrap_or(i), other.wall().unwrap_or(j));
                     let between = (one.min(other), one.max(other));
                     return Err((body, Cause::Squeezed(between)));
@@ -187,7 +187,7 @@ impl World {
                 (None, None) => Frame::Still,
             };
             for body in [i, j] {
-                if self.mass[body].is_finite() && back.of(body).is_none() {
+                if self.bodies.is_movable(body) && back.of(body).is_none() {
                     back.with[body] = Some(frame);
                     let start = self.previous.position[body];
                     self.current.position[body] = start + self.moves_of(frame);
@@ -213,7 +213,7 @@ impl World {
 
     /// Moves the starts of two trajectories apart.
     pub(super) fn move_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
-        let (first, second) = shares(self.is_movable(i), self.is_movable(j));
+        let (first, second) = shares(self.bodies.is_movable(i), self.bodies.is_movable(j));
         let position = &mut self.continuous.start.position;
         position[i] -= first * by;
         position[j] += second * by;
@@ -229,12 +229,12 @@ impl World {
     ) -> Result<f64, (usize, Cause)> {
         let mut room = [0.0; 2];
         for (room, (body, other, way)) in room.iter_mut().zip([(i, j, -by), (j, i, by)]) {
-            if self.is_movable(body) {
+            if self.bodies.is_movable(body) {
                 let free = self.free_part(body, other, way, time)?;
                 *room = if free < 1.0 { 0.5 * free } else { 1.0 };
             }
         }
-        let share = shares(self.is_movable(i), self.is_movable(j));
+        let share = shares(self.bodies.is_movable(i), self.bodies.is_movable(j));
         let lacking = ((share.0 - room[0]).max(0.0), (share.1 - room[1]).max(0.0));
         let first = (share.0 + lacking.1).min(room[0]);
         let second = (share.1 + lacking.0).min(room[1]);
@@ -272,11 +272,11 @@ impl World {
             if other == except || !self.may_collide(body.min(other), body.max(other)) {
                 continue;
             }
-            self.need_bvh(body);
-            self.need_bvh(other);
+            self.bodies.need_bvh(body);
+            self.bodies.need_bvh(other);
             let found = self.motion_at(other, time, &mut probe).map(|(at, _)| {
                 let offset = self.continuous.start.position[body] - at;
-                let forms = self.form(other).zip(self.form(body))?;
+                let forms = self.bodies.forms(other, body)?;
                 first_contact(forms.0, forms.1, snap(offset), snap(way))
             });
             free = match found {
@@ -292,7 +292,7 @@ impl World {
     }
 
     fn move_current_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
-        let (first, second) = shares(self.mass[i].is_finite(), self.mass[j].is_finite());
+        let (first, second) = shares(self.bodies.is_movable(i), self.bodies.is_movable(j));
         self.current.position[i] -= first * by;
         self.current.position[j] += second * by;
     }

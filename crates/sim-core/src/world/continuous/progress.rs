@@ -126,7 +126,7 @@ impl World {
         if progress.has_end() {
             return Ok(());
         }
-        let caught = (0..self.len()).filter(|&body| progress.takes_part(body));
+        let caught = (0..self.bodies.len()).filter(|&body| progress.takes_part(body));
         let crush = &self.continuous.crush;
         let mut squeezed = caught.filter_map(|body| Some((body, crush.between(body)?)));
         Err(match squeezed.next() {

@@ -123,15 +123,10 @@ impl World {
         time: f64,
         restarted: &mut Vec<usize>,
     ) -> Result<(), (usize, Cause)> {
-        if self.is_movable(body) {
+        if self.bodies.is_movable(body) {
             restarted.extend(self.restart_at(body, time)?);
         }
         Ok(())
-    }
-
-    /// Whether impacts change the trajectory of a body.
-    pub(in crate::world) fn is_movable(&self, body: usize) -> bool {
-        self.mass[body].is_finite()
     }
 
     /// Adds to impacts that come to rest those that their bodies and what lies with these come to soon:
@@ -146,7 +141,7 @@ impl World {
     ) -> Result<(), (usize, Cause)> {
         loop {
             let mut visited = mem::take(&mut self.continuous.visited);
-            visited.begin(self.len());
+            visited.begin(self.bodies.len());
             let mut is_bundled = false;
             for body in group
                 .iter()
@@ -212,13 +207,14 @@ impl World {
     /// they have had.
     fn count(&mut self, group: &[Event]) {
         for event in group {
-            let is_counted = event.outcome != Outcome::Bounce || !self.restitution.is_empty();
+            let is_counted =
+                event.outcome != Outcome::Bounce || !self.bodies.restitution.is_empty();
             let closing = self.closing(event);
             for body in [event.bodies.0, event.bodies.1] {
-                if !is_counted || !self.is_movable(body) || event.kind != EventKind::Impact {
+                if !is_counted || !self.bodies.is_movable(body) || event.kind != EventKind::Impact {
                     continue;
                 }
-                let (bodies, continuous) = (self.mass.len(), &mut self.continuous);
+                let (bodies, continuous) = (self.bodies.mass.len(), &mut self.continuous);
                 if event.outcome == Outcome::Bounce {
                     continuous.bounces.resize(bodies, Bounces::default());
                     let bounces = &mut continuous.bounces[body];
@@ -264,14 +260,14 @@ impl World {
         let pressed = self.pressed(event);
         let ((i, j), normal) = (event.bodies, event.contact.normal);
         let is_forced = self.coupled_group(i).is_some() || self.coupled_group(j).is_some();
-        let leaving = self.pair_restitution(i, j) * closing;
+        let leaving = self.bodies.pair_restitution(i, j) * closing;
         if !is_forced || leaving <= 0.0 {
             return pressed;
         }
         let is_bundled = self.is_bundled(i) || self.is_bundled(j);
         let flight = self.settings.dt * self.shortest_flight(is_bundled);
-        let weight = |body: usize| match self.is_movable(body) {
-            true => 1.0 / self.mass[body],
+        let weight = |body: usize| match self.bodies.is_movable(body) {
+            true => 1.0 / self.bodies.mass[body],
             false => 0.0,
         };
         let (first, second) = (weight(i), weight(j));
@@ -327,7 +323,7 @@ impl World {
         if closing <= 0.0 || self.is_held(i, j) {
             return false;
         }
-        let restitution = self.pair_restitution(i, j);
+        let restitution = self.bodies.pair_restitution(i, j);
         let lasting = restitution * (closing - self.unfelt(load_speed)).max(0.0);
         // Back after the time 2 v / a.
         let is_bundled = self.is_bundled(i) || self.is_bundled(j);
@@ -488,7 +484,7 @@ impl World {
                 let (i, j) = event.bodies;
                 // What gives back a part goes to and fro in a row without end, and comes to rest; so does, at
                 // once, what lies in a heap.
-                let is_lossy = self.pair_restitution(i, j) < 1.0;
+                let is_lossy = self.bodies.pair_restitution(i, j) < 1.0;
                 let is_bundled = self.is_bundled(i) || self.is_bundled(j);
                 let ends = is_lossy && (is_bundled || round > MANY_BOUNCES);
                 event.outcome == Outcome::Bounce && !ends
@@ -503,7 +499,7 @@ impl World {
                     .iter()
                     .flat_map(|event| [event.bodies.0, event.bodies.1]),
             );
-            changed.retain(|&body| self.is_movable(body));
+            changed.retain(|&body| self.bodies.is_movable(body));
             seeds.extend(&changed);
         }
         Ok(())
@@ -558,7 +554,7 @@ impl World {
     fn bounce_together<'a>(&mut self, events: impl Iterator<Item = &'a Event> + Clone, time: f64) {
         let restitution = events
             .clone()
-            .map(|event| self.pair_restitution(event.bodies.0, event.bodies.1))
+            .map(|event| self.bodies.pair_restitution(event.bodies.0, event.bodies.1))
             .fold(1.0, f64::min);
         let places = Places::between(self, events.clone().map(Event::plane));
         let mut velocity = places.each(|body| self.continuous.start.velocity[body]);
@@ -569,9 +565,9 @@ impl World {
             &mut velocity,
             restitution,
         );
-        if self.is_rough() {
+        if self.bodies.is_rough() {
             let bodies = events.clone().map(|event| event.bodies).zip(&given);
-            let most = bodies.map(|((i, j), &given)| limit(self.pair_friction(i, j), given));
+            let most = bodies.map(|((i, j), &given)| limit(self.bodies.pair_friction(i, j), given));
             let most: Vec<f64> = most.collect();
             let fastest = greatest(&before);
             let none = vec![DVec3::ZERO; given.len()];
@@ -607,13 +603,16 @@ impl World {
     /// Exchanges the impulse of one impact.
     pub(super) fn exchange_there(&mut self, event: &Event, time: f64) {
         let (i, j) = event.bodies;
-        let restitution = self.pair_restitution(i, j);
+        let restitution = self.bodies.pair_restitution(i, j);
         let velocity = &self.continuous.start.velocity;
-        let moving = ((self.mass[i], self.mass[j]), (velocity[i], velocity[j]));
+        let moving = (
+            (self.bodies.mass[i], self.bodies.mass[j]),
+            (velocity[i], velocity[j]),
+        );
         let time = self.time() + time;
         let after = self.exchange((i, j), &event.contact, moving, restitution, time);
         for (body, velocity) in [(i, after.0), (j, after.1)] {
-            if self.is_movable(body) {
+            if self.bodies.is_movable(body) {
                 self.continuous.start.velocity[body] = velocity;
             }
         }

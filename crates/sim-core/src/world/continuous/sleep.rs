@@ -29,7 +29,7 @@ impl World {
     }
 
     pub(super) fn fall_asleep(&mut self, body: usize) {
-        let bodies = self.len();
+        let bodies = self.bodies.len();
         self.continuous.asleep.resize(bodies, false);
         self.continuous.asleep[body] = true;
     }
@@ -51,7 +51,7 @@ impl World {
     pub(super) fn sleep_together(&self, i: usize, j: usize) -> bool {
         let rests = |body: usize| {
             self.is_asleep(body)
-                || !self.is_movable(body) && self.previous.velocity[body] == DVec3::ZERO
+                || !self.bodies.is_movable(body) && self.previous.velocity[body] == DVec3::ZERO
         };
         !self.continuous.asleep.is_empty() && rests(i) && rests(j)
     }

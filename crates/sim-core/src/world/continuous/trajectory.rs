@@ -35,7 +35,7 @@ pub(super) struct Probe {
 impl World {
     /// Lets every trajectory start where the step does. The ends are in the current state already.
     pub(super) fn begin_trajectories(&mut self) {
-        let n = self.len();
+        let n = self.bodies.len();
         let sections = self.plan.as_ref().map_or(0, |plan| plan.sections.len());
         let method = self.settings.method;
         let is_first_order = method.order == 1 && method.fall.is_some();
@@ -46,7 +46,7 @@ impl World {
         continuous.start.clone_from(&self.previous);
         continuous
             .applied_acceleration
-            .clone_from(&self.acceleration);
+            .clone_from(&self.bodies.acceleration);
         if is_first_order && let Some(plan) = &self.plan {
             let forced = plan.sections.iter();
             for body in forced.flat_map(|section| section.bodies.clone()) {
@@ -115,8 +115,8 @@ impl World {
         let Some((bodies, is_coupled)) = self.coupled_group(body) else {
             return Ok(self.on_parabola(body, h));
         };
-        probe.state.position.resize(self.len(), DVec3::ZERO);
-        probe.state.velocity.resize(self.len(), DVec3::ZERO);
+        probe.state.position.resize(self.bodies.len(), DVec3::ZERO);
+        probe.state.velocity.resize(self.bodies.len(), DVec3::ZERO);
         self.step_group(
             bodies,
             is_coupled,
@@ -271,7 +271,7 @@ impl World {
             forces: &self.forces,
             plan,
             is_coupled,
-            mass: &self.mass[bodies.clone()],
+            mass: &self.bodies.mass[bodies.clone()],
             acceleration: &continuous.acceleration[bodies.clone()],
             bodies: bodies.clone(),
             group: None,
