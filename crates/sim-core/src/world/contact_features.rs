@@ -110,7 +110,7 @@ impl World {
     /// How far two bodies in contact are apart now along its normal, m.
     fn gap_of(&self, contact: &RestingContact, offset: DVec3) -> f64 {
         let (i, j) = contact.bodies;
-        let hover = self.hover_gap(i, j);
+        let hover = self.layout().hover_gap(i, j);
         let reach = 2.0 * contact.gap.max(0.0) + 16.0 * hover;
         let (start, way) = (
             offset + hover * contact.normal,

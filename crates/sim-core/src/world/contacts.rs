@@ -63,11 +63,11 @@ impl World {
 
     /// Steps that have ended with bodies in contact, since the world was made.
     pub fn contact_steps(&self) -> u64 {
-        self.contact_steps
+        self.record.contact_steps
     }
 
     /// What bundling the contacts of heaps has changed in the last step.
     pub fn bundled(&self) -> Bundled {
-        self.bundled
+        self.continuous.bundled
     }
 }

@@ -19,10 +19,13 @@ use glam::DVec3;
 use super::{
     World,
     order::{self, Key},
+    record::Record,
+    scene::{Scene, scene},
+    state::State,
 };
 use crate::{
     collide::{Broad, Contact},
-    impulse::{Joined, reflect},
+    impulse::{self, Joined, reflect},
     pieces::Pieces,
 };
 
@@ -85,26 +88,53 @@ impl PartialEq for Meeting {
 
 impl Eq for Meeting {}
 
+/// A step of bodies that are where it ends already.
+pub(super) struct DiscreteStep<'a> {
+    scene: Scene<'a>,
+    end: &'a mut State,
+    memory: &'a mut Discrete,
+    record: &'a mut Record,
+}
+
 impl World {
     /// Lets bodies that meet bounce, and puts them back to where the step began.
-    pub(super) fn collide(&mut self) {
+    pub(super) fn collide_discretely(&mut self) {
         // What this mode does to bodies in contact it does where a step ends.
         self.contacts.clear();
         self.continuous.placed = true;
+        let mut step = self.discrete_step();
+        step.collide();
+        if !step.scene.overlaps.pairs.is_empty() {
+            self.overlaps.pairs = step.part_overlapping();
+        }
+    }
+
+    fn discrete_step(&mut self) -> DiscreteStep<'_> {
+        DiscreteStep {
+            scene: scene!(self),
+            end: &mut self.current,
+            memory: &mut self.discrete,
+            record: &mut self.record,
+        }
+    }
+}
+
+impl DiscreteStep<'_> {
+    /// Lets bodies that meet bounce, and puts them back to where the step began.
+    fn collide(&mut self) {
         self.find_meeting_pairs();
-        if !self.discrete.meeting.is_empty() {
+        if !self.memory.meeting.is_empty() {
             self.bounce_all();
         }
-        self.part_overlapping();
     }
 
     /// Finds the pairs that meet now and were apart.
     fn find_meeting_pairs(&mut self) {
-        let mut meeting = mem::take(&mut self.discrete.meeting);
+        let mut meeting = mem::take(&mut self.memory.meeting);
         meeting.clear();
         if self.is_few() {
-            for (second, &j) in self.bodies.solid.iter().enumerate() {
-                for &i in &self.bodies.solid[..second] {
+            for (second, &j) in self.scene.bodies.solid.iter().enumerate() {
+                for &i in &self.scene.bodies.solid[..second] {
                     if self.collides(i, j) {
                         meeting.push((i, j));
                     }
@@ -112,41 +142,45 @@ impl World {
             }
         } else {
             self.find_near_pairs();
-            let near = self.discrete.near.iter().copied();
+            let near = self.memory.near.iter().copied();
             meeting.extend(near.filter(|&(i, j)| self.collides(i, j)));
         }
-        self.discrete.meeting = meeting;
+        self.memory.meeting = meeting;
     }
 
     /// Finds the pairs that may meet on the way of the step.
     fn find_near_pairs(&mut self) {
-        let mut broad = mem::take(&mut self.discrete.broad);
-        let way = |body: usize| (self.previous.position[body], self.current.position[body]);
+        let mut broad = mem::take(&mut self.memory.broad);
+        let way = |body: usize| (self.scene.before.position[body], self.end.position[body]);
         broad.fill(
-            &self.bodies.solid,
-            |body| self.swept_box(body, way(body).0, way(body).1),
-            |body| self.swept_front(body, way(body).0, way(body).1),
+            &self.scene.bodies.solid,
+            |body| self.scene.bodies.swept_box(body, way(body).0, way(body).1),
+            |body| {
+                self.scene
+                    .bodies
+                    .swept_front(body, way(body).0, way(body).1)
+            },
         );
-        let near = &mut self.discrete.near;
+        let near = &mut self.memory.near;
         near.clear();
         broad.each_pair(|i, j| near.push((i, j)));
-        self.discrete.broad = broad;
+        self.memory.broad = broad;
     }
 
     fn is_few(&self) -> bool {
-        self.bodies.solid.len() <= FEW
+        self.scene.bodies.solid.len() <= FEW
     }
 
     /// Bounces and puts back until no pair collides.
     fn bounce_all(&mut self) {
         // Out of the world while it is changed.
-        let mut meetings = mem::take(&mut self.discrete.meetings);
-        let mut group = mem::take(&mut self.discrete.group);
-        let mut is_back = mem::take(&mut self.discrete.is_back);
-        let mut put_back = mem::take(&mut self.discrete.put_back);
+        let mut meetings = mem::take(&mut self.memory.meetings);
+        let mut group = mem::take(&mut self.memory.group);
+        let mut is_back = mem::take(&mut self.memory.is_back);
+        let mut put_back = mem::take(&mut self.memory.put_back);
         is_back.clear();
-        is_back.resize(self.bodies.len(), false);
-        let pairs = self.discrete.meeting.iter();
+        is_back.resize(self.scene.bodies.len(), false);
+        let pairs = self.memory.meeting.iter();
         meetings.extend(pairs.map(|&pair| self.meeting_of(pair, &is_back)));
         while let Some(first) = next(&mut meetings, f64::INFINITY, &is_back) {
             // The same time, but for rounding.
@@ -161,7 +195,7 @@ impl World {
                 .flat_map(|meeting| [meeting.bodies.0, meeting.bodies.1])
             {
                 if !mem::replace(&mut is_back[body], true) {
-                    self.current.position[body] = self.previous.position[body];
+                    self.end.position[body] = self.scene.before.position[body];
                     put_back.push(body);
                 }
             }
@@ -175,7 +209,7 @@ impl World {
                 });
             }
         }
-        let discrete = &mut self.discrete;
+        let discrete = &mut self.memory;
         (discrete.meetings, discrete.group) = (meetings, group);
         (discrete.is_back, discrete.put_back) = (is_back, put_back);
     }
@@ -183,20 +217,20 @@ impl World {
     /// Every other body whose box meets that of a body on the way of the step.
     fn each_near(&self, body: usize, mut found: impl FnMut(usize)) {
         if self.is_few() {
-            let others = self.bodies.solid.iter().copied();
+            let others = self.scene.bodies.solid.iter().copied();
             others.filter(|&other| other != body).for_each(found);
         } else {
-            self.discrete.broad.each_partner(body, &mut found);
+            self.memory.broad.each_partner(body, &mut found);
         }
     }
 
     /// Whether two bodies meet that were apart.
     fn collides(&self, i: usize, j: usize) -> bool {
-        self.may_collide(i, j) && self.meet(i, j)
+        self.scene.may_collide(i, j) && self.scene.meet(self.end, i, j)
     }
 
     fn meeting_of(&self, (i, j): (usize, usize), is_back: &[bool]) -> Meeting {
-        let contact = self.contact_on_way(i, j);
+        let contact = self.scene.contact_on_way(self.end, i, j);
         Meeting {
             time: contact.as_ref().map_or(1.0, |contact| contact.time),
             bodies: (i, j),
@@ -209,7 +243,7 @@ impl World {
     fn exchange_at_once(&mut self, group: &[Meeting]) {
         if let [only] = group {
             if let Some(contact) = &only.contact {
-                self.exchange_on_way(only.bodies, contact);
+                self.note_exchange(only.bodies, contact);
             }
             return;
         }
@@ -221,13 +255,17 @@ impl World {
         // What an immovable body is given does not reach others.
         let mut pieces = Pieces::new(bodies.len());
         for Touching { bodies: [i, j], .. } in &touching {
-            if self.bodies.is_movable(*i) && self.bodies.is_movable(*j) {
+            if self.scene.bodies.is_movable(*i) && self.scene.bodies.is_movable(*j) {
                 pieces.join(place(*i), place(*j));
             }
         }
         let mut piece_of = |touching: &Touching| {
             let [i, j] = touching.bodies;
-            pieces.first(place(if self.bodies.is_movable(i) { i } else { j }))
+            pieces.first(place(if self.scene.bodies.is_movable(i) {
+                i
+            } else {
+                j
+            }))
         };
         let mut in_pieces: Vec<(usize, Touching)> = touching
             .into_iter()
@@ -236,7 +274,7 @@ impl World {
         in_pieces.sort_by_key(|&(piece, _)| piece);
         for piece in in_pieces.chunk_by(|a, b| a.0 == b.0) {
             match piece {
-                [(_, only)] => self.exchange_on_way(only.pair(), &only.contact),
+                [(_, only)] => self.note_exchange(only.pair(), &only.contact),
                 _ => self.reflect_piece(piece),
             }
         }
@@ -245,7 +283,7 @@ impl World {
     /// What touches in a meeting, from the body that comes first in an order of motion.
     fn touching(&self, meeting: &Meeting) -> Option<Touching> {
         let (contact, (i, j)) = (meeting.contact?, meeting.bodies);
-        let keys = [self.motion_key(i), self.motion_key(j)];
+        let keys = [self.scene.motion_key(i), self.scene.motion_key(j)];
         let is_turned = keys[1] < keys[0];
         Some(Touching {
             is_turned,
@@ -260,9 +298,12 @@ impl World {
         })
     }
 
-    fn exchange_on_way(&mut self, bodies: (usize, usize), contact: &Contact) {
-        let time = self.time() + contact.time * self.settings.dt;
-        self.exchange_now(bodies, contact, time);
+    fn note_exchange(&mut self, bodies: (usize, usize), contact: &Contact) {
+        let velocity = &mut self.end.velocity;
+        let impact = self.scene.exchange_on_way(bodies, contact, velocity);
+        impact
+            .into_iter()
+            .for_each(|impact| self.record.note(impact));
     }
 
     /// Lets bodies that hang together part with the least restitution of all.
@@ -284,27 +325,119 @@ impl World {
         let joined: Vec<Joined> = joined.collect();
         let restitution = piece()
             .map(|touching| {
-                self.bodies
+                self.scene
+                    .bodies
                     .pair_restitution(touching.bodies[0], touching.bodies[1])
             })
             .fold(1.0, f64::min);
         let inverse_mass: Vec<f64> = bodies
             .iter()
-            .map(|&body| 1.0 / self.bodies.mass[body])
+            .map(|&body| 1.0 / self.scene.bodies.mass[body])
             .collect();
-        let velocity = bodies.iter().map(|&body| self.current.velocity[body]);
+        let velocity = bodies.iter().map(|&body| self.end.velocity[body]);
         let before: Vec<DVec3> = velocity.collect();
         let mut after = before.clone();
         let impulses = reflect(&joined, &inverse_mass, &mut after, restitution);
         for (&body, &velocity) in bodies.iter().zip(&after) {
-            self.current.velocity[body] = velocity;
+            self.end.velocity[body] = velocity;
         }
         for ((touching, joined), impulse) in piece().zip(&joined).zip(impulses) {
             if impulse > 0.0 {
                 let speeds = (-joined.opening(&before), joined.opening(&after));
-                let time = self.time() + touching.contact.time * self.settings.dt;
-                self.note_impact(touching.pair(), &touching.contact, impulse, speeds, time);
+                let time = self.scene.time + touching.contact.time * self.scene.settings.dt;
+                let impact =
+                    self.scene
+                        .impact(touching.pair(), &touching.contact, impulse, speeds, time);
+                self.record.note(impact);
             }
+        }
+    }
+
+    /// Keeps pairs in overlap from moving closer, by an elastic impulse along the line of their centres, and
+    /// tells which have not parted.
+    fn part_overlapping(&mut self) -> Vec<(usize, usize)> {
+        let mut pairs = self.scene.overlaps.pairs.to_vec();
+        pairs.retain(|&(i, j)| self.scene.meet(self.end, i, j));
+        if !pairs.is_empty() {
+            self.exchange_in_overlap(&pairs);
+        }
+        pairs
+    }
+
+    /// Lets all pairs that move closer exchange an impulse at once. Where several share a body, each
+    /// gives the part of its impulse that makes all of them no more than one: the velocities are then
+    /// a mean of some that each keep the energy, so that none is gained.
+    fn exchange_in_overlap(&mut self, pairs: &[(usize, usize)]) {
+        let velocity = &self.end.velocity;
+        let closing: Vec<((usize, usize), DVec3)> = pairs
+            .iter()
+            .filter_map(|&(i, j)| {
+                Some((
+                    (i, j),
+                    self.scene.bodies.line_apart(&self.end.position, (i, j))?,
+                ))
+            })
+            .filter(|&((i, j), normal)| (velocity[j] - velocity[i]).dot(normal) < 0.0)
+            .collect();
+        let mut shares: BTreeMap<usize, u32> = BTreeMap::new();
+        for &((i, j), _) in &closing {
+            for body in [i, j]
+                .into_iter()
+                .filter(|&body| self.scene.bodies.is_movable(body))
+            {
+                *shares.entry(body).or_insert(0) += 1;
+            }
+        }
+        let time = self.scene.time + self.scene.settings.dt;
+        let (mut changes, mut noted) = (Vec::new(), Vec::new());
+        for ((i, j), normal) in closing {
+            let centre = |body: usize| self.scene.bodies.centre(&self.end.position, body);
+            let point = 0.5 * (centre(i) + centre(j));
+            let contact = Contact {
+                time: 1.0,
+                point,
+                normal,
+                feature: None,
+                face: None,
+            };
+            let shared = |body: usize| shares.get(&body).copied().unwrap_or(1);
+            let most = shared(i).max(shared(j));
+            if most == 1 {
+                // Nobody else has a say in these two.
+                self.note_exchange((i, j), &contact);
+                continue;
+            }
+            let velocity = &self.end.velocity;
+            let (before, masses) = (
+                (velocity[i], velocity[j]),
+                (self.scene.bodies.mass[i], self.scene.bodies.mass[j]),
+            );
+            let restitution = self.scene.bodies.pair_restitution(i, j);
+            let given = impulse::between(
+                (masses.0, before.0),
+                (masses.1, before.1),
+                normal,
+                restitution,
+            );
+            let Some(given) = given else { continue };
+            let impulse = given.impulse / f64::from(most);
+            changes.push((i, -(impulse / masses.0) * normal));
+            changes.push((j, impulse / masses.1 * normal));
+            noted.push(((i, j), contact, impulse, (before.0 - before.1).dot(normal)));
+        }
+        // In an order that comes from the terms alone.
+        changes.sort_by_cached_key(|&(body, change)| (body, order::of_vector(change)));
+        for of_body in changes.chunk_by(|a, b| a.0 == b.0) {
+            let change: DVec3 = of_body.iter().map(|&(_, change)| change).sum();
+            self.end.velocity[of_body[0].0] += change;
+        }
+        for ((i, j), contact, impulse, closing) in noted {
+            let velocity = &self.end.velocity;
+            let parting = (velocity[j] - velocity[i]).dot(contact.normal);
+            let impact = self
+                .scene
+                .impact((i, j), &contact, impulse, (closing, parting), time);
+            self.record.note(impact);
         }
     }
 }
@@ -422,6 +555,14 @@ mod tests {
         pairs.filter(|&(i, j)| is(i, j)).collect()
     }
 
+    /// The pairs that meet and were apart, one by one.
+    fn colliding(world: &mut World) -> Vec<(usize, usize)> {
+        let pairs = pairs(world, |_, _| true);
+        let step = world.discrete_step();
+        let colliding = pairs.into_iter().filter(|&(i, j)| step.collides(i, j));
+        colliding.collect()
+    }
+
     #[test]
     fn pairs_that_meet_are_those_of_brute_force() {
         let (mut met, mut back) = (0, 0);
@@ -433,10 +574,11 @@ mod tests {
                     // As far as a step goes before it looks at collisions.
                     mem::swap(&mut world.previous, &mut world.current);
                     world.integrate().unwrap();
-                    world.find_meeting_pairs();
-                    let mut meeting = world.discrete.meeting.clone();
+                    let mut step = world.discrete_step();
+                    step.find_meeting_pairs();
+                    let mut meeting = step.memory.meeting.clone();
                     meeting.sort_unstable_by_key(|&(i, j)| (j, i));
-                    assert_eq!(meeting, pairs(&world, |i, j| world.collides(i, j)));
+                    assert_eq!(meeting, colliding(&mut world));
                     met += meeting.len();
                     // Whoever may meet where one or both are put back is near.
                     let there = [world.previous.clone(), world.current.clone()];
@@ -445,19 +587,22 @@ mod tests {
                         let meet = |moved: &mut World, i: usize, j: usize| {
                             moved.current.position[i] = there[one].position[i];
                             moved.current.position[j] = there[other].position[j];
-                            moved.meet(i, j)
+                            let at = &moved.current.position;
+                            moved.bodies.meet_at(i, j, at[j] - at[i])
                         };
                         for (i, j) in pairs(&world, |_, _| true) {
                             if meet(&mut moved, i, j) {
                                 let mut is_near = false;
-                                world.each_near(i, |near| is_near |= near == j);
+                                world
+                                    .discrete_step()
+                                    .each_near(i, |near| is_near |= near == j);
                                 assert!(is_near, "{i} {j}");
                                 back += 1;
                             }
                         }
                     }
-                    world.collide();
-                    world.steps += 1;
+                    world.collide_discretely();
+                    world.elapsed.steps += 1;
                 }
             }
         }
@@ -472,7 +617,7 @@ mod tests {
             for _ in 0..60 {
                 let energy = world.kinetic_energy();
                 world.step().unwrap();
-                assert_eq!(pairs(&world, |i, j| world.collides(i, j)), [], "{seed}");
+                assert_eq!(colliding(&mut world), [], "{seed}");
                 assert!(world.kinetic_energy() <= energy * (1.0 + 1e-12), "{seed}");
             }
             impacts += world.impacts();

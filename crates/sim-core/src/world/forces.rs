@@ -1,21 +1,41 @@
 //! The forces of a world: adding, changing, removing them.
 
+use alloc::vec::Vec;
 use glam::DVec3;
 
-use super::{World, WorldError, error};
+use super::{World, WorldError, error, order, plan::Plan};
 use crate::{
     Force,
     force::{BodyMotion, PairMotion, Reach},
 };
 
+/// The forces of a world beside the constant resultants of its bodies.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Forces {
+    pub(super) list: Vec<Force>,
+    /// Acceleration by all weights, m/s².
+    weight: DVec3,
+    /// Who is stepped with whom, as of when it was made.
+    pub(super) plan: Plan,
+    /// Whether that is still so: neither bodies nor forces have changed.
+    is_planned: bool,
+}
+
+impl Forces {
+    /// Bodies or forces have changed.
+    pub(super) fn forget_plan(&mut self) {
+        self.is_planned = false;
+    }
+}
+
 impl World {
     /// Adds a force beside the constant resultants of the bodies, and returns its place in
     /// [`World::forces`].
     pub fn add_force(&mut self, force: Force) -> Result<usize, WorldError> {
-        let index = self.forces.len();
+        let index = self.forces.list.len();
         self.check_force(index, &force)?;
         let is_weight = force.reach() == Reach::Weight;
-        self.forces.push(force);
+        self.forces.list.push(force);
         self.forces_changed(is_weight);
         Ok(index)
     }
@@ -23,8 +43,8 @@ impl World {
     /// Puts another force in the place of one.
     pub fn replace_force(&mut self, index: usize, force: Force) -> Result<(), WorldError> {
         self.check_force(index, &force)?;
-        let forces = self.forces.len();
-        let place = self.forces.get_mut(index);
+        let forces = self.forces.list.len();
+        let place = self.forces.list.get_mut(index);
         let place = place.ok_or(WorldError::NoForce { index, forces })?;
         let is_weight = [&*place, &force].map(Force::reach).contains(&Reach::Weight);
         *place = force;
@@ -34,18 +54,18 @@ impl World {
 
     /// Removes a force; those after it move up by one place.
     pub fn remove_force(&mut self, index: usize) -> Result<Force, WorldError> {
-        let forces = self.forces.len();
+        let forces = self.forces.list.len();
         if index >= forces {
             return Err(WorldError::NoForce { index, forces });
         }
-        let force = self.forces.remove(index);
+        let force = self.forces.list.remove(index);
         self.forces_changed(force.reach() == Reach::Weight);
         Ok(force)
     }
 
     /// The forces beside the constant resultants of the bodies.
     pub fn forces(&self) -> &[Force] {
-        &self.forces
+        &self.forces.list
     }
 
     /// Potential energy of all forces that have one, J: 0 for a constant force or weight on a body
@@ -63,7 +83,7 @@ impl World {
         };
         // Without forces the sum is minus zero.
         let mut energy = constant + 0.0;
-        for force in &self.forces {
+        for force in &self.forces.list {
             energy += match force.reach() {
                 Reach::Weight | Reach::EachBody => {
                     bodies.clone().map(|i| of_body(force, i)).sum::<f64>()
@@ -90,28 +110,44 @@ impl World {
         if self.bodies.mass[body].is_infinite() {
             return DVec3::ZERO;
         }
-        self.bodies.force[body] / self.bodies.mass[body] + self.weight
+        self.bodies.force[body] / self.bodies.mass[body] + self.forces.weight
     }
 
     /// Forces have changed, a weight among them or not: many are added one by one.
     fn forces_changed(&mut self, is_weight: bool) {
-        self.plan = None;
+        self.forces.forget_plan();
         self.continuous.wake_all();
-        self.speed_scale = None;
+        self.integrator.forget_growth();
         if !is_weight {
             return;
         }
-        let weights = self.forces.iter().filter_map(|force| match force {
+        let weights = self.forces.list.iter().filter_map(|force| match force {
             Force::Gravity { acceleration } => Some(*acceleration),
             _ => None,
         });
         let weight = weights.sum();
-        if weight != self.weight {
-            self.weight = weight;
+        if weight != self.forces.weight {
+            self.forces.weight = weight;
             for body in 0..self.bodies.len() {
                 self.bodies.acceleration[body] = self.constant_acceleration(body);
             }
         }
+    }
+
+    /// Makes the plan of who is stepped with whom, unless it is there.
+    #[inline(always)]
+    pub(super) fn make_plan(&mut self) {
+        if !self.forces.is_planned {
+            self.make_new_plan();
+        }
+    }
+
+    #[cold]
+    fn make_new_plan(&mut self) {
+        let (bodies, motion) = (&self.bodies, &self.current);
+        let key = |body: usize| order::key(bodies, motion, body);
+        self.forces.plan = Plan::new(&self.forces.list, bodies.len(), key);
+        self.forces.is_planned = true;
     }
 
     fn check_force(&self, index: usize, force: &Force) -> Result<(), WorldError> {

@@ -39,10 +39,10 @@ impl World {
             hash.vector(*vector);
         }
         hash.number(self.time());
-        hash.word(self.steps);
-        hash.word(self.impacts);
-        hash.word(u64::from(self.last_impact.is_some()));
-        if let Some(impact) = &self.last_impact {
+        hash.word(self.elapsed.steps);
+        hash.word(self.record.impacts);
+        hash.word(u64::from(self.record.last_impact.is_some()));
+        if let Some(impact) = &self.record.last_impact {
             hash.word(impact.step);
             hash.number(impact.time);
             hash.pair(impact.bodies);
@@ -170,11 +170,11 @@ mod tests {
             }
         }
         let counts: [fn(&mut World); 5] = [
-            |world| world.steps += 1,
-            |world| world.impacts += 1,
-            |world| world.since.0 += 1.0,
-            |world| world.last_impact = None,
-            |world| world.overlapping.push((0, 1)),
+            |world| world.elapsed.steps += 1,
+            |world| world.record.impacts += 1,
+            |world| world.settings.dt *= 2.0,
+            |world| world.record.last_impact = None,
+            |world| world.overlaps.pairs.push((0, 1)),
         ];
         for change in counts {
             let mut other = world.clone();

@@ -1,19 +1,24 @@
 //! The running state of a scene.
 
 mod bodies;
-mod collision;
 mod contact_features;
 mod contacts;
 mod continuous;
 mod discrete;
+mod elapsed;
 mod error;
+mod exchange;
 mod forces;
 mod hash;
+mod layout;
 mod marks;
+mod near;
 mod order;
 mod overlap;
 mod penetration;
 mod plan;
+mod record;
+mod scene;
 mod separate;
 mod state;
 mod stepping;
@@ -25,23 +30,24 @@ use alloc::{sync::Arc, vec::Vec};
 use core::ops::RangeInclusive;
 use glam::DVec3;
 
-use crate::{
-    Body, Bvh, Force, Mesh, Shape,
-    integrate::{Method, Scratch},
-};
+use crate::{Body, Bvh, Mesh, Shape, integrate::Method};
 use bodies::Bodies;
-pub use collision::Impact;
 pub use contact_features::{ContactFeature, Touching};
 pub use contacts::{Bundled, RestingContact};
 use continuous::{ContactSet, Continuous};
 use discrete::Discrete;
+use elapsed::Elapsed;
 pub use error::{StepError, WorldError};
-use marks::Marks;
-use overlap::Placed;
+pub use exchange::Impact;
+use forces::Forces;
+use layout::Layout;
+use overlap::Overlaps;
 pub use penetration::Overlap;
-use plan::Plan;
+use record::Record;
+use scene::scene;
 pub use separate::SeparateError;
 use state::State;
+use stepping::{Cause, Integrator, Way};
 
 /// Bodies, their motion, and how it goes on.
 ///
@@ -66,38 +72,22 @@ use state::State;
 #[derive(Clone, Debug)]
 pub struct World {
     settings: Settings,
+    elapsed: Elapsed,
+    bodies: Bodies,
+    forces: Forces,
+    /// Motion after the last step, before it, and before the step before that.
     current: State,
     previous: State,
-    /// The state before that, in a step, for who fails.
     earlier: State,
-    bodies: Bodies,
-    /// Acceleration by all weights.
-    weight: DVec3,
-    forces: Vec<Force>,
-    /// Who is stepped with whom; `None` when bodies or forces have changed.
-    plan: Option<Plan>,
-    scratch: Scratch,
-    /// Greatest component of a velocity, m/s, from which growth is counted; `None` before the
-    /// first step under a force that depends on the motion.
-    speed_scale: Option<f64>,
-    /// The motion from which growth is counted, and on the way since.
-    marks: Marks,
-    /// Pairs that began in overlap, in order; without those of bodies that have just been placed.
-    overlapping: Vec<(usize, usize)>,
-    placed: Placed,
-    steps: u64,
-    impacts: u64,
-    contact_steps: u64,
-    bundled: Bundled,
-    last_impact: Option<Impact>,
-    /// Where impacts are listed, while someone asks.
-    report: Option<Vec<Impact>>,
+    /// Pairs that were placed in overlap.
+    overlaps: Overlaps,
     /// Who is in touch, and along which normals.
     contacts: ContactSet,
+    record: Record,
+    // What phases of a step keep to save time.
+    integrator: Integrator,
     continuous: Continuous,
     discrete: Discrete,
-    /// Time and step at which `dt` was last set: time since is steps times `dt`, without drift.
-    since: (f64, u64),
 }
 
 /// How a world steps.
@@ -152,28 +142,18 @@ impl World {
         error::check_tolerance(settings.tolerance)?;
         Ok(World {
             settings,
+            elapsed: Elapsed::default(),
+            bodies: Bodies::default(),
+            forces: Forces::default(),
             current: State::default(),
             previous: State::default(),
             earlier: State::default(),
-            bodies: Bodies::default(),
-            weight: DVec3::ZERO,
-            forces: Vec::new(),
-            plan: None,
-            scratch: Scratch::default(),
-            speed_scale: None,
-            marks: Marks::default(),
-            overlapping: Vec::new(),
-            placed: Placed::default(),
-            steps: 0,
-            impacts: 0,
-            contact_steps: 0,
-            bundled: Bundled::default(),
-            last_impact: None,
-            report: None,
+            overlaps: Overlaps::default(),
             contacts: ContactSet::default(),
+            record: Record::default(),
+            integrator: Integrator::default(),
             continuous: Continuous::default(),
             discrete: Discrete::default(),
-            since: (0.0, 0),
         })
     }
 
@@ -196,8 +176,8 @@ impl World {
             shape,
         );
         self.bodies.acceleration[index] = self.constant_acceleration(index);
-        self.plan = None;
-        self.speed_scale = None;
+        self.forces.forget_plan();
+        self.integrator.forget_growth();
         self.note_placed(index);
         Ok(index)
     }
@@ -208,27 +188,47 @@ impl World {
     /// On an error the world stays as it was before the step, to the bit.
     pub fn step(&mut self) -> Result<(), StepError> {
         self.seek_overlaps();
+        self.make_plan();
         // What was before is kept until nothing can fail any more.
         core::mem::swap(&mut self.earlier, &mut self.previous);
         core::mem::swap(&mut self.previous, &mut self.current);
         self.current.match_len(&self.previous);
-        self.integrate()?;
-        if self.bodies.solid.len() > 1 {
-            match self.settings.collision {
-                Collision::Naive | Collision::Bvh => self.collide(),
-                Collision::Continuous => self.collide_continuously()?,
-            }
-        }
-        self.steps += 1;
+        let done = self.integrate().and_then(|()| self.collide());
+        done.map_err(|(body, cause)| self.failed(body, cause))?;
+        self.elapsed.steps += 1;
         Ok(())
+    }
+
+    /// Moves every body as if nothing met.
+    fn integrate(&mut self) -> Result<(), (usize, Cause)> {
+        let way = Way {
+            contacts: &self.contacts,
+            end: &mut self.current,
+            horizons: &mut self.continuous.paths.horizons,
+        };
+        self.integrator.integrate(scene!(self), way)
+    }
+
+    /// Lets bodies that meet bounce, and those that stay in contact be where contact lets them be.
+    fn collide(&mut self) -> Result<(), (usize, Cause)> {
+        if self.bodies.solid.len() < 2 {
+            return Ok(());
+        }
+        match self.settings.collision {
+            Collision::Naive | Collision::Bvh => {
+                self.collide_discretely();
+                Ok(())
+            }
+            Collision::Continuous => self.collide_continuously(),
+        }
     }
 
     /// [`World::step`], adding each impact to a list, in the order in which they happen.
     pub fn step_reporting(&mut self, impacts: &mut Vec<Impact>) -> Result<(), StepError> {
-        self.report = Some(core::mem::take(impacts));
-        let known = self.report.as_ref().map_or(0, Vec::len);
+        self.record.list = Some(core::mem::take(impacts));
+        let known = self.record.list.as_ref().map_or(0, Vec::len);
         let outcome = self.step();
-        *impacts = self.report.take().unwrap_or_default();
+        *impacts = self.record.list.take().unwrap_or_default();
         if outcome.is_err() {
             impacts.truncate(known);
         }
@@ -247,23 +247,22 @@ impl World {
 
     /// Simulated time, s.
     pub fn time(&self) -> f64 {
-        let (time, step) = self.since;
-        time + (self.steps - step) as f64 * self.settings.dt
+        self.elapsed.time(&self.settings)
     }
 
     /// Steps done.
     pub fn steps(&self) -> u64 {
-        self.steps
+        self.elapsed.steps
     }
 
     /// Impulses exchanged.
     pub fn impacts(&self) -> u64 {
-        self.impacts
+        self.record.impacts
     }
 
     /// The latest exchange of an impulse.
     pub fn last_impact(&self) -> Option<&Impact> {
-        self.last_impact.as_ref()
+        self.record.last_impact.as_ref()
     }
 
     /// Position of a body, m.
@@ -322,6 +321,18 @@ impl World {
         self.bodies.bvh(body)
     }
 
+    /// Pairs of bodies that meet now, though they were not put into the world so, by the exact test and in
+    /// order: after a step there is none. For checks; it takes a box test for each pair that is near.
+    pub fn meeting(&self) -> Vec<(usize, usize)> {
+        let at = &self.current.position;
+        let mut near = self.bodies.near_pairs(at, |_| 0.0);
+        let known = self.overlapping();
+        near.retain(|&(i, j)| {
+            known.binary_search(&(i, j)).is_err() && self.bodies.meet_at(i, j, at[j] - at[i])
+        });
+        near
+    }
+
     /// Builds the trees that no step has needed yet, to look at them or to aim rays.
     pub fn build_bvhs(&mut self) {
         for body in 0..self.len() {
@@ -335,7 +346,7 @@ impl World {
         error::check_vector(body, "position", position)?;
         self.current.position[body] = position;
         self.previous.position[body] = position;
-        self.speed_scale = None;
+        self.integrator.forget_growth();
         self.forget_contacts_of(body);
         self.note_placed(body);
         Ok(())
@@ -346,7 +357,7 @@ impl World {
         self.check_body(body)?;
         error::check_vector(body, "velocity", velocity)?;
         self.current.velocity[body] = velocity;
-        self.speed_scale = None;
+        self.integrator.forget_growth();
         self.continuous.wake_all();
         Ok(())
     }
@@ -370,7 +381,7 @@ impl World {
         // Immovable bodies may be in each other.
         self.note_placed(body);
         self.bodies.acceleration[body] = self.constant_acceleration(body);
-        self.speed_scale = None;
+        self.integrator.forget_growth();
         Ok(())
     }
 
@@ -400,13 +411,24 @@ impl World {
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), WorldError> {
         error::check_dt(settings.dt)?;
         error::check_tolerance(settings.tolerance)?;
-        self.speed_scale = None;
+        self.integrator.forget_growth();
         if settings.dt != self.settings.dt {
-            self.since = (self.time(), self.steps);
+            self.elapsed.change_dt(&self.settings);
         }
         self.settings = settings;
         self.continuous.wake_all();
         Ok(())
+    }
+
+    /// Bodies where they are.
+    fn layout(&self) -> Layout<'_> {
+        Layout {
+            bodies: &self.bodies,
+            at: &self.current.position,
+            before: &self.previous,
+            contacts: &self.contacts,
+            overlaps: &self.overlaps,
+        }
     }
 
     fn check_body(&self, body: usize) -> Result<(), WorldError> {

@@ -3,34 +3,36 @@
 use alloc::vec::Vec;
 use glam::DVec3;
 
-use super::World;
+use super::{bodies::Bodies, state::State};
 
 /// What tells one body from another: position, velocity, mass, and the acceleration by constant
 /// forces. Bodies of which these are the same may take each other's place.
 pub(super) type Key = [i64; 10];
 
-impl World {
-    /// The key of a body where the step begins.
-    pub(super) fn motion_key(&self, body: usize) -> Key {
-        let [x, y, z] = self.previous.position[body].to_array();
-        let [u, v, w] = self.previous.velocity[body].to_array();
-        let [a, b, c] = self.bodies.acceleration[body].to_array();
-        [x, y, z, u, v, w, self.bodies.mass[body], a, b, c].map(ordinal)
-    }
+/// The key of a body by its motion.
+pub(super) fn key(bodies: &Bodies, motion: &State, body: usize) -> Key {
+    let [x, y, z] = motion.position[body].to_array();
+    let [u, v, w] = motion.velocity[body].to_array();
+    let [a, b, c] = bodies.acceleration[body].to_array();
+    [x, y, z, u, v, w, bodies.mass[body], a, b, c].map(ordinal)
+}
 
-    /// Those of some pairs, once each, in that order.
-    pub(super) fn in_order(&self, pairs: impl Iterator<Item = (usize, usize)>) -> InOrder {
-        let mut bodies: Vec<usize> = pairs.flat_map(|(i, j)| [i, j]).collect();
-        bodies.sort_unstable();
-        bodies.dedup();
-        let key = |body: usize| (self.motion_key(body), body);
-        let mut keys: Vec<(Key, usize)> = bodies.into_iter().map(key).collect();
-        keys.sort_unstable();
-        let bodies: Vec<usize> = keys.into_iter().map(|(_, body)| body).collect();
-        let mut places: Vec<(usize, usize)> = bodies.iter().copied().zip(0..).collect();
-        places.sort_unstable();
-        InOrder { bodies, places }
-    }
+/// The bodies of some pairs, once each, in the order of their keys.
+pub(super) fn in_order(
+    bodies: &Bodies,
+    motion: &State,
+    pairs: impl Iterator<Item = (usize, usize)>,
+) -> InOrder {
+    let mut these: Vec<usize> = pairs.flat_map(|(i, j)| [i, j]).collect();
+    these.sort_unstable();
+    these.dedup();
+    let key = |body: usize| (key(bodies, motion, body), body);
+    let mut keys: Vec<(Key, usize)> = these.into_iter().map(key).collect();
+    keys.sort_unstable();
+    let bodies: Vec<usize> = keys.into_iter().map(|(_, body)| body).collect();
+    let mut places: Vec<(usize, usize)> = bodies.iter().copied().zip(0..).collect();
+    places.sort_unstable();
+    InOrder { bodies, places }
 }
 
 /// Bodies in order, and the place of each among them.

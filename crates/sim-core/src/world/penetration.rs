@@ -8,7 +8,7 @@
 use alloc::vec::Vec;
 use glam::DVec3;
 
-use super::World;
+use super::{World, layout::Layout};
 use crate::collide::{Form, ball_meets, first_contact, parting_normals, reach, snap};
 
 /// Halvings of the length at which a direction parts a pair: as good as 12 digits.
@@ -71,11 +71,12 @@ impl World {
     /// The overlap of two bodies, the lower index first, if it is one of [`World::overlaps`].
     pub fn overlap(&self, i: usize, j: usize) -> Option<Overlap> {
         self.overlapping().binary_search(&(i, j)).ok()?;
-        let offset = self.current.position[j] - self.current.position[i];
-        if !self.is_held_in_overlap(i, j) && self.place_apart((i, j), offset).is_some() {
+        let layout = self.layout();
+        let offset = layout.at[j] - layout.at[i];
+        if !layout.is_held_in_overlap(i, j) && layout.place_apart((i, j), offset).is_some() {
             return None;
         }
-        let found = self.penetration(i, j, offset);
+        let found = layout.penetration(i, j, offset);
         Some(Overlap {
             bodies: (i, j),
             normal: found.normal,
@@ -92,6 +93,13 @@ impl World {
     /// Positions that are computed for bodies to lie flush, on a slope or by turned meshes, are wrong by
     /// as much. Such bodies are moved apart when the next step begins, and then touch.
     pub fn flush(&self, i: usize, j: usize) -> f64 {
+        self.layout().flush(i, j)
+    }
+}
+
+impl Layout<'_> {
+    /// How deep two bodies may be in each other and still be meant to touch ([`World::flush`]), m.
+    pub(super) fn flush(&self, i: usize, j: usize) -> f64 {
         let sizes = self.bodies.extent(i).farthest + self.bodies.extent(j).farthest;
         FLUSH_ROUNDINGS * f64::from(f32::EPSILON) * sizes + FLUSH_GAPS * self.hover_gap(i, j)
     }
@@ -164,10 +172,8 @@ impl World {
         let some_part = |far: f64| directions.iter().any(|&way| is_apart(far * way));
         let (least, most) = (self.hover_gap(i, j), self.farthest_out(i, j));
         // What is held is about as deep as it was.
-        let known = self
-            .continuous
-            .depth_at_start(i, j)
-            .map(|depth| 0.125 * depth);
+        let known = self.overlaps.depth_at_start((i, j));
+        let known = known.map(|depth| 0.125 * depth);
         let mut far = known.unwrap_or_else(|| self.flush(i, j)).max(least);
         if some_part(far) {
             while far > least && some_part(0.5 * far) {
@@ -225,7 +231,11 @@ impl World {
     /// Whether two bodies are boxes along the axes of which neither fits into the other: the only way out
     /// of each other is then past a face.
     fn are_boxes_in_boxes(&self, i: usize, j: usize) -> bool {
-        let is_box = |body: usize| self.bvh(body).is_some_and(|bvh| bvh.cuboid().is_some());
+        let is_box = |body: usize| {
+            self.bodies
+                .bvh(body)
+                .is_some_and(|bvh| bvh.cuboid().is_some())
+        };
         let size = |body: usize| {
             let extent = self.bodies.extent(body);
             extent.high - extent.low

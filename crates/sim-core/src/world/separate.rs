@@ -10,7 +10,7 @@
 use alloc::{collections::BTreeMap, vec::Vec};
 use glam::DVec3;
 
-use super::{World, penetration::compass};
+use super::{World, layout::Layout, penetration::compass};
 use crate::{
     Shape,
     collide::{first_contact, reach, snap},
@@ -77,10 +77,13 @@ impl World {
             return Ok(Vec::new());
         }
         self.build_bvhs();
+        let separation = Separation {
+            layout: self.layout(),
+        };
         let at = &self.current.position;
-        let place = match self.places_together(at) {
+        let place = match separation.places_together(at) {
             Some(place) => place,
-            None => self.places_one_by_one(at)?,
+            None => separation.places_one_by_one(at)?,
         };
         let moved: Vec<usize> = (0..self.bodies.len())
             .filter(|&i| place[i] != at[i])
@@ -91,14 +94,24 @@ impl World {
             self.forget_contacts_of(body);
             self.note_placed(body);
         }
-        self.speed_scale = None;
+        self.integrator.forget_growth();
         Ok(moved)
     }
+}
 
+/// Bodies that are moved out of each other.
+struct Separation<'a> {
+    layout: Layout<'a>,
+}
+
+impl Separation<'_> {
     /// Pairs that meet at some places, one of which may move.
     fn meeting_at(&self, place: &[DVec3]) -> Vec<(usize, usize)> {
-        let mut pairs = self.near_pairs(place, |i, j| 8.0 * self.hover_gap(i, j));
-        pairs.retain(|&(i, j)| self.bodies.meet_built(i, j, place[j] - place[i]));
+        let mut pairs = self
+            .layout
+            .bodies
+            .near_pairs(place, |body| 8.0 * self.layout.hover_gap(body, body));
+        pairs.retain(|&(i, j)| self.layout.bodies.meet_built(i, j, place[j] - place[i]));
         pairs
     }
 
@@ -120,8 +133,8 @@ impl World {
             for bodies in meeting {
                 let (i, j) = bodies;
                 let offset = place[j] - place[i];
-                let out = self.penetration(i, j, offset);
-                let level = out.normal.dot(offset) + out.depth + self.hover_gap(i, j);
+                let out = self.layout.penetration(i, j, offset);
+                let level = out.normal.dot(offset) + out.depth + self.layout.hover_gap(i, j);
                 let plane = Plane {
                     bodies,
                     normal: out.normal,
@@ -144,9 +157,9 @@ impl World {
         let mut is_wide = false;
         for plane in planes.filter(|plane| plane.pushed > 0.0) {
             let ((i, j), before) = (plane.bodies, plane.normal);
-            let (offset, hover) = (place[j] - place[i], self.hover_gap(i, j));
+            let (offset, hover) = (place[j] - place[i], self.layout.hover_gap(i, j));
             let length = offset.length() + hover;
-            let Some((first, second)) = self.bodies.forms(i, j) else {
+            let Some((first, second)) = self.layout.bodies.forms(i, j) else {
                 continue;
             };
             let way = -length * before;
@@ -165,7 +178,7 @@ impl World {
     /// quadratic programming procedure": plane after plane, over and over), and tells whether there
     /// is hope that they have a common one.
     fn push_beyond(&self, planes: &mut [&mut Plane], place: &mut [DVec3]) -> bool {
-        let inverse = |body: usize| 1.0 / self.bodies.mass[body];
+        let inverse = |body: usize| 1.0 / self.layout.bodies.mass[body];
         let sweeps = SWEEPS.min(1 + LOOKS / planes.len());
         let (mut first, mut worst) = (0.0_f64, 0.0_f64);
         for plane in &mut *planes {
@@ -179,7 +192,7 @@ impl World {
                 let missing = plane.level - plane.normal.dot(place[j] - place[i]);
                 worst = worst.max(missing);
                 // What has been pushed touches.
-                let slack = 0.25 * self.hover_gap(i, j);
+                let slack = 0.25 * self.layout.hover_gap(i, j);
                 is_done &= missing <= slack && (plane.pushed == 0.0 || missing >= -slack);
                 let push = RELAXATION * missing / (inverse(i) + inverse(j));
                 let pushed = (plane.pushed + push).max(0.0);
@@ -203,13 +216,14 @@ impl World {
     fn places_one_by_one(&self, at: &[DVec3]) -> Result<Vec<DVec3>, SeparateError> {
         let mut place = at.to_vec();
         let (mut there, mut movable): (Vec<usize>, Vec<usize>) = self
+            .layout
             .bodies
             .solid
             .iter()
-            .partition(|&&body| !self.bodies.is_movable(body));
+            .partition(|&&body| !self.layout.bodies.is_movable(body));
         movable.sort_by(|&i, &j| {
-            self.bodies.mass[j]
-                .total_cmp(&self.bodies.mass[i])
+            self.layout.bodies.mass[j]
+                .total_cmp(&self.layout.bodies.mass[i])
                 .then(i.cmp(&j))
         });
         for body in movable {
@@ -234,18 +248,28 @@ impl World {
                 } else {
                     at - place[other]
                 };
-                let is_wall =
-                    self.bodies.extent(i).half.max(self.bodies.extent(j).half) == f64::INFINITY;
-                let swept = |body: usize, at: DVec3| self.swept_box(body, at, at);
+                let is_wall = self
+                    .layout
+                    .bodies
+                    .extent(i)
+                    .half
+                    .max(self.layout.bodies.extent(j).half)
+                    == f64::INFINITY;
+                let swept = |body: usize, at: DVec3| self.layout.bodies.swept_box(body, at, at);
                 (is_wall || swept(body, at).meets(&swept(other, place[other])))
-                    && self.bodies.meet_built(i, j, offset)
+                    && self.layout.bodies.meet_built(i, j, offset)
             };
             there.iter().filter(meets).copied().collect()
         };
         let walls: Vec<usize> = there
             .iter()
             .copied()
-            .filter(|&other| matches!(self.bodies.shape(other), Some(Shape::HalfSpace { .. })))
+            .filter(|&other| {
+                matches!(
+                    self.layout.bodies.shape(other),
+                    Some(Shape::HalfSpace { .. })
+                )
+            })
             .collect();
         let inside = |at: DVec3| self.out_of_walls(body, at, &walls, place);
         let first = inside(place[body]).ok_or_else(|| SeparateError::Caught {
@@ -258,17 +282,17 @@ impl World {
         }
         let mut ways: Vec<DVec3> = compass().collect();
         for &other in &others {
-            ways.extend(self.ways_out(other, body, first - place[other]));
+            ways.extend(self.layout.ways_out(other, body, first - place[other]));
         }
         let free = |length: f64, way: DVec3| {
             let at = inside(first + length * way)?;
             blockers(at).is_empty().then_some(at)
         };
-        let size = |other: usize| self.bodies.extent(other).farthest;
+        let size = |other: usize| self.layout.bodies.extent(other).farthest;
         let most = there.iter().fold(8.0 * size(body), |most, &other| {
             most.max(4.0 * (size(body) + size(other) + (place[other] - first).length()))
         });
-        let mut far = self.hover_gap(body, others[0]);
+        let mut far = self.layout.hover_gap(body, others[0]);
         while far <= most {
             let nearest = ways
                 .iter()
@@ -296,11 +320,11 @@ impl World {
     /// The planes of half-spaces against a body, at which its position is kept.
     fn wall_planes(&self, body: usize, walls: &[usize], place: &[DVec3]) -> Vec<(DVec3, f64)> {
         let of = |&wall: &usize| {
-            let &Shape::HalfSpace { normal } = self.bodies.shape(wall)? else {
+            let &Shape::HalfSpace { normal } = self.layout.bodies.shape(wall)? else {
                 return None;
             };
-            let (reach, _) = reach(self.bodies.form(body)?, normal);
-            let level = normal.dot(place[wall]) + reach + self.hover_gap(wall, body);
+            let (reach, _) = reach(self.layout.bodies.form(body)?, normal);
+            let level = normal.dot(place[wall]) + reach + self.layout.hover_gap(wall, body);
             Some((normal, level))
         };
         walls.iter().filter_map(of).collect()
@@ -314,7 +338,10 @@ impl World {
         walls: &[usize],
         place: &[DVec3],
     ) -> Option<DVec3> {
-        if matches!(self.bodies.shape(body), Some(Shape::HalfSpace { .. })) {
+        if matches!(
+            self.layout.bodies.shape(body),
+            Some(Shape::HalfSpace { .. })
+        ) {
             return Some(at);
         }
         let planes = self.wall_planes(body, walls, place);
@@ -324,7 +351,7 @@ impl World {
             let mut is_done = true;
             for ((&(normal, level), pushed), &wall) in planes.iter().zip(&mut pushed).zip(walls) {
                 let missing = level - normal.dot(at);
-                is_done &= missing <= 0.25 * self.hover_gap(wall, body);
+                is_done &= missing <= 0.25 * self.layout.hover_gap(wall, body);
                 let sum = (*pushed + missing).max(0.0);
                 at += (sum - *pushed) * normal;
                 *pushed = sum;

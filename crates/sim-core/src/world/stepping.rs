@@ -8,8 +8,12 @@ use alloc::vec::Vec;
 use core::{mem, ops::Range};
 
 use super::{
-    Settings, StepError, World, error,
+    Settings, StepError, World,
+    continuous::{ContactSet, Horizons},
+    error,
+    marks::Marks,
     plan::{Group, Plan, Section},
+    scene::{Scene, scene},
     state::State,
     system::Part,
 };
@@ -25,108 +29,91 @@ const BLOCK: usize = 128;
 /// whether the method is stable here.
 const GROWTH: f64 = 1e6;
 
-impl World {
-    pub(super) fn integrate(&mut self) -> Result<(), StepError> {
-        self.clear_horizons();
-        if self.plan.is_none() {
-            self.make_plan();
-        }
-        let is_free = self
-            .plan
-            .as_ref()
-            .is_some_and(|plan| plan.sections.is_empty());
-        if let Some(fall) = self.settings.method.fall.filter(|_| is_free) {
-            let within = ballistic::step(
-                (&self.previous.position, &self.previous.velocity),
-                &self.bodies.acceleration,
-                (&mut self.current.position, &mut self.current.velocity),
-                (self.settings.dt, fall),
-                error::LARGEST,
-            );
-            if within {
-                return Ok(());
-            }
-        }
-        let moved = self.integrate_sections();
-        moved.map_err(|(body, cause)| self.failed(body, cause))
+/// What integration keeps from step to step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Integrator {
+    scratch: Scratch,
+    /// Greatest component of a velocity, m/s, from which growth is counted; `None` before the
+    /// first step under a force that depends on the motion.
+    speed_scale: Option<f64>,
+    /// The motion from which growth is counted, and on the way since.
+    marks: Marks,
+}
+
+/// Where integration leads to, as far as contact lets it.
+pub(super) struct Way<'a> {
+    pub(super) contacts: &'a ContactSet,
+    pub(super) end: &'a mut State,
+    pub(super) horizons: &'a mut Horizons,
+}
+
+impl Integrator {
+    /// Forgets what growth is counted from: bodies or forces have been set.
+    pub(super) fn forget_growth(&mut self) {
+        self.speed_scale = None;
     }
 
-    #[cold]
-    fn make_plan(&mut self) {
-        let key = |body: usize| self.motion_key(body);
-        self.plan = Some(Plan::new(&self.forces, self.bodies.len(), key));
+    /// Moves all bodies from where the step starts to its end.
+    pub(super) fn integrate(
+        &mut self,
+        scene: Scene<'_>,
+        mut way: Way<'_>,
+    ) -> Result<(), (usize, Cause)> {
+        way.horizons.clear();
+        if let Some(fall) = scene.settings.method.fall
+            && scene.forces.plan.sections.is_empty()
+        {
+            return fall_all(scene, 0..scene.bodies.len(), fall, way.end);
+        }
+        self.integrate_sections(scene, &mut way)
     }
 
     // Apart, so that free bodies do not pay for its frame.
     #[inline(never)]
-    fn integrate_sections(&mut self) -> Result<(), (usize, Cause)> {
-        // Out of the world while the world is changed.
-        let plan = self.plan.take().unwrap_or_default();
-        let outcome = self.integrate_by(&plan);
-        self.plan = Some(plan);
-        outcome
-    }
-
-    fn integrate_by(&mut self, plan: &Plan) -> Result<(), (usize, Cause)> {
+    fn integrate_sections(
+        &mut self,
+        scene: Scene<'_>,
+        way: &mut Way<'_>,
+    ) -> Result<(), (usize, Cause)> {
         let mut done = 0;
         let mut fastest = (0.0, 0);
-        for section in &plan.sections {
-            self.free(plan, done..section.bodies.start, &mut fastest)?;
-            self.forced(plan, section, &mut fastest)?;
+        for section in &scene.forces.plan.sections {
+            self.free(scene, way, done..section.bodies.start, &mut fastest)?;
+            self.forced(scene, way, section, &mut fastest)?;
             done = section.bodies.end;
         }
-        self.free(plan, done..self.bodies.len(), &mut fastest)?;
-        self.watch_growth(plan, fastest)
+        self.free(scene, way, done..scene.bodies.len(), &mut fastest)?;
+        self.watch_growth(scene, fastest)
     }
 
     /// Bodies on which constant forces alone act.
     fn free(
         &mut self,
-        plan: &Plan,
+        scene: Scene<'_>,
+        way: &mut Way<'_>,
         bodies: Range<usize>,
         fastest: &mut (f64, usize),
     ) -> Result<(), (usize, Cause)> {
-        if let Some(fall) = self.settings.method.fall {
-            return self.fall(bodies, fall);
+        if let Some(fall) = scene.settings.method.fall {
+            return fall_all(scene, bodies, fall, way.end);
         }
         let section = Section {
             bodies,
             is_coupled: false,
             groups: Vec::new(),
         };
-        self.forced(plan, &section, fastest)
-    }
-
-    /// The same in one loop, for a method of which it is known where it puts them.
-    fn fall(&mut self, bodies: Range<usize>, fall: f64) -> Result<(), (usize, Cause)> {
-        let within = ballistic::step(
-            (
-                &self.previous.position[bodies.clone()],
-                &self.previous.velocity[bodies.clone()],
-            ),
-            &self.bodies.acceleration[bodies.clone()],
-            (
-                &mut self.current.position[bodies.clone()],
-                &mut self.current.velocity[bodies.clone()],
-            ),
-            (self.settings.dt, fall),
-            error::LARGEST,
-        );
-        if within {
-            return Ok(());
-        }
-        let lost = self.beyond(bodies.clone());
-        Err((lost.unwrap_or(bodies.start), Cause::Range))
+        self.forced(scene, way, &section, fastest)
     }
 
     /// Bodies that other forces act on.
     fn forced(
         &mut self,
-        plan: &Plan,
+        scene: Scene<'_>,
+        way: &mut Way<'_>,
         section: &Section,
         fastest: &mut (f64, usize),
     ) -> Result<(), (usize, Cause)> {
-        let Settings { method, .. } = self.settings;
+        let Settings { method, .. } = scene.settings;
         let all = section.bodies.clone();
         let length = match section.is_coupled {
             true => all.len(),
@@ -137,25 +124,21 @@ impl World {
         let mut start = all.start;
         while start < all.end {
             let bodies = start..all.end.min(start + length);
-            // Out of the world while it is looked at.
-            let mut to = mem::take(&mut self.current);
-            let mut scratch = mem::take(&mut self.scratch);
             let block = Block {
                 bodies: bodies.clone(),
                 is_coupled: section.is_coupled,
-                acceleration: &self.bodies.acceleration[bodies.clone()],
-                from: &self.previous,
+                acceleration: &scene.bodies.acceleration[bodies.clone()],
+                from: scene.before,
                 since: 0.0,
-                length: self.settings.dt,
+                length: scene.settings.dt,
             };
-            let moved = self.step_to_horizon(plan, block, &mut to, &mut scratch);
-            (self.current, self.scratch) = (to, scratch);
-            self.set_horizon(bodies.clone(), moved?);
-            if let Some(body) = self.beyond(bodies.clone()) {
+            let moved = scene.step_to_horizon(way.contacts, block, way.end, &mut self.scratch);
+            way.horizons.set(bodies.clone(), moved?, &scene);
+            if let Some(body) = beyond(way.end, bodies.clone()) {
                 return Err((body, Cause::Range));
             }
             for body in bodies.clone() {
-                let speed = self.current.velocity[body].abs().max_element();
+                let speed = way.end.velocity[body].abs().max_element();
                 if speed > fastest.0 {
                     *fastest = (speed, body);
                 }
@@ -165,40 +148,127 @@ impl World {
         Ok(())
     }
 
+    /// Speaks up when speeds have grown out of all proportion and the method is unstable here.
+    /// Where it is unstable at every step, as forward Euler is without damping, it may go on:
+    /// that is its nature, and worth watching.
+    fn watch_growth(
+        &mut self,
+        scene: Scene<'_>,
+        fastest: (f64, usize),
+    ) -> Result<(), (usize, Cause)> {
+        let (speed, body) = fastest;
+        let Some(scale) = self.speed_scale else {
+            self.count_growth_from(scene, speed);
+            return Ok(());
+        };
+        if self.marks.is_due(speed) {
+            // Of many bodies that no force couples, the one that grows.
+            let section = company(&scene.forces.plan, body);
+            let bodies = section.map_or(body..body + 1, |section| section.bodies);
+            let time = scene.time;
+            self.marks.add(time, speed, bodies, scene.before);
+        }
+        if speed <= GROWTH * scale {
+            return Ok(());
+        }
+        match self.stable_dt(scene, body) {
+            Some(stable_dt) if stable_dt > 0.0 => Err((body, Cause::Growth { stable_dt })),
+            _ => {
+                self.count_growth_from(scene, speed);
+                Ok(())
+            }
+        }
+    }
+
+    /// Counts growth from the motion before this step.
+    fn count_growth_from(&mut self, scene: Scene<'_>, speed: f64) {
+        let coupled = scene
+            .forces
+            .plan
+            .sections
+            .iter()
+            .filter(|section| section.is_coupled);
+        let most = coupled.map(|section| section.bodies.len()).max();
+        self.marks.begin(scene.bodies.len(), most.unwrap_or(1));
+        self.speed_scale = (speed > 0.0).then_some(speed);
+        if speed > 0.0 {
+            let (all, time) = (0..scene.bodies.len(), scene.time);
+            self.marks.add(time, speed, all, scene.before);
+        }
+    }
+
+    /// The largest `dt` at which the method is stable on a body's forces where its growth began: at
+    /// the first motion at which it is below the world's, of those kept, of that before this step,
+    /// and of where each of them leads in a step. 0 if all that is known is that the method is stable
+    /// at no `dt`; `None` where it is stable, and where that cannot be told.
+    pub(super) fn stable_dt(&self, scene: Scene<'_>, body: usize) -> Option<f64> {
+        let section = company(&scene.forces.plan, body)?;
+        let bodies = section.bodies.clone();
+        let part = Part {
+            forces: &scene.forces.list,
+            plan: &scene.forces.plan,
+            is_coupled: section.is_coupled,
+            mass: &scene.bodies.mass[bodies.clone()],
+            acceleration: &scene.bodies.acceleration[bodies.clone()],
+            bodies: bodies.clone(),
+            group: None,
+        };
+        // Without a scale, what is kept is from before bodies or forces were last set.
+        let marks = self.speed_scale.map(|_| self.marks.of(bodies.clone()));
+        let kept = marks.into_iter().flatten();
+        let last = (
+            scene.time,
+            &scene.before.position[bodies.clone()],
+            &scene.before.velocity[bodies.clone()],
+        );
+        let mut at_all = None;
+        let mut is_below = |time, x: &[DVec3], v: &[DVec3]| {
+            let limit = stability::largest_stable_step(scene.settings.method, &part, time, x, v);
+            if limit == Some(0.0) {
+                at_all = limit;
+            }
+            limit.filter(|&dt| 0.0 < dt && dt < scene.settings.dt)
+        };
+        for (time, x, v) in kept.chain([last]) {
+            // What begins at rest may have blown up within its first step.
+            let limit = is_below(time, x, v).or_else(|| {
+                let (x, v) = followed(&part, time, scene.settings.dt, (x, v))?;
+                is_below(time + scene.settings.dt, &x, &v)
+            });
+            if limit.is_some() {
+                return limit;
+            }
+        }
+        at_all
+    }
+}
+
+impl Scene<'_> {
     /// One call of the method, or of coupled bodies one for each group; a method with error control tells
     /// a watch the steps that it takes, by whose motion they are, and stops where that says so.
     pub(super) fn step_block(
         &self,
-        plan: &Plan,
         block: Block<'_>,
         to: &mut State,
         scratch: &mut Scratch,
         mut watch: Option<&mut BlockWatch<'_>>,
     ) -> Result<(), (usize, Cause)> {
         let section = match block.is_coupled {
-            true => plan.section_at(block.bodies.start),
+            true => self.forces.plan.section_at(block.bodies.start),
             false => None,
         };
         let Some(section) = section else {
-            return self.step_run(plan, &block, None, (to, scratch), watch);
+            return self.step_run(&block, None, (to, scratch), watch);
         };
         let fall = self.settings.method.fall;
         section.groups.iter().try_for_each(|group| {
-            if let Some(fall) = fall.filter(|_| plan.is_free(group)) {
+            if let Some(fall) = fall.filter(|_| self.forces.plan.is_free(group)) {
                 self.fall_in(&block, group.bodies[0], fall, to);
                 return Ok(());
             }
             match group.run {
-                Some(_) => self.step_run(
-                    plan,
-                    &block,
-                    Some(group),
-                    (to, scratch),
-                    watch.as_deref_mut(),
-                ),
-                None => {
-                    self.step_gathered(plan, &block, group, (to, scratch), watch.as_deref_mut())
-                }
+                Some(_) => self.step_run(&block, Some(group), (to, scratch), watch.as_deref_mut()),
+                None => self.step_gathered(&block, group, (to, scratch), watch.as_deref_mut()),
             }
         })
     }
@@ -221,7 +291,6 @@ impl World {
     /// One call of the method for bodies that stand side by side: a block, or a group of one.
     fn step_run(
         &self,
-        plan: &Plan,
         block: &Block<'_>,
         group: Option<&Group>,
         (to, scratch): (&mut State, &mut Scratch),
@@ -234,7 +303,7 @@ impl World {
             move |time: f64, x: &[DVec3], y: &[DVec3]| watch(time, &|place| start + place, x, y)
         });
         let step = Step {
-            time: self.time() + block.since,
+            time: self.time + block.since,
             dt: block.length,
             tolerance: self.settings.tolerance,
             position: &block.from.position[bodies.clone()],
@@ -245,8 +314,8 @@ impl World {
             watch: watch.as_mut().map(|watch| Watch::new(watch)),
         };
         let part = Part {
-            forces: &self.forces,
-            plan,
+            forces: &self.forces.list,
+            plan: &self.forces.plan,
             is_coupled: block.is_coupled && bodies.len() > 1,
             mass: &self.bodies.mass[bodies.clone()],
             acceleration: &block.acceleration[first..first + bodies.len()],
@@ -260,7 +329,6 @@ impl World {
     /// The same for the bodies of a group, which are put side by side for it.
     fn step_gathered(
         &self,
-        plan: &Plan,
         block: &Block<'_>,
         group: &Group,
         (to, scratch): (&mut State, &mut Scratch),
@@ -280,7 +348,7 @@ impl World {
             |time: f64, x: &[DVec3], y: &[DVec3]| watch(time, &|place| group.bodies[place], x, y)
         });
         let step = Step {
-            time: self.time() + block.since,
+            time: self.time + block.since,
             dt: block.length,
             tolerance: self.settings.tolerance,
             position: x,
@@ -291,8 +359,8 @@ impl World {
             watch: watch.as_mut().map(|watch| Watch::new(watch)),
         };
         let part = Part {
-            forces: &self.forces,
-            plan,
+            forces: &self.forces.list,
+            plan: &self.forces.plan,
             is_coupled: true,
             mass,
             acceleration,
@@ -307,99 +375,44 @@ impl World {
         scratch.gathered = Some(gathered);
         stepped.map_err(|failure| (group.bodies[body_of(&failure)], Cause::Failure(failure)))
     }
+}
 
-    /// The first of some bodies whose motion has left the range.
-    fn beyond(&self, bodies: Range<usize>) -> Option<usize> {
-        let start = bodies.start;
-        let first = self.current.beyond(bodies, error::LARGEST);
-        first.map(|body| start + body)
+/// Bodies on which constant forces alone act, in one loop, by a method of which it is known where it puts
+/// them.
+fn fall_all(
+    scene: Scene<'_>,
+    bodies: Range<usize>,
+    fall: f64,
+    end: &mut State,
+) -> Result<(), (usize, Cause)> {
+    let within = ballistic::step(
+        (
+            &scene.before.position[bodies.clone()],
+            &scene.before.velocity[bodies.clone()],
+        ),
+        &scene.bodies.acceleration[bodies.clone()],
+        (
+            &mut end.position[bodies.clone()],
+            &mut end.velocity[bodies.clone()],
+        ),
+        (scene.settings.dt, fall),
+        error::LARGEST,
+    );
+    if within {
+        return Ok(());
     }
+    let lost = beyond(end, bodies.clone());
+    Err((lost.unwrap_or(bodies.start), Cause::Range))
+}
 
-    /// Speaks up when speeds have grown out of all proportion and the method is unstable here.
-    /// Where it is unstable at every step, as forward Euler is without damping, it may go on:
-    /// that is its nature, and worth watching.
-    fn watch_growth(&mut self, plan: &Plan, fastest: (f64, usize)) -> Result<(), (usize, Cause)> {
-        let (speed, body) = fastest;
-        let Some(scale) = self.speed_scale else {
-            self.count_growth_from(plan, speed);
-            return Ok(());
-        };
-        if self.marks.is_due(speed) {
-            // Of many bodies that no force couples, the one that grows.
-            let section = company(plan, body);
-            let bodies = section.map_or(body..body + 1, |section| section.bodies);
-            let time = self.time();
-            self.marks.add(time, speed, bodies, &self.previous);
-        }
-        if speed <= GROWTH * scale {
-            return Ok(());
-        }
-        match self.stable_dt(plan, body) {
-            Some(stable_dt) if stable_dt > 0.0 => Err((body, Cause::Growth { stable_dt })),
-            _ => {
-                self.count_growth_from(plan, speed);
-                Ok(())
-            }
-        }
-    }
+/// The first of some bodies whose motion has left the range.
+fn beyond(end: &State, bodies: Range<usize>) -> Option<usize> {
+    let start = bodies.start;
+    let first = end.beyond(bodies, error::LARGEST);
+    first.map(|body| start + body)
+}
 
-    /// Counts growth from the motion before this step.
-    fn count_growth_from(&mut self, plan: &Plan, speed: f64) {
-        let coupled = plan.sections.iter().filter(|section| section.is_coupled);
-        let most = coupled.map(|section| section.bodies.len()).max();
-        self.marks.begin(self.bodies.len(), most.unwrap_or(1));
-        self.speed_scale = (speed > 0.0).then_some(speed);
-        if speed > 0.0 {
-            let (all, time) = (0..self.bodies.len(), self.time());
-            self.marks.add(time, speed, all, &self.previous);
-        }
-    }
-
-    /// The largest `dt` at which the method is stable on a body's forces where its growth began: at
-    /// the first motion at which it is below the world's, of those kept, of that before this step,
-    /// and of where each of them leads in a step. 0 if all that is known is that the method is stable
-    /// at no `dt`; `None` where it is stable, and where that cannot be told.
-    fn stable_dt(&self, plan: &Plan, body: usize) -> Option<f64> {
-        let section = company(plan, body)?;
-        let bodies = section.bodies.clone();
-        let part = Part {
-            forces: &self.forces,
-            plan,
-            is_coupled: section.is_coupled,
-            mass: &self.bodies.mass[bodies.clone()],
-            acceleration: &self.bodies.acceleration[bodies.clone()],
-            bodies: bodies.clone(),
-            group: None,
-        };
-        // Without a scale, what is kept is from before bodies or forces were last set.
-        let marks = self.speed_scale.map(|_| self.marks.of(bodies.clone()));
-        let kept = marks.into_iter().flatten();
-        let last = (
-            self.time(),
-            &self.previous.position[bodies.clone()],
-            &self.previous.velocity[bodies.clone()],
-        );
-        let mut at_all = None;
-        let mut is_below = |time, x: &[DVec3], v: &[DVec3]| {
-            let limit = stability::largest_stable_step(self.settings.method, &part, time, x, v);
-            if limit == Some(0.0) {
-                at_all = limit;
-            }
-            limit.filter(|&dt| 0.0 < dt && dt < self.settings.dt)
-        };
-        for (time, x, v) in kept.chain([last]) {
-            // What begins at rest may have blown up within its first step.
-            let limit = is_below(time, x, v).or_else(|| {
-                let (x, v) = followed(&part, time, self.settings.dt, (x, v))?;
-                is_below(time + self.settings.dt, &x, &v)
-            });
-            if limit.is_some() {
-                return limit;
-            }
-        }
-        at_all
-    }
-
+impl World {
     /// Puts every body back, and says why.
     #[cold]
     pub(super) fn failed(&mut self, body: usize, cause: Cause) -> StepError {
@@ -410,16 +423,13 @@ impl World {
     }
 
     fn step_error(&self, body: usize, cause: Cause) -> StepError {
-        let (step, method) = (self.steps + 1, self.settings.method.title);
+        let (step, method) = (self.elapsed.steps + 1, self.settings.method.title);
         match cause {
             Cause::Range => StepError::OutOfRange {
                 body,
                 step,
                 method,
-                stable_dt: self
-                    .plan
-                    .as_ref()
-                    .and_then(|plan| self.stable_dt(plan, body)),
+                stable_dt: self.integrator.stable_dt(scene!(self), body),
             },
             Cause::Squeezed(between) => StepError::Squeezed {
                 body,
@@ -520,6 +530,7 @@ pub(super) struct Block<'a> {
 }
 
 /// Why a step failed at a body.
+#[derive(Debug)]
 pub(super) enum Cause {
     Range,
     /// No room is left between these bodies.

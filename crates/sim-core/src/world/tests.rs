@@ -45,7 +45,7 @@ fn assert_apart(world: &mut World) {
     for j in 0..world.len() {
         for i in 0..j {
             assert!(
-                !world.meet(i, j),
+                !world.meeting().contains(&(i, j)),
                 "{i} and {j} meet after step {}",
                 world.steps()
             );

@@ -1,6 +1,6 @@
 //! How contacts go on: their gaps where a step starts, and where what slides leaves what it slides on.
 //!
-//! Bodies in contact hover a little above each other ([`World::hover_gap`]), farther than rounding and
+//! Bodies in contact hover a little above each other ([`Layout::hover_gap`](super::super::layout::Layout::hover_gap)), farther than rounding and
 //! an iterative solver move them in a step, so that the search for impacts does not see the surface
 //! they lie on and sees every other one. All is asked of the same exact search: a contact is there
 //! where a short motion against its normal is stopped, and its gap is the length of that motion.
@@ -8,15 +8,12 @@
 use alloc::vec::Vec;
 use glam::DVec3;
 
-use super::super::{World, stepping::Cause};
-use super::contact_set::ContactConstraint;
+use super::super::stepping::Cause;
+use super::{contact_set::ContactConstraint, solver::ContactSolver, view::View};
 use crate::{
     Feature, Shape,
     collide::{first_contact, snap},
 };
-
-/// The gap of bodies in contact, in units in the last place of the largest coordinate about.
-const HOVER_ULPS: f64 = 1024.0;
 
 /// Part of that gap at which a contact begins.
 pub(super) const LEAST_GAP: f64 = 1.0 / 8.0;
@@ -88,18 +85,11 @@ pub(super) enum Course {
     Ended,
 }
 
-impl World {
-    /// The gap at which two bodies in contact are kept, m.
-    pub(in crate::world) fn hover_gap(&self, i: usize, j: usize) -> f64 {
-        let at = &self.current.position;
-        let far = |body: usize| at[body].abs().max_element() + self.bodies.extent(body).farthest;
-        HOVER_ULPS * f64::EPSILON * (far(i) + far(j))
-    }
-
+impl View<'_> {
     /// The height of a flight that is too short to be one, m, and its speed, m/s, under an
     /// acceleration, m/s²: up for half of the time, and down for the other.
     pub(super) fn shortest_hop(&self, acceleration: f64, is_bundled: bool) -> (f64, f64) {
-        let rise = 0.5 * self.shortest_flight(is_bundled) * self.settings.dt;
+        let rise = 0.5 * self.shortest_flight(is_bundled) * self.scene.settings.dt;
         (0.5 * rise * rise * acceleration, rise * acceleration)
     }
 
@@ -112,12 +102,12 @@ impl World {
         reach: f64,
     ) -> Option<Surface> {
         let ((i, j), normal) = (constraint.bodies, constraint.normal);
-        let (first, second) = self.bodies.forms(i, j)?;
+        let (first, second) = self.scene.bodies.forms(i, j)?;
         let others = self.contacts.of_pair(i, j);
         let others = others.filter(|other| other.normal != normal);
         let aside: DVec3 = others.map(|other| reach * other.normal).sum();
         let along = normal.dot(aside);
-        let lift = self.hover_gap(i, j) + (-along).max(0.0);
+        let lift = self.layout().hover_gap(i, j) + (-along).max(0.0);
         let start = offset + aside + lift * normal;
         let length = reach + along + lift;
         let contact = first_contact(first, second, snap(start), snap(-length * normal))?;
@@ -127,50 +117,17 @@ impl World {
             touched: match (contact.feature, contact.face) {
                 (Some(feature), _) => Touched::Feature(feature),
                 (None, Some(face)) => {
-                    let body = if self.bodies.mesh(i).is_some() { i } else { j };
+                    let body = if self.scene.bodies.mesh(i).is_some() {
+                        i
+                    } else {
+                        j
+                    };
                     Touched::Face { body, face }
                 }
                 (None, None) => Touched::Nothing,
             },
             point: contact.point,
         })
-    }
-
-    /// Looks at the contacts that the last step has left: their gaps and normals now. Those that have
-    /// opened are no more, nor are those that close so fast that they bounce.
-    pub(super) fn measure_contacts(&mut self) -> Result<(), (usize, Cause)> {
-        let mut gone = Vec::new();
-        for index in self.contacts_in_order() {
-            let constraint = self.contacts.all()[index];
-            let (i, j) = constraint.bodies;
-            if constraint.is_overlap {
-                if self.stood_still(i) && self.stood_still(j) {
-                    continue;
-                }
-                let start = &self.continuous.start.position;
-                let out = self.penetration(i, j, start[j] - start[i]);
-                self.contacts.get_mut(index).normal = out.normal;
-                continue;
-            }
-            match self.measured(constraint, self.settings.dt) {
-                // What has turned to the normal of another contact of the pair is that one.
-                Some(measured) if self.contacts.is_known(&measured, (index, &gone)) => {
-                    gone.push(index);
-                }
-                Some(measured) => {
-                    let least = LEAST_GAP * self.hover_gap(i, j);
-                    if measured.gap < 0.5 * least {
-                        let by = (least - measured.gap) * measured.normal;
-                        self.move_apart_in_room((i, j), by, 0.0)?;
-                    }
-                    *self.contacts.get_mut(index) = measured;
-                }
-                None => gone.push(index),
-            }
-        }
-        let ended = self.contacts.remove_all(gone);
-        self.hand_over_all(&ended)?;
-        Ok(())
     }
 
     /// A contact as it is where the trajectories of its bodies start, if it still is one, with so much of
@@ -181,10 +138,10 @@ impl World {
         left: f64,
     ) -> Option<ContactConstraint> {
         let (i, j) = constraint.bodies;
-        let hover = self.hover_gap(i, j);
+        let hover = self.layout().hover_gap(i, j);
         let is_bundled = self.contacts.is_bundled(i) || self.contacts.is_bundled(j);
         let (height, _) = self.shortest_hop(self.greatest_push(i, j), is_bundled);
-        let start = &self.continuous.start;
+        let start = &self.paths.start;
         let closing = (start.velocity[i] - start.velocity[j]).dot(constraint.normal);
         let reach = match is_bundled {
             // As far as it may come in this step.
@@ -208,9 +165,9 @@ impl World {
                 below.along(constraint.normal)
             }
         };
-        let push = &self.continuous.applied_acceleration;
+        let push = &self.paths.applied_acceleration;
         let pressed = (push[i] - push[j]).dot(normal);
-        let load_speed = constraint.load_speed.max(self.settings.dt * pressed);
+        let load_speed = constraint.load_speed.max(self.scene.settings.dt * pressed);
         Some(ContactConstraint {
             normal,
             point,
@@ -228,7 +185,7 @@ impl World {
         if gap > 4.0 * hover {
             -(gap - hover) / time
         } else if gap < 0.5 * hover && load_speed > 0.0 {
-            (hover - gap) / (4.0 * self.settings.dt)
+            (hover - gap) / (4.0 * self.scene.settings.dt)
         } else {
             0.0
         }
@@ -244,27 +201,30 @@ impl World {
         load: f64,
     ) -> Course {
         let ((i, j), normal) = (constraint.bodies, constraint.normal);
-        let hover = self.hover_gap(i, j);
+        let hover = self.layout().hover_gap(i, j);
         let level = |v: DVec3| v - normal.dot(v) * normal;
         let (velocity, acceleration) = (level(velocity), level(acceleration));
         let moved = |time: f64| time * (velocity + 0.5 * time * acceleration);
         let way = (length * velocity.length()).max(length * length * acceleration.length());
-        if way <= 16.0 * hover || self.bodies.is_half_space(i) || self.bodies.is_half_space(j) {
+        if way <= 16.0 * hover
+            || self.scene.bodies.is_half_space(i)
+            || self.scene.bodies.is_half_space(j)
+        {
             return Course::Flat;
         }
         let near = 16.0 * hover;
-        let radius = |body: usize| match self.bodies.shape(body) {
+        let radius = |body: usize| match self.scene.bodies.shape(body) {
             Some(&Shape::Sphere { radius }) if radius > 0.0 => radius,
             _ => 0.0,
         };
         let radius = radius(i) + radius(j);
         // What rounding turns a normal by.
         let turn = match radius > 0.0 {
-            true => 1e-12 + 16.0 * self.position_resolution(i, j) / radius,
+            true => 1e-12 + 16.0 * self.layout().position_resolution(i, j) / radius,
             false => 1e-12,
         };
         // A surface that rises is an impact to come.
-        let has_risen = |time: f64| self.bodies.meet_built(i, j, offset + moved(time));
+        let has_risen = |time: f64| self.scene.bodies.meet_built(i, j, offset + moved(time));
         // The feature that touches at a time, or why there is none.
         let below = |time: f64| {
             let surface = self.surface_below(constraint, offset + moved(time), near);
@@ -308,7 +268,7 @@ impl World {
         if matches!(now, Below::Risen) {
             return Course::Flat;
         }
-        let slack = 8.0 * self.position_resolution(i, j);
+        let slack = 8.0 * self.layout().position_resolution(i, j);
         let mut recession = f64::INFINITY;
         for time in [0.0625 * length, 0.25 * length, length] {
             let reach = 0.5 * load * time * time + near;
@@ -340,16 +300,17 @@ impl World {
         // Lines that bound the feature, as a direction across and how far the offset is along it.
         let mut lines: [(DVec3, f64); 4] = [(DVec3::ZERO, 0.0); 4];
         let corner = |body: usize, vertex: u32| {
-            self.bodies
+            self.scene
+                .bodies
                 .mesh(body)
                 .map(|mesh| mesh.vertices()[vertex as usize].as_dvec3())
         };
         let face = |body: usize, face: u32| {
-            let mesh = self.bodies.mesh(body)?;
+            let mesh = self.scene.bodies.mesh(body)?;
             Some(mesh.corners(face as usize).map(|v| v.as_dvec3()))
         };
         let edge = |body: usize, edge: u32| {
-            let ends = self.bodies.mesh(body)?.edges()[edge as usize];
+            let ends = self.scene.bodies.mesh(body)?.edges()[edge as usize];
             Some((corner(body, ends[0])?, corner(body, ends[1])?))
         };
         // Corners come before the offset, so that rounding is the same whichever of the bodies is the first.
@@ -402,7 +363,46 @@ impl World {
 
     /// The greater of what forces alone do to two bodies all along their trajectories, m/s².
     pub(super) fn greatest_push(&self, i: usize, j: usize) -> f64 {
-        let push = &self.continuous.applied_acceleration;
+        let push = &self.paths.applied_acceleration;
         push[i].length().max(push[j].length())
+    }
+}
+
+impl ContactSolver<'_> {
+    /// Looks at the contacts that the last step has left: their gaps and normals now. Those that have
+    /// opened are no more, nor are those that close so fast that they bounce.
+    pub(super) fn measure_contacts(&mut self) -> Result<(), (usize, Cause)> {
+        let mut gone = Vec::new();
+        for index in self.view().contacts_in_order() {
+            let constraint = self.contacts.all()[index];
+            let (i, j) = constraint.bodies;
+            if constraint.is_overlap {
+                if self.scene.stood_still(i) && self.scene.stood_still(j) {
+                    continue;
+                }
+                let start = &self.paths.start.position;
+                let out = self.view().layout().penetration(i, j, start[j] - start[i]);
+                self.contacts.get_mut(index).normal = out.normal;
+                continue;
+            }
+            match self.view().measured(constraint, self.scene.settings.dt) {
+                // What has turned to the normal of another contact of the pair is that one.
+                Some(measured) if self.contacts.is_known(&measured, (index, &gone)) => {
+                    gone.push(index);
+                }
+                Some(measured) => {
+                    let least = LEAST_GAP * self.view().layout().hover_gap(i, j);
+                    if measured.gap < 0.5 * least {
+                        let by = (least - measured.gap) * measured.normal;
+                        self.move_apart_in_room((i, j), by, 0.0)?;
+                    }
+                    *self.contacts.get_mut(index) = measured;
+                }
+                None => gone.push(index),
+            }
+        }
+        let ended = self.contacts.remove_all(gone);
+        self.hand_over_all(&ended)?;
+        Ok(())
     }
 }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::mem;
 use glam::DVec3;
 
-use super::super::World;
+use super::super::bodies::Bodies;
 
 /// A plane that keeps two bodies apart: the second one may not move against the normal faster than
 /// the target, nor be accelerated against it by more than the surface recedes.
@@ -136,7 +136,7 @@ impl ContactSet {
     }
 
     /// Adds a constraint, in the place of one of the same bodies along the same normal.
-    fn insert(&mut self, new: ContactConstraint, is_movable: impl Fn(usize) -> bool) {
+    pub(in crate::world) fn insert(&mut self, new: ContactConstraint, bodies: &Bodies) {
         let (i, j) = new.bodies;
         let known = self.like(&new).next();
         if let Some(known) = known {
@@ -146,7 +146,7 @@ impl ContactSet {
         let index = self.all.len() as u32;
         self.all.push(new);
         for body in [i, j] {
-            if is_movable(body) {
+            if bodies.is_movable(body) {
                 if self.of_body.len() <= body {
                     self.of_body.resize(body + 1, Vec::new());
                 }
@@ -239,27 +239,6 @@ impl ContactSet {
         self.all.clone_from(&other.all);
         self.of_body.clone_from(&other.of_body);
         self.bundled.clone_from(&other.bundled);
-    }
-}
-
-impl World {
-    /// The contacts of bodies that are awake, in an order that is not that of the places of bodies.
-    pub(super) fn contacts_in_order(&self) -> Vec<usize> {
-        let all = self.contacts.all();
-        let is_awake = |&index: &usize| {
-            let (i, j) = all[index].bodies;
-            !self.is_asleep(i) && !self.is_asleep(j)
-        };
-        let mut awake: Vec<usize> = (0..all.len()).filter(is_awake).collect();
-        let order = self.in_order(awake.iter().map(|&index| all[index].bodies));
-        awake.sort_by_cached_key(|&index| order.between(all[index].bodies, all[index].normal));
-        awake
-    }
-
-    /// Adds a contact, in the place of one of the same bodies along the same normal.
-    pub(super) fn add_contact(&mut self, new: ContactConstraint) {
-        let mass = &self.bodies.mass;
-        self.contacts.insert(new, |body| mass[body].is_finite());
     }
 }
 

@@ -11,8 +11,11 @@
 
 use alloc::vec::Vec;
 
-use super::super::{World, stepping::Cause};
-use super::{Event, EventKind};
+use super::super::stepping::Cause;
+use super::{
+    event::{Event, EventKind},
+    view::View,
+};
 
 /// Ways of one body in a step from one immovable body to another that moves against it, after which it
 /// has no room: to a ball they leave some 1e-5 of what it had.
@@ -43,7 +46,7 @@ impl CrushDetector {
     }
 }
 
-impl World {
+impl View<'_> {
     /// Notes impacts with immovable bodies, and stops where they would go on for ever.
     pub(super) fn watch(
         &self,
@@ -55,7 +58,10 @@ impl World {
                 continue;
             }
             let (i, j) = event.bodies;
-            let (wall, body) = match (self.bodies.is_movable(i), self.bodies.is_movable(j)) {
+            let (wall, body) = match (
+                self.scene.bodies.is_movable(i),
+                self.scene.bodies.is_movable(j),
+            ) {
                 (true, true) => {
                     if !crush.walls.is_empty() {
                         crush.walls.swap(i, j);
@@ -65,9 +71,9 @@ impl World {
                 (true, false) => (j, i),
                 (false, _) => (i, j),
             };
-            crush.walls.resize(self.bodies.len(), [None; 2]);
-            crush.impacts.resize(self.bodies.len(), 0);
-            let velocity = |wall: usize| self.previous.velocity[wall];
+            crush.walls.resize(self.scene.bodies.len(), [None; 2]);
+            crush.impacts.resize(self.scene.bodies.len(), 0);
+            let velocity = |wall: usize| self.scene.before.velocity[wall];
             let walls = &mut crush.walls[body];
             match walls[0] {
                 Some(last) if velocity(last) != velocity(wall) => {

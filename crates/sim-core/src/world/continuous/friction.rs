@@ -15,9 +15,12 @@
 use alloc::{vec, vec::Vec};
 use glam::DVec3;
 
-use super::super::World;
-use super::constraint_solve::{Island, Places, Solution};
-use super::contact_set::ContactConstraint;
+use super::{
+    contact_set::ContactConstraint,
+    island::{Island, Places},
+    solver::Solution,
+    view::View,
+};
 use crate::impulse::{ALL_SWEEPS, Joined, Known, drag, greatest, limit, project_with};
 
 /// Contacts for which an answer far away is sought as well.
@@ -114,13 +117,13 @@ impl Friction {
     }
 }
 
-impl World {
+impl View<'_> {
     /// The coefficients of the contacts of an island; none where all are smooth.
     fn coefficients(&self, island: &Island) -> Option<Vec<f64>> {
         let all = self.contacts.all();
         let of = |&index: &usize| {
             let (i, j) = all[index].bodies;
-            self.bodies.pair_friction(i, j)
+            self.scene.bodies.pair_friction(i, j)
         };
         let coefficients: Vec<f64> = island.constraints.iter().map(of).collect();
         coefficients
@@ -133,7 +136,8 @@ impl World {
     /// gap.
     fn sticks(&self, contact: &ContactConstraint, sliding: DVec3) -> bool {
         let (i, j) = contact.bodies;
-        contact.sticks && sliding.length() <= 0.0625 * self.hover_gap(i, j) / self.settings.dt
+        contact.sticks
+            && sliding.length() <= 0.0625 * self.layout().hover_gap(i, j) / self.scene.settings.dt
     }
 
     /// Lets the impulses of an island's contacts (`given`, N s) rub, and contacts press that close by it:
@@ -166,7 +170,7 @@ impl World {
         };
         let of_load = |k: usize| match left {
             Some(left) => {
-                let load = constraint(k).load_speed / self.settings.dt / places.yielding(k);
+                let load = constraint(k).load_speed / self.scene.settings.dt / places.yielding(k);
                 limit(coefficient[k], left * load)
             }
             None => 0.0,
@@ -246,9 +250,9 @@ impl World {
                 .map(|&index| all[index].friction)
                 .collect(),
             ends_after: vec![f64::INFINITY; coefficient.len()],
-            left: self.settings.dt - time,
+            left: self.scene.settings.dt - time,
             stagger: if time == 0.0 {
-                self.continuous.velocity_stagger
+                self.paths.velocity_stagger
             } else {
                 0.0
             },

@@ -8,9 +8,10 @@ use alloc::vec::Vec;
 use core::mem;
 use glam::DVec3;
 
-use super::super::{World, stepping::Cause};
-use super::contact_motion::Surface;
-use super::contact_set::ContactConstraint;
+use super::super::stepping::Cause;
+use super::{
+    contact_motion::Surface, contact_set::ContactConstraint, solver::ContactSolver, view::View,
+};
 
 /// What normals of level surfaces may be off by.
 const LEVEL: f64 = 1e-9;
@@ -21,7 +22,7 @@ const AHEAD: f64 = 16.0;
 /// How often a body is handed over in a step at most, about, as contacts may end as they begin.
 const MOST_HANDED: u32 = 8;
 
-impl World {
+impl ContactSolver<'_> {
     /// Hands over what some contacts that end have borne, and tells whether anything goes on bearing it.
     pub(super) fn hand_over_all(
         &mut self,
@@ -38,18 +39,18 @@ impl World {
     /// are level with it.
     pub(super) fn hand_over(&mut self, ended: &ContactConstraint) -> Result<(), (usize, Cause)> {
         // Where bodies have just been placed all contacts are new.
-        if ended.is_overlap || !self.continuous.knows_near {
+        if ended.is_overlap || !self.near.knows_near {
             return Ok(());
         }
         let (i, j) = ended.bodies;
         for body in [i, j] {
-            let handed = self.continuous.handed.get(body).copied().unwrap_or(0);
-            if !self.bodies.is_movable(body) || handed >= MOST_HANDED {
+            let handed = self.tallies.handed.get(body).copied().unwrap_or(0);
+            if !self.scene.bodies.is_movable(body) || handed >= MOST_HANDED {
                 continue;
             }
-            let mut partners: Vec<usize> = mem::take(&mut self.continuous.partners);
+            let mut partners: Vec<usize> = mem::take(&mut self.near.partners);
             partners.clear();
-            let broad = &self.continuous.broad;
+            let broad = &self.near.broad;
             broad.each_partner(body, |other| partners.push(other));
             for &other in &partners {
                 let bodies = (body.min(other), body.max(other));
@@ -58,38 +59,40 @@ impl World {
                     true => 1.0,
                     false => -1.0,
                 };
-                if bodies == ended.bodies || !self.may_collide(bodies.0, bodies.1) {
+                if bodies == ended.bodies || !self.scene.may_collide(bodies.0, bodies.1) {
                     continue;
                 }
-                self.bodies.need_bvh(body);
-                self.bodies.need_bvh(other);
+                self.scene.bodies.need_bvh(body);
+                self.scene.bodies.need_bvh(other);
                 let level = ContactConstraint {
                     bodies,
                     normal: up * ended.normal,
                     friction: up * ended.friction,
                     ..*ended
                 };
-                let time = self.continuous.since[body];
-                let mut probe = mem::take(&mut self.continuous.probe);
-                let there = self.motion_at(other, time, &mut probe);
-                self.continuous.probe = probe;
+                let time = self.paths.since[body];
+                let mut probe = mem::take(&mut self.paths.probe);
+                let there = self.view().motion().motion_at(other, time, &mut probe);
+                self.paths.probe = probe;
                 let (at, moving) = there?;
-                let start = &self.continuous.start;
+                let start = &self.paths.start;
                 let sign = if body == bodies.1 { 1.0 } else { -1.0 };
                 let offset = sign * (start.position[body] - at);
                 let velocity = sign * (start.velocity[body] - moving);
-                if let Some(level) = self.level_with(&level, offset, velocity) {
-                    let count = self.bodies.len();
-                    self.continuous.handed.resize(count, 0);
-                    self.continuous.handed[body] += 1;
+                if let Some(level) = self.view().level_with(&level, offset, velocity) {
+                    let count = self.scene.bodies.len();
+                    self.tallies.handed.resize(count, 0);
+                    self.tallies.handed[body] += 1;
                     self.add_contact(level);
                 }
             }
-            self.continuous.partners = partners;
+            self.near.partners = partners;
         }
         Ok(())
     }
+}
 
+impl View<'_> {
     /// A contact along a normal, if two bodies, of which the second one is at an offset and has a velocity from
     /// the first, are no farther apart than those in contact and have none like it.
     fn level_with(
@@ -103,7 +106,7 @@ impl World {
         if self.contacts.of_pair(i, j).any(is_known) {
             return None;
         }
-        let hover = self.hover_gap(i, j);
+        let hover = self.layout().hover_gap(i, j);
         // Where a vertex is above one, the surface ahead is.
         let ahead = AHEAD * hover * velocity.normalize_or_zero();
         // What lies on the other side of a body is found as if it were in it.

@@ -14,16 +14,21 @@
 //! Impacts are sought up to the horizon. There the trajectory starts again, from the motion after the
 //! impacts that there were, and has a new horizon.
 
-use core::mem;
+use alloc::vec::Vec;
+use core::{mem, ops::Range};
 use glam::DVec3;
 
 use super::super::{
-    World,
-    plan::Plan,
+    scene::Scene,
     state::State,
     stepping::{Block, Cause},
 };
-use super::{Event, EventKind, Outcome};
+use super::{
+    contact_set::ContactSet,
+    event::{Event, EventKind, Outcome},
+    event_loop::EventLoop,
+    trajectory::Motion,
+};
 use crate::{
     Force, Shape,
     collide::{Contact, first_contact, snap},
@@ -33,48 +38,69 @@ use crate::{
 /// Halvings of a step in search of a part for which there is a motion, and on which something is met.
 const HALVINGS: u32 = 52;
 
-impl World {
+impl Motion<'_> {
     /// Until when the trajectory of a body is known, s from the step's start.
     pub(super) fn horizon(&self, body: usize) -> f64 {
-        let known = self.continuous.horizon.get(body).copied();
-        known.unwrap_or(self.settings.dt)
+        let known = self.paths.horizons.known.get(body).copied();
+        known.unwrap_or(self.scene.settings.dt)
     }
+}
 
+/// Until when each trajectory is known, s from the step's start.
+#[derive(Clone, Debug, Default)]
+pub(in crate::world) struct Horizons {
+    /// By body; empty where all are known to the step's end.
+    known: Vec<f64>,
+}
+
+impl Horizons {
     /// Lets every trajectory go to the end of the step.
-    pub(in crate::world) fn clear_horizons(&mut self) {
-        self.continuous.horizon.clear();
+    pub(in crate::world) fn clear(&mut self) {
+        self.known.clear();
     }
 
+    /// Notes how far the trajectories of some bodies are known.
+    pub(in crate::world) fn set(&mut self, bodies: Range<usize>, time: f64, scene: &Scene<'_>) {
+        let (all, dt) = (scene.bodies.len(), scene.settings.dt);
+        if self.known.is_empty() && time == dt {
+            return;
+        }
+        self.known.resize(all, dt);
+        self.known[bodies].fill(time);
+    }
+}
+
+impl Scene<'_> {
     /// Steps a block as far as contact lets the method be asked, and says how far that is, s from the
     /// step's start.
     pub(in crate::world) fn step_to_horizon(
         &self,
-        plan: &Plan,
+        contacts: &ContactSet,
         block: Block<'_>,
         to: &mut State,
         scratch: &mut Scratch,
     ) -> Result<f64, (usize, Cause)> {
         let (since, length) = (block.since, block.length);
         if !self.has_horizon(&block) {
-            self.step_block(plan, block, to, scratch, None)?;
+            self.step_block(block, to, scratch, None)?;
             return Ok(since + length);
         }
         let mut reached = length;
         let mut watch =
             |time: f64, body: &dyn Fn(usize) -> usize, before: &[DVec3], after: &[DVec3]| {
-                let is_met = self.meets_on_way(since + time, body, before, after);
+                let is_met = self.meets_on_way(contacts, since + time, body, before, after);
                 if is_met {
                     reached = reached.min(time);
                 }
                 is_met
             };
-        let done = self.step_block(plan, block.clone(), to, scratch, Some(&mut watch));
+        let done = self.step_block(block.clone(), to, scratch, Some(&mut watch));
         if reached < length {
             let part = Block {
                 length: reached,
                 ..block
             };
-            self.step_block(plan, part, to, scratch, None)?;
+            self.step_block(part, to, scratch, None)?;
             return Ok(since + reached);
         }
         let Err(failure) = done else {
@@ -87,14 +113,20 @@ impl World {
                 ..block.clone()
             };
             let time = part.length;
-            if self.step_block(plan, part, to, scratch, None).is_err() {
+            if self.step_block(part, to, scratch, None).is_err() {
                 high = time;
                 continue;
             }
             let before = &block.from.position[block.bodies.clone()];
             let after = &to.position[block.bodies.clone()];
             let first = block.bodies.start;
-            if self.meets_on_way(since + time, &|place| first + place, before, after) {
+            if self.meets_on_way(
+                contacts,
+                since + time,
+                &|place| first + place,
+                before,
+                after,
+            ) {
                 return Ok(since + time);
             }
             low = time;
@@ -102,56 +134,11 @@ impl World {
         Err(failure)
     }
 
-    /// Notes how far the trajectories of some bodies are known.
-    pub(in crate::world) fn set_horizon(&mut self, bodies: core::ops::Range<usize>, time: f64) {
-        let (all, dt) = (self.bodies.len(), self.settings.dt);
-        let horizon = &mut self.continuous.horizon;
-        if horizon.is_empty() && time == dt {
-            return;
-        }
-        horizon.resize(all, dt);
-        horizon[bodies].fill(time);
-    }
-
-    /// Queues the instants at which trajectories of some bodies have to start again, once for those
-    /// that are stepped together.
-    pub(super) fn queue_horizons(&mut self, bodies: impl Iterator<Item = usize>) {
-        if self.continuous.horizon.is_empty() {
-            return;
-        }
-        let mut events = mem::take(&mut self.continuous.events);
-        for body in bodies {
-            let first = self.coupled_group(body).map_or(body, |(all, _)| all.start);
-            let time = self.horizon(body);
-            if body != first || time >= self.settings.dt {
-                continue;
-            }
-            let version = self.continuous.version[body];
-            events.push(Event {
-                time,
-                bodies: (body, body),
-                versions: (version, version),
-                kind: EventKind::Horizon,
-                outcome: Outcome::Rest,
-                load_speed: 0.0,
-                gap: 0.0,
-                contact: Contact {
-                    time: 0.0,
-                    point: DVec3::ZERO,
-                    normal: DVec3::ZERO,
-                    feature: None,
-                    face: None,
-                },
-            });
-        }
-        self.continuous.events = events;
-    }
-
     /// Whether forces on these bodies may grow without bound where contact keeps them from going.
     fn has_horizon(&self, block: &Block<'_>) -> bool {
         self.settings.collision == crate::Collision::Continuous
             && self.bodies.solid.len() > 1
-            && self.forces.iter().any(|force| match force {
+            && self.forces.list.iter().any(|force| match force {
                 Force::Attraction { body, .. } | Force::Body { body, .. } => {
                     body.is_none_or(|body| block.bodies.contains(&body))
                 }
@@ -167,6 +154,7 @@ impl World {
     /// the chords of their ways to a time, s from the step's start.
     fn meets_on_way(
         &self,
+        contacts: &ContactSet,
         time: f64,
         body: &dyn Fn(usize) -> usize,
         before: &[DVec3],
@@ -181,7 +169,7 @@ impl World {
             let others = ways().skip(place + 1);
             if others
                 .clone()
-                .any(|(place, to)| self.touch_on_chord((i, body(place)), from, to))
+                .any(|(place, to)| self.touch_on_chord(contacts, (i, body(place)), from, to))
             {
                 return true;
             }
@@ -191,8 +179,8 @@ impl World {
                 .iter()
                 .filter(|&&body| !self.bodies.is_movable(body))
             {
-                let at = self.previous.position[wall] + time * self.previous.velocity[wall];
-                if self.touch_on_chord((i, wall), from, (&at, &at))
+                let at = self.before.position[wall] + time * self.before.velocity[wall];
+                if self.touch_on_chord(contacts, (i, wall), from, (&at, &at))
                     && ways().all(|(place, _)| body(place) != wall)
                 {
                     return true;
@@ -205,6 +193,7 @@ impl World {
     /// Whether two bodies come to touch on chords, each from one place to another.
     fn touch_on_chord(
         &self,
+        contacts: &ContactSet,
         (i, j): (usize, usize),
         first: (&DVec3, &DVec3),
         second: (&DVec3, &DVec3),
@@ -227,7 +216,7 @@ impl World {
         // Twice, for what is rounded.
         if (from + part * motion).length() > 2.0 * (size(i) + size(j))
             || !self.may_collide(i, j)
-            || self.contacts.of_pair(i, j).next().is_some()
+            || contacts.of_pair(i, j).next().is_some()
         {
             return false;
         }
@@ -235,5 +224,45 @@ impl World {
         self.bodies.need_bvh(j);
         let forms = self.bodies.forms(i, j);
         forms.is_some_and(|(a, b)| first_contact(a, b, snap(from), snap(motion)).is_some())
+    }
+}
+
+impl EventLoop<'_> {
+    /// Queues the instants at which trajectories of some bodies have to start again, once for those
+    /// that are stepped together.
+    pub(super) fn queue_horizons(&mut self, bodies: impl Iterator<Item = usize>) {
+        if self.solver.paths.horizons.known.is_empty() {
+            return;
+        }
+        let mut events = mem::take(&mut self.queue.waiting);
+        for body in bodies {
+            let first = self
+                .view()
+                .motion()
+                .coupled_group(body)
+                .map_or(body, |(all, _)| all.start);
+            let time = self.view().motion().horizon(body);
+            if body != first || time >= self.solver.scene.settings.dt {
+                continue;
+            }
+            let version = self.solver.paths.version[body];
+            events.push(Event {
+                time,
+                bodies: (body, body),
+                versions: (version, version),
+                kind: EventKind::Horizon,
+                outcome: Outcome::Rest,
+                load_speed: 0.0,
+                gap: 0.0,
+                contact: Contact {
+                    time: 0.0,
+                    point: DVec3::ZERO,
+                    normal: DVec3::ZERO,
+                    feature: None,
+                    face: None,
+                },
+            });
+        }
+        self.queue.waiting = events;
     }
 }

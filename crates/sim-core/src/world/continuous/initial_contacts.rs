@@ -8,14 +8,13 @@
 //! as the f32 of vertices is rounded is an overlap, and is held as it is.
 
 use alloc::vec::Vec;
-use core::mem;
 use glam::DVec3;
 
-use super::super::World;
-use super::constraint_solve::Places;
+use super::super::{World, layout::Layout};
 use super::contact_set::ContactConstraint;
+use super::{island::Places, solver::ContactSolver};
 use crate::{
-    collide::{Broad, Form, Swept, first_contact, parting_normals, reach, snap},
+    collide::{Form, first_contact, parting_normals, reach, snap},
     impulse::project,
 };
 
@@ -35,7 +34,7 @@ pub(in crate::world) struct Meeting {
 }
 
 /// A plane that keeps two bodies apart: the least offset along its normal.
-pub(super) struct Plane {
+pub(in crate::world) struct Plane {
     bodies: (usize, usize),
     normal: DVec3,
     level: f64,
@@ -45,17 +44,16 @@ pub(super) struct Plane {
 impl World {
     /// Moves those apart that meet by no more than a rounding since they were placed.
     pub(super) fn separate_placed(&mut self) {
-        if !self.continuous.placed || self.overlapping.is_empty() {
+        if !self.continuous.placed || self.overlaps.pairs.is_empty() {
             return;
         }
-        let mut pairs = mem::take(&mut self.overlapping);
         let at = self.previous.position.clone();
-        let mut meeting = Vec::new();
-        for &(i, j) in &pairs {
-            meeting.extend(self.place_apart((i, j), at[j] - at[i]));
-        }
+        let layout = self.layout();
+        let pairs = self.overlaps.pairs.iter();
+        let meeting = pairs.filter_map(|&(i, j)| layout.place_apart((i, j), at[j] - at[i]));
+        let mut meeting: Vec<Meeting> = meeting.collect();
         if !meeting.is_empty()
-            && let Some((moved, planes)) = self.parted(&mut meeting, &at)
+            && let Some((moved, planes)) = layout.parted(&mut meeting, &at)
         {
             for (current, (moved, at)) in
                 self.current.position.iter_mut().zip(moved.iter().zip(&at))
@@ -64,24 +62,23 @@ impl World {
             }
             self.previous.position = moved;
             for plane in planes {
-                let gap = self.hover_gap(plane.bodies.0, plane.bodies.1);
-                self.add_contact(ContactConstraint::new(
-                    plane.bodies,
-                    plane.normal,
-                    gap,
-                    plane.point,
-                ));
+                let gap = self.layout().hover_gap(plane.bodies.0, plane.bodies.1);
+                let contact = ContactConstraint::new(plane.bodies, plane.normal, gap, plane.point);
+                self.contacts.insert(contact, &self.bodies);
             }
         }
-        let at = self.previous.position.clone();
-        pairs.retain(|&(i, j)| self.bodies.meet_at(i, j, at[j] - at[i]));
-        for &(i, j) in &pairs {
-            let out = self.penetration(i, j, at[j] - at[i]);
-            self.note_depth((i, j), out.depth);
+        let at = &self.previous.position;
+        self.overlaps
+            .retain(|&(i, j)| self.bodies.meet_at(i, j, at[j] - at[i]));
+        for (i, j) in self.overlaps.pairs.clone() {
+            let at = &self.previous.position;
+            let out = self.layout().penetration(i, j, at[j] - at[i]);
+            self.overlaps.note_depth((i, j), out.depth);
         }
-        self.overlapping = pairs;
     }
+}
 
+impl Layout<'_> {
     /// Where a pair is apart that meets at an offset, if there is such a place within a rounding.
     pub(in crate::world) fn place_apart(
         &self,
@@ -143,19 +140,13 @@ impl World {
 
     /// Places at which pairs that meet do not, nor any that they come to meet, and the planes that keep
     /// them apart; `None` where there are none nearby.
-    pub(super) fn parted(
+    pub(in crate::world) fn parted(
         &self,
         meeting: &mut Vec<Meeting>,
         at: &[DVec3],
     ) -> Option<(Vec<DVec3>, Vec<Plane>)> {
-        let near = self.near_pairs(at, |i, j| {
-            16.0 * self.hover_gap(i, j)
-                + 1e-6
-                    * (self
-                        .bodies
-                        .extent(i)
-                        .farthest
-                        .min(self.bodies.extent(j).farthest))
+        let near = self.bodies.near_pairs(at, |body| {
+            16.0 * self.hover_gap(body, body) + 1e-6 * self.bodies.extent(body).farthest
         });
         let mut place = at.to_vec();
         let mut planes: Vec<Plane> = Vec::new();
@@ -205,7 +196,7 @@ impl World {
                 return Some((place, planes));
             }
             let contacts = planes.iter().map(|plane| (plane.bodies, plane.normal));
-            let places = Places::between(self, contacts);
+            let places = Places::between(self.bodies, self.before, contacts);
             let mut displaced = alloc::vec![DVec3::ZERO; places.bodies.len()];
             let missing: Vec<f64> = planes
                 .iter()
@@ -233,26 +224,33 @@ impl World {
         }
         None
     }
+}
 
+impl ContactSolver<'_> {
     /// Finds the contacts of bodies that touch without meeting since they were placed.
     pub(super) fn find_initial_contacts(&mut self) {
-        if !mem::take(&mut self.continuous.placed) {
-            return;
-        }
-        let at = self.continuous.start.position.clone();
-        let pairs = self.near_pairs(&at, |i, j| 8.0 * self.hover_gap(i, j));
+        let at = self.paths.start.position.clone();
+        let pairs = self
+            .scene
+            .bodies
+            .near_pairs(&at, |body| 8.0 * self.view().layout().hover_gap(body, body));
         for (i, j) in pairs {
-            if !self.may_collide(i, j) {
+            if !self.scene.may_collide(i, j) {
                 continue;
             }
-            self.bodies.need_bvh(i);
-            self.bodies.need_bvh(j);
-            let hover = self.hover_gap(i, j);
-            let Some((first, second)) = self.bodies.forms(i, j) else {
+            self.scene.bodies.need_bvh(i);
+            self.scene.bodies.need_bvh(j);
+            let hover = self.view().layout().hover_gap(i, j);
+            let Some((first, second)) = self.scene.bodies.forms(i, j) else {
                 continue;
             };
             // Where rounding is larger than a body, nothing is known of what it touches.
-            let size = self.bodies.extent(i).half.min(self.bodies.extent(j).half);
+            let size = self
+                .scene
+                .bodies
+                .extent(i)
+                .half
+                .min(self.scene.bodies.extent(j).half);
             if size > 0.0 && hover > size {
                 continue;
             }
@@ -269,7 +267,7 @@ impl World {
                 }
             }
             for contact in found {
-                let gap = self.hover_gap(i, j);
+                let gap = self.view().layout().hover_gap(i, j);
                 self.add_contact(ContactConstraint::new(
                     (i, j),
                     contact.normal,
@@ -278,38 +276,6 @@ impl World {
                 ));
             }
         }
-    }
-
-    /// Pairs of which one may move whose boxes, widened by a length, meet.
-    pub(in crate::world) fn near_pairs(
-        &self,
-        at: &[DVec3],
-        margin: impl Fn(usize, usize) -> f64,
-    ) -> Vec<(usize, usize)> {
-        let mut broad = Broad::default();
-        let swept = |body: usize| {
-            let extent = self.bodies.extent(body);
-            let wide = DVec3::splat(margin(body, body));
-            Swept {
-                min: at[body] + extent.low - wide,
-                max: at[body] + extent.high + wide,
-                body,
-            }
-        };
-        let front = |body: usize| {
-            let mut front = self.front_at(body, at[body])?;
-            front.slack += margin(body, body);
-            Some(front)
-        };
-        broad.fill(&self.bodies.solid, swept, front);
-        let mut pairs = Vec::new();
-        broad.each_pair(|i, j| {
-            if self.bodies.is_movable(i) || self.bodies.is_movable(j) {
-                pairs.push((i, j));
-            }
-        });
-        pairs.sort_unstable();
-        pairs
     }
 }
 

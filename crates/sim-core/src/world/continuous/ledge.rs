@@ -10,10 +10,14 @@ use alloc::vec::Vec;
 use core::mem;
 use glam::DVec3;
 
-use super::super::{World, stepping::Cause};
-use super::constraint_solve::Visited;
-use super::contact_set::ContactConstraint;
-use super::{Event, EventKind};
+use super::super::stepping::Cause;
+use super::{
+    contact_set::ContactConstraint,
+    event::{Event, EventKind},
+    event_loop::EventLoop,
+    island::Visited,
+    view::View,
+};
 use crate::collide::{first_contact, meet, snap};
 
 /// What the normals of surfaces that are level but for the rounding of their vertices may be off by.
@@ -39,7 +43,7 @@ struct Slide {
     most: f64,
 }
 
-impl World {
+impl EventLoop<'_> {
     /// Lifts what slides onto a ledge of rounding, where it would have an impact with it, and tells
     /// whether it has.
     pub(super) fn climb(
@@ -53,9 +57,9 @@ impl World {
             return Ok(false);
         }
         for (body, ledge) in [(i, j), (j, i)] {
-            for place in 0..self.contacts.of_body(body).len() {
-                let index = self.contacts.of_body(body)[place] as usize;
-                if let Some(slide) = self.slide_onto(event, body, ledge, index)
+            for place in 0..self.solver.contacts.of_body(body).len() {
+                let index = self.solver.contacts.of_body(body)[place] as usize;
+                if let Some(slide) = self.view().slide_onto(event, body, ledge, index)
                     && self.lift(&slide, time, restarted)?
                 {
                     return Ok(true);
@@ -63,42 +67,6 @@ impl World {
             }
         }
         Ok(false)
-    }
-
-    /// How a body slides on one of its contacts onto what it has an impact with, if that rises from the
-    /// surface by no more than rounding where they touch.
-    fn slide_onto(&self, event: &Event, body: usize, ledge: usize, index: usize) -> Option<Slide> {
-        let constraint = self.contacts.all()[index];
-        let (i, j) = constraint.bodies;
-        let (up, floor) = match body == j {
-            true => (constraint.normal, i),
-            false => (-constraint.normal, j),
-        };
-        let normal = match body == event.bodies.1 {
-            true => event.contact.normal,
-            false => -event.contact.normal,
-        };
-        if !self.bodies.is_movable(body) || constraint.is_overlap || (normal - up).length() <= LEVEL
-        {
-            return None;
-        }
-        let start = &self.continuous.start;
-        let touched = start.position[i] + constraint.point;
-        let of = |body: usize, point: DVec3| (point - start.position[body]).dot(up).abs();
-        let point = event.contact.point;
-        let most = f64::from(f32::EPSILON) * (of(floor, touched) + of(ledge, point));
-        if (point - touched).dot(up) > most {
-            return None;
-        }
-        let relative = start.velocity[body] - start.velocity[ledge];
-        Some(Slide {
-            body,
-            ledge,
-            constraint,
-            up,
-            along: relative - relative.dot(up) * up,
-            most,
-        })
     }
 
     /// Lifts a body onto a ledge, if it is as high as rounding at most, and tells whether it has.
@@ -113,15 +81,21 @@ impl World {
         };
         let (up, most) = (slide.up, slide.most);
         let pair = (slide.body.min(slide.ledge), slide.body.max(slide.ledge));
-        let hover = self.hover_gap(pair.0, pair.1);
-        let Some(forms) = self.bodies.form(pair.0).zip(self.bodies.form(pair.1)) else {
+        let hover = self.view().layout().hover_gap(pair.0, pair.1);
+        let Some(forms) = self
+            .solver
+            .scene
+            .bodies
+            .form(pair.0)
+            .zip(self.solver.scene.bodies.form(pair.1))
+        else {
             return Ok(false);
         };
         let sign = if slide.body == pair.1 { 1.0 } else { -1.0 };
-        let start = &self.continuous.start;
+        let start = &self.solver.paths.start;
         let offset = start.position[pair.1] - start.position[pair.0];
         // As far as until what is round is over it.
-        let size = self.bodies.extent(slide.body).half;
+        let size = self.solver.scene.bodies.extent(slide.body).half;
         let far = 4.0 * libm::sqrt(most * size) + 4.0 * most + 64.0 * hover;
         let is_free = |lift: f64| {
             let from = offset + sign * lift * up;
@@ -145,7 +119,9 @@ impl World {
         };
         let reach = lift + 8.0 * hover;
         let level_at = |ahead: DVec3| {
-            let surface = self.surface_below(&level, offset + sign * (lift * up + ahead), reach);
+            let surface =
+                self.view()
+                    .surface_below(&level, offset + sign * (lift * up + ahead), reach);
             surface.filter(|surface| (surface.normal - level.normal).length() <= LEVEL)
         };
         if let Some(surface) = level_at(onto) {
@@ -171,63 +147,112 @@ impl World {
     ) -> Result<bool, (usize, Cause)> {
         let (slider, up) = (slide.body, slide.up);
         let mut visited = Visited::default();
-        visited.begin(self.bodies.len());
-        let Some(island) = self.island_of(slider, &mut visited) else {
+        visited.begin(self.solver.scene.bodies.len());
+        let Some(island) = self.view().island_of(slider, &mut visited) else {
             return Ok(false);
         };
-        let applied = &self.continuous.applied_acceleration;
-        let weight = |&body: &usize| -self.bodies.mass[body] * applied[body].dot(up);
+        let applied = &self.solver.paths.applied_acceleration;
+        let weight = |&body: &usize| -self.solver.scene.bodies.mass[body] * applied[body].dot(up);
         let work = lift * island.bodies.iter().map(weight).sum::<f64>();
         let squared = slide.along.length_squared();
-        let left = squared - 2.0 * work.max(0.0) / self.bodies.mass[slider];
-        let climbs = self.continuous.climbs.get(slider).copied().unwrap_or(0);
+        let left = squared - 2.0 * work.max(0.0) / self.solver.scene.bodies.mass[slider];
+        let climbs = self.solver.tallies.climbs.get(slider).copied().unwrap_or(0);
         if visited.has(slide.ledge) || left <= 0.0 || climbs == MOST_CLIMBS {
             return Ok(false);
         }
         for &body in &island.bodies {
-            self.restart(body, time, restarted)?;
+            self.solver.restart(body, time, restarted)?;
         }
         let mut partners = Vec::new();
         for &body in &island.bodies {
-            let broad = &self.continuous.broad;
+            let broad = &self.solver.near.broad;
             broad.each_partner(body, |other| partners.push((body, other)));
         }
         partners.retain(|&(_, other)| !visited.has(other));
-        let mut probe = mem::take(&mut self.continuous.probe);
+        let mut probe = mem::take(&mut self.solver.paths.probe);
         let mut is_blocked = Ok(false);
         for (body, other) in partners {
-            if !self.may_collide(body.min(other), body.max(other)) {
+            if !self
+                .solver
+                .scene
+                .may_collide(body.min(other), body.max(other))
+            {
                 continue;
             }
-            self.bodies.need_bvh(other);
-            is_blocked = self.motion_at(other, time, &mut probe).map(|(at, _)| {
-                let from = self.continuous.start.position[body] - at;
-                self.is_stopped(body, other, from, [lift * up, by - lift * up])
-            });
+            self.solver.scene.bodies.need_bvh(other);
+            is_blocked = self
+                .view()
+                .motion()
+                .motion_at(other, time, &mut probe)
+                .map(|(at, _)| {
+                    let from = self.solver.paths.start.position[body] - at;
+                    self.view()
+                        .is_stopped(body, other, from, [lift * up, by - lift * up])
+                });
             if !matches!(is_blocked, Ok(false)) {
                 break;
             }
         }
-        self.continuous.probe = probe;
+        self.solver.paths.probe = probe;
         if is_blocked? {
             return Ok(false);
         }
         for &body in &island.bodies {
-            self.continuous.start.position[body] += by;
+            self.solver.paths.start.position[body] += by;
         }
-        let bodies = self.bodies.len();
-        self.continuous.climbs.resize(bodies, 0);
-        self.continuous.climbs[slider] += 1;
+        let bodies = self.solver.scene.bodies.len();
+        self.solver.tallies.climbs.resize(bodies, 0);
+        self.solver.tallies.climbs[slider] += 1;
         let slower = libm::sqrt(left / squared);
-        self.continuous.start.velocity[slider] += (slower - 1.0) * slide.along;
-        self.hand_over(&slide.constraint)?;
+        self.solver.paths.start.velocity[slider] += (slower - 1.0) * slide.along;
+        self.solver.hand_over(&slide.constraint)?;
         Ok(true)
+    }
+}
+
+impl View<'_> {
+    /// How a body slides on one of its contacts onto what it has an impact with, if that rises from the
+    /// surface by no more than rounding where they touch.
+    fn slide_onto(&self, event: &Event, body: usize, ledge: usize, index: usize) -> Option<Slide> {
+        let constraint = self.contacts.all()[index];
+        let (i, j) = constraint.bodies;
+        let (up, floor) = match body == j {
+            true => (constraint.normal, i),
+            false => (-constraint.normal, j),
+        };
+        let normal = match body == event.bodies.1 {
+            true => event.contact.normal,
+            false => -event.contact.normal,
+        };
+        if !self.scene.bodies.is_movable(body)
+            || constraint.is_overlap
+            || (normal - up).length() <= LEVEL
+        {
+            return None;
+        }
+        let start = &self.paths.start;
+        let touched = start.position[i] + constraint.point;
+        let of = |body: usize, point: DVec3| (point - start.position[body]).dot(up).abs();
+        let point = event.contact.point;
+        let most = f64::from(f32::EPSILON) * (of(floor, touched) + of(ledge, point));
+        if (point - touched).dot(up) > most {
+            return None;
+        }
+        let relative = start.velocity[body] - start.velocity[ledge];
+        Some(Slide {
+            body,
+            ledge,
+            constraint,
+            up,
+            along: relative - relative.dot(up) * up,
+            most,
+        })
     }
 
     /// Whether a body on a way of two parts from an offset meets another one: a point, or a sheet, has to be
     /// seen on the way.
     fn is_stopped(&self, body: usize, other: usize, from: DVec3, parts: [DVec3; 2]) -> bool {
-        let Some((other, body)) = self.bodies.forms(other, body) else {
+        let Some((other, body)) = self.scene.bodies.forms(other, body) else {
             return false;
         };
         let mut at = from;

@@ -9,7 +9,8 @@ use alloc::vec::Vec;
 use core::mem;
 use glam::DVec3;
 
-use super::super::{World, stepping::Cause};
+use super::super::{layout::Layout, record::Record, scene::Scene, state::State, stepping::Cause};
+use super::{contact_set::ContactSet, solver::ContactSolver};
 use crate::collide::{first_contact, parting_normals, snap};
 
 /// Units in the last place, a few parts in 10^12, before it is an overlap.
@@ -46,22 +47,40 @@ impl Back {
     }
 }
 
-impl World {
+/// Bodies at the end of a step, of which no two may meet.
+pub(super) struct Correction<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    pub(super) end: &'a mut State,
+    pub(super) contacts: &'a ContactSet,
+    pub(super) record: &'a mut Record,
+}
+
+impl Correction<'_> {
     /// Makes sure that no two bodies meet that came near in the step.
-    pub(super) fn separate_meeting(&mut self) -> Result<(), (usize, Cause)> {
-        let mut near = mem::take(&mut self.continuous.candidate_pairs);
+    pub(super) fn separate_meeting(
+        &mut self,
+        near: &mut Vec<(usize, usize)>,
+    ) -> Result<(), (usize, Cause)> {
         near.sort_unstable();
         near.dedup();
-        let mut outcome = Ok(());
         if near.iter().any(|&(i, j)| self.meet_now(i, j)) {
-            let order = self.in_order(near.iter().copied());
+            let order = self.scene.in_order(near.iter().copied());
             near.sort_by_cached_key(|&pair| order.between(pair, DVec3::ZERO));
-            if !self.part_all(&near) && !self.part_together(&near) {
-                outcome = self.roll_back_meeting(&near);
+            if !self.part_all(near) && !self.part_together(near) {
+                return self.roll_back_meeting(near);
             }
         }
-        self.continuous.candidate_pairs = near;
-        outcome
+        Ok(())
+    }
+
+    fn layout(&self) -> Layout<'_> {
+        Layout {
+            bodies: self.scene.bodies,
+            at: &self.end.position,
+            before: self.scene.before,
+            contacts: self.contacts,
+            overlaps: self.scene.overlaps,
+        }
     }
 
     /// Moves pairs apart that meet by rounding, one after the other, and tells whether none meets then.
@@ -70,7 +89,7 @@ impl World {
             let mut met = false;
             for &(i, j) in near {
                 if self.meet_now(i, j) {
-                    let most = self.position_resolution(i, j) * MAX_CORRECTION;
+                    let most = self.layout().position_resolution(i, j) * MAX_CORRECTION;
                     if !self.part(i, j, most) {
                         return false;
                     }
@@ -86,22 +105,22 @@ impl World {
 
     /// The same all at once, for bodies among others that leave each other no room.
     fn part_together(&mut self, near: &[(usize, usize)]) -> bool {
-        let at = self.current.position.clone();
+        let at = self.end.position.clone();
         let mut meeting = Vec::new();
         for &(i, j) in near {
             if self.meet_now(i, j) {
-                match self.place_apart((i, j), at[j] - at[i]) {
+                match self.layout().place_apart((i, j), at[j] - at[i]) {
                     Some(pair) => meeting.push(pair),
                     None => return false,
                 }
             }
         }
-        let Some((moved, _)) = self.parted(&mut meeting, &at) else {
+        let Some((moved, _)) = self.layout().parted(&mut meeting, &at) else {
             return false;
         };
-        self.current.position = moved;
+        self.end.position = moved;
         if near.iter().any(|&(i, j)| self.meet_now(i, j)) {
-            self.current.position = at;
+            self.end.position = at;
             return false;
         }
         true
@@ -114,7 +133,7 @@ impl World {
             let mut met = false;
             for &(i, j) in near {
                 if self.meet_now(i, j) {
-                    let most = self.position_resolution(i, j) * MAX_CORRECTION;
+                    let most = self.layout().position_resolution(i, j) * MAX_CORRECTION;
                     let is_back = back.of(i).or(back.of(j)).is_some();
                     if is_back || round == ROUNDS || !self.part(i, j, most) {
                         self.roll_back((i, j), &mut back)?;
@@ -130,21 +149,24 @@ impl World {
     }
 
     fn meet_now(&mut self, i: usize, j: usize) -> bool {
-        let offset = self.current.position[j] - self.current.position[i];
-        self.may_collide(i, j) && self.bodies.meet_at(i, j, offset)
+        let offset = self.end.position[j] - self.end.position[i];
+        self.scene.may_collide(i, j) && self.scene.bodies.meet_at(i, j, offset)
     }
 
     /// Moves two bodies apart by the least that does it, but for a factor of two, if that is no more
     /// than a length.
     fn part(&mut self, i: usize, j: usize, most: f64) -> bool {
-        let before = (self.current.position[i], self.current.position[j]);
-        let forms = self.bodies.forms(i, j);
+        let before = (self.end.position[i], self.end.position[j]);
+        let forms = self.scene.bodies.forms(i, j);
         let offset = before.1 - before.0;
         let mut normals = forms.map_or_else(Vec::new, |(a, b)| parting_normals(a, b, offset));
-        normals.push(self.apart_along(i, j));
-        let resolution = self.position_resolution(i, j).max(f64::MIN_POSITIVE);
+        normals.push(self.layout().apart_along(i, j));
+        let resolution = self
+            .layout()
+            .position_resolution(i, j)
+            .max(f64::MIN_POSITIVE);
         // Back to where they came from: a sheet has two sides.
-        let came = (self.previous.position[j] - self.previous.position[i]) - offset;
+        let came = (self.scene.before.position[j] - self.scene.before.position[i]) - offset;
         normals.retain(|normal| normal.dot(came) >= -8.0 * resolution);
         let mut by = 0.5 * resolution;
         while by <= most.max(resolution) {
@@ -153,7 +175,7 @@ impl World {
                 if !self.meet_now(i, j) {
                     return true;
                 }
-                (self.current.position[i], self.current.position[j]) = before;
+                (self.end.position[i], self.end.position[j]) = before;
             }
             by *= 2.0;
         }
@@ -164,21 +186,33 @@ impl World {
     /// and bodies go back to where the step began, where nothing met, no faster than they were there; so
     /// does all that they meet there. Immovable ones go on, and take what they meet along.
     fn roll_back(&mut self, pair: (usize, usize), back: &mut Back) -> Result<(), (usize, Cause)> {
-        back.with.resize(self.bodies.len(), None);
-        let solid = self.in_order(self.bodies.solid.iter().map(|&body| (body, body)));
+        back.with.resize(self.scene.bodies.len(), None);
+        let solid = self
+            .scene
+            .in_order(self.scene.bodies.solid.iter().map(|&body| (body, body)));
         let mut pairs = alloc::vec![pair];
         while let Some((i, j)) = pairs.pop() {
             if !self.meet_now(i, j) {
                 continue;
             }
-            self.bounce(i, j);
-            let frame = |body: usize| match self.bodies.is_movable(body) {
+            if let Some(contact) = self.scene.contact_on_way(self.end, i, j) {
+                let velocity = &mut self.end.velocity;
+                let impact = self.scene.exchange_on_way((i, j), &contact, velocity);
+                impact
+                    .into_iter()
+                    .for_each(|impact| self.record.note(impact));
+            }
+            let frame = |body: usize| match self.scene.bodies.is_movable(body) {
                 true => back.of(body),
                 false => Some(Frame::Of(body)),
             };
             let frame = match (frame(i), frame(j)) {
                 (Some(one), Some(other)) if self.moves_of(one) != self.moves_of(other) => {
-                    let body = if self.bodies.is_movable(i) { i } else { j };
+                    let body = if self.scene.bodies.is_movable(i) {
+                        i
+                    } else {
+                        j
+                    };
                     let (one, other) = (one.wall().unwrap_or(i), other.wall().unwrap_or(j));
                     let between = (one.min(other), one.max(other));
                     return Err((body, Cause::Squeezed(between)));
@@ -187,14 +221,14 @@ impl World {
                 (None, None) => Frame::Still,
             };
             for body in [i, j] {
-                if self.bodies.is_movable(body) && back.of(body).is_none() {
+                if self.scene.bodies.is_movable(body) && back.of(body).is_none() {
                     back.with[body] = Some(frame);
-                    let start = self.previous.position[body];
-                    self.current.position[body] = start + self.moves_of(frame);
+                    let start = self.scene.before.position[body];
+                    self.end.position[body] = start + self.moves_of(frame);
                     // What forces have given it on the way that it has not gone.
-                    let before = self.previous.velocity[body];
-                    if before.length() < self.current.velocity[body].length() {
-                        self.current.velocity[body] = before;
+                    let before = self.scene.before.velocity[body];
+                    if before.length() < self.end.velocity[body].length() {
+                        self.end.velocity[body] = before;
                     }
                     let others = solid.bodies.iter().filter(|&&other| other != body);
                     pairs.extend(others.map(|&other| (body.min(other), body.max(other))));
@@ -207,14 +241,28 @@ impl World {
     /// How far what bodies have been put back beside has moved in the step.
     fn moves_of(&self, frame: Frame) -> DVec3 {
         frame.wall().map_or(DVec3::ZERO, |wall| {
-            self.current.position[wall] - self.previous.position[wall]
+            self.end.position[wall] - self.scene.before.position[wall]
         })
     }
 
+    fn move_current_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
+        let (first, second) = shares(
+            self.scene.bodies.is_movable(i),
+            self.scene.bodies.is_movable(j),
+        );
+        self.end.position[i] -= first * by;
+        self.end.position[j] += second * by;
+    }
+}
+
+impl ContactSolver<'_> {
     /// Moves the starts of two trajectories apart.
     pub(super) fn move_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
-        let (first, second) = shares(self.bodies.is_movable(i), self.bodies.is_movable(j));
-        let position = &mut self.continuous.start.position;
+        let (first, second) = shares(
+            self.scene.bodies.is_movable(i),
+            self.scene.bodies.is_movable(j),
+        );
+        let position = &mut self.paths.start.position;
         position[i] -= first * by;
         position[j] += second * by;
     }
@@ -229,16 +277,19 @@ impl World {
     ) -> Result<f64, (usize, Cause)> {
         let mut room = [0.0; 2];
         for (room, (body, other, way)) in room.iter_mut().zip([(i, j, -by), (j, i, by)]) {
-            if self.bodies.is_movable(body) {
+            if self.scene.bodies.is_movable(body) {
                 let free = self.free_part(body, other, way, time)?;
                 *room = if free < 1.0 { 0.5 * free } else { 1.0 };
             }
         }
-        let share = shares(self.bodies.is_movable(i), self.bodies.is_movable(j));
+        let share = shares(
+            self.scene.bodies.is_movable(i),
+            self.scene.bodies.is_movable(j),
+        );
         let lacking = ((share.0 - room[0]).max(0.0), (share.1 - room[1]).max(0.0));
         let first = (share.0 + lacking.1).min(room[0]);
         let second = (share.1 + lacking.0).min(room[1]);
-        let position = &mut self.continuous.start.position;
+        let position = &mut self.paths.start.position;
         position[i] -= first * by;
         position[j] += second * by;
         Ok((first + second) * by.length())
@@ -253,12 +304,12 @@ impl World {
         way: DVec3,
         time: f64,
     ) -> Result<f64, (usize, Cause)> {
-        let mut partners = mem::take(&mut self.continuous.partners);
-        let mut probe = mem::take(&mut self.continuous.probe);
+        let mut partners = mem::take(&mut self.near.partners);
+        let mut probe = mem::take(&mut self.paths.probe);
         partners.clear();
-        match self.continuous.knows_near {
+        match self.near.knows_near {
             true => self
-                .continuous
+                .near
                 .broad
                 .each_partner(body, |other| partners.push(other)),
             // Where bodies have just been placed, those that it touches.
@@ -269,16 +320,20 @@ impl World {
         }
         let mut free = Ok(1.0_f64);
         for &other in &partners {
-            if other == except || !self.may_collide(body.min(other), body.max(other)) {
+            if other == except || !self.scene.may_collide(body.min(other), body.max(other)) {
                 continue;
             }
-            self.bodies.need_bvh(body);
-            self.bodies.need_bvh(other);
-            let found = self.motion_at(other, time, &mut probe).map(|(at, _)| {
-                let offset = self.continuous.start.position[body] - at;
-                let forms = self.bodies.forms(other, body)?;
-                first_contact(forms.0, forms.1, snap(offset), snap(way))
-            });
+            self.scene.bodies.need_bvh(body);
+            self.scene.bodies.need_bvh(other);
+            let found = self
+                .view()
+                .motion()
+                .motion_at(other, time, &mut probe)
+                .map(|(at, _)| {
+                    let offset = self.paths.start.position[body] - at;
+                    let forms = self.scene.bodies.forms(other, body)?;
+                    first_contact(forms.0, forms.1, snap(offset), snap(way))
+                });
             free = match found {
                 Ok(contact) => free.map(|free| contact.map_or(free, |found| free.min(found.time))),
                 Err(cause) => Err(cause),
@@ -287,14 +342,8 @@ impl World {
                 break;
             }
         }
-        (self.continuous.partners, self.continuous.probe) = (partners, probe);
+        (self.near.partners, self.paths.probe) = (partners, probe);
         free
-    }
-
-    fn move_current_apart(&mut self, (i, j): (usize, usize), by: DVec3) {
-        let (first, second) = shares(self.bodies.is_movable(i), self.bodies.is_movable(j));
-        self.current.position[i] -= first * by;
-        self.current.position[j] += second * by;
     }
 }
 

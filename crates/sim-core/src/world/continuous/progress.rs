@@ -15,7 +15,11 @@
 use alloc::vec::Vec;
 
 use super::super::{World, stepping::Cause};
-use super::{Event, EventKind, Outcome};
+use super::{
+    event::{Event, EventKind, Outcome},
+    event_loop::EventLoop,
+    view::View,
+};
 
 /// What bodies may exchange in no time, in momenta of each: an angle of 1e-3 between contacts.
 const MOST_EXCHANGED: f64 = 1e3;
@@ -100,7 +104,7 @@ impl Progress {
     }
 }
 
-impl World {
+impl EventLoop<'_> {
     /// Counts events that are about to be resolved, and stops where those before them have no end: where
     /// a body has been between immovable ones that move against each other, it is squeezed.
     pub(super) fn count_events(&mut self, group: &[Event]) -> Result<(), (usize, Cause)> {
@@ -108,45 +112,47 @@ impl World {
             return Ok(());
         };
         let body = first.bodies.1;
-        self.continuous.resolved += group.len() as u64;
-        let resolved = self.continuous.resolved;
+        self.queue.resolved += group.len() as u64;
+        let resolved = self.queue.resolved;
         if resolved > World::MOST_IMPACTS {
             return Err((body, Cause::Impacts(World::MOST_IMPACTS)));
         }
-        if self.moves_before(first) {
-            self.continuous.progress.begin_instant(first.time);
+        if self.view().moves_since(first, self.queue.progress.time) {
+            self.queue.progress.begin_instant(first.time);
         }
-        let progress = &mut self.continuous.progress;
+        let progress = &mut self.queue.progress;
         progress.time = first.time;
         for event in group {
             progress.take_part(event.bodies.0);
             progress.take_part(event.bodies.1);
         }
-        let progress = &self.continuous.progress;
+        let progress = &self.queue.progress;
         if progress.has_end() {
             return Ok(());
         }
-        let caught = (0..self.bodies.len()).filter(|&body| progress.takes_part(body));
-        let crush = &self.continuous.crush;
+        let caught = (0..self.solver.scene.bodies.len()).filter(|&body| progress.takes_part(body));
+        let crush = &self.queue.crush;
         let mut squeezed = caught.filter_map(|body| Some((body, crush.between(body)?)));
         Err(match squeezed.next() {
             Some((body, between)) => (body, Cause::Squeezed(between)),
             None => (body, Cause::Impacts(resolved)),
         })
     }
+}
 
-    /// Whether the bodies of an event have moved by more than a gap since the events before: towards
+impl View<'_> {
+    /// Whether the bodies of an event have moved by more than a gap since events at a time: towards
     /// each other, or along each other where a contact ends.
-    fn moves_before(&self, event: &Event) -> bool {
+    fn moves_since(&self, event: &Event, last: f64) -> bool {
         let (i, j) = event.bodies;
-        let time = event.time - self.continuous.progress.time;
-        let velocity = &self.continuous.start.velocity;
+        let time = event.time - last;
+        let velocity = &self.paths.start.velocity;
         let relative = velocity[i] - velocity[j];
         let speed = match event.kind {
             EventKind::Impact => relative.dot(event.contact.normal).abs(),
             EventKind::ContactEnd => relative.length(),
             EventKind::Horizon => return true,
         };
-        time * speed > self.hover_gap(i, j)
+        time * speed > self.layout().hover_gap(i, j)
     }
 }

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::{super::World, Continuous};
+use super::{Continuous, solver::ContactSolver, view::View};
 
 impl Continuous {
     /// Wakes all bodies: something has changed from outside.
@@ -14,45 +14,45 @@ impl Continuous {
     }
 }
 
-impl World {
+impl View<'_> {
     pub(super) fn is_asleep(&self, body: usize) -> bool {
-        self.continuous
-            .asleep
-            .get(body)
-            .is_some_and(|&asleep| asleep)
-    }
-
-    pub(super) fn wake(&mut self, body: usize) {
-        if let Some(asleep) = self.continuous.asleep.get_mut(body) {
-            *asleep = false;
-        }
-    }
-
-    pub(super) fn fall_asleep(&mut self, body: usize) {
-        let bodies = self.bodies.len();
-        self.continuous.asleep.resize(bodies, false);
-        self.continuous.asleep[body] = true;
-    }
-
-    /// Keeps bodies at rest where they are.
-    pub(super) fn sleep_on(&mut self) {
-        for body in 0..self.continuous.asleep.len() {
-            if self.continuous.asleep[body] {
-                let continuous = &mut self.continuous;
-                continuous.start.velocity[body] = DVec3::ZERO;
-                continuous.acceleration[body] = DVec3::ZERO;
-                self.current.position[body] = self.previous.position[body];
-                self.current.velocity[body] = DVec3::ZERO;
-            }
-        }
+        self.asleep.get(body).is_some_and(|&asleep| asleep)
     }
 
     /// Whether two bodies are at rest beside each other.
     pub(super) fn sleep_together(&self, i: usize, j: usize) -> bool {
         let rests = |body: usize| {
             self.is_asleep(body)
-                || !self.bodies.is_movable(body) && self.previous.velocity[body] == DVec3::ZERO
+                || !self.scene.bodies.is_movable(body)
+                    && self.scene.before.velocity[body] == DVec3::ZERO
         };
-        !self.continuous.asleep.is_empty() && rests(i) && rests(j)
+        !self.asleep.is_empty() && rests(i) && rests(j)
+    }
+}
+
+impl ContactSolver<'_> {
+    pub(super) fn wake(&mut self, body: usize) {
+        if let Some(asleep) = self.asleep.get_mut(body) {
+            *asleep = false;
+        }
+    }
+
+    pub(super) fn fall_asleep(&mut self, body: usize) {
+        let bodies = self.scene.bodies.len();
+        self.asleep.resize(bodies, false);
+        self.asleep[body] = true;
+    }
+
+    /// Keeps bodies at rest where they are.
+    pub(super) fn sleep_on(&mut self) {
+        for body in 0..self.asleep.len() {
+            if self.asleep[body] {
+                let paths = &mut *self.paths;
+                paths.start.velocity[body] = DVec3::ZERO;
+                paths.acceleration[body] = DVec3::ZERO;
+                paths.end.position[body] = self.scene.before.position[body];
+                paths.end.velocity[body] = DVec3::ZERO;
+            }
+        }
     }
 }

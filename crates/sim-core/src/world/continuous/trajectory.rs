@@ -13,70 +13,187 @@
 //! Trajectories use `u`; impacts change `u` and `v` by the same, and no bounce takes anything,
 //! whenever it comes. Under other forces `a` is the mean over the step.
 
-use alloc::vec;
+use alloc::{vec, vec::Vec};
 use core::{mem, ops::Range};
 use glam::DVec3;
 
 use super::super::{
-    World, error,
+    error,
+    scene::Scene,
     state::State,
     stepping::{Block, Cause},
     system::Part,
 };
+use super::{contact_set::ContactSet, horizon::Horizons};
 use crate::{System, integrate::Scratch};
 
 /// Room to ask where bodies are.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Probe {
+pub(in crate::world) struct Probe {
     state: State,
     scratch: Scratch,
 }
 
-impl World {
-    /// Lets every trajectory start where the step does. The ends are in the current state already.
-    pub(super) fn begin_trajectories(&mut self) {
-        let n = self.bodies.len();
-        let sections = self.plan.as_ref().map_or(0, |plan| plan.sections.len());
-        let method = self.settings.method;
-        let is_first_order = method.order == 1 && method.fall.is_some();
-        let continuous = &mut self.continuous;
-        continuous.is_free = is_first_order || sections == 0 && method.fall.is_some();
-        // Zero from the second order on.
-        continuous.velocity_stagger = method.fall.map_or(0.0, |fall| fall - 0.5) * self.settings.dt;
-        continuous.start.clone_from(&self.previous);
-        continuous
-            .applied_acceleration
-            .clone_from(&self.bodies.acceleration);
-        if is_first_order && let Some(plan) = &self.plan {
-            let forced = plan.sections.iter();
-            for body in forced.flat_map(|section| section.bodies.clone()) {
-                let change = self.current.velocity[body] - self.previous.velocity[body];
-                continuous.applied_acceleration[body] = change / self.settings.dt;
-            }
-        }
-        if continuous.velocity_stagger != 0.0 {
-            let velocity = continuous.start.velocity.iter_mut();
-            for (v, &a) in velocity.zip(&continuous.applied_acceleration) {
-                *v += continuous.velocity_stagger * a;
-            }
-        }
-        let applied = &continuous.applied_acceleration;
-        continuous.acceleration.clone_from(applied);
-        continuous.since.clear();
-        continuous.since.resize(n, 0.0);
-        continuous.bounces.clear();
-        continuous.rests.clear();
-        continuous.climbs.clear();
-        continuous.handed.clear();
-        continuous.version.clear();
-        continuous.version.resize(n, 0);
+/// The trajectories of all bodies in a step.
+#[derive(Clone, Debug, Default)]
+pub(in crate::world) struct Trajectories {
+    /// Motion of each body where its trajectory starts, and when that is, s from the step's start.
+    pub(super) start: State,
+    pub(super) since: Vec<f64>,
+    /// Motion at the end of the step, or at the horizon; outside of a step none.
+    pub(in crate::world) end: State,
+    pub(in crate::world) horizons: Horizons,
+    /// How often a body's trajectory has changed in this step; an event of an older one is void.
+    pub(super) version: Vec<u32>,
+    /// What forces do to each body all along its trajectory, m/s²: constant ones, or under a method of
+    /// first order all of them.
+    pub(super) applied_acceleration: Vec<DVec3>,
+    /// The same together with what contacts do.
+    pub(super) acceleration: Vec<DVec3>,
+    /// How long before that of its trajectory a body's velocity is the one that the method keeps, s.
+    pub(super) velocity_stagger: f64,
+    /// Whether every trajectory is a parabola.
+    is_free: bool,
+    /// Room to ask where bodies are, and for what starts again.
+    pub(super) probe: Probe,
+    restarted_motion: Vec<(DVec3, DVec3)>,
+}
+
+/// Trajectories in their scene.
+#[derive(Clone, Copy)]
+pub(super) struct Motion<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    pub(super) paths: &'a Trajectories,
+}
+
+impl Trajectories {
+    fn motion<'a>(&'a self, scene: &'a Scene<'a>) -> Motion<'a> {
+        Motion { scene, paths: self }
     }
 
+    /// Lets every trajectory start where the step does. The ends are there already.
+    pub(super) fn begin(&mut self, scene: &Scene<'_>) {
+        let n = scene.bodies.len();
+        let sections = &scene.forces.plan.sections;
+        let method = scene.settings.method;
+        let is_first_order = method.order == 1 && method.fall.is_some();
+        self.is_free = is_first_order || sections.is_empty() && method.fall.is_some();
+        // Zero from the second order on.
+        self.velocity_stagger = method.fall.map_or(0.0, |fall| fall - 0.5) * scene.settings.dt;
+        self.start.clone_from(scene.before);
+        self.applied_acceleration
+            .clone_from(&scene.bodies.acceleration);
+        if is_first_order {
+            let forced = sections.iter();
+            for body in forced.flat_map(|section| section.bodies.clone()) {
+                let change = self.end.velocity[body] - scene.before.velocity[body];
+                self.applied_acceleration[body] = change / scene.settings.dt;
+            }
+        }
+        if self.velocity_stagger != 0.0 {
+            let velocity = self.start.velocity.iter_mut();
+            for (v, &a) in velocity.zip(&self.applied_acceleration) {
+                *v += self.velocity_stagger * a;
+            }
+        }
+        self.acceleration.clone_from(&self.applied_acceleration);
+        self.since.clear();
+        self.since.resize(n, 0.0);
+        self.version.clear();
+        self.version.resize(n, 0);
+    }
+
+    /// Lets the trajectory of a body, and of those coupled to it, start again at a time, where they
+    /// are then, and tells which bodies those are.
+    pub(super) fn restart_at(
+        &mut self,
+        scene: &Scene<'_>,
+        body: usize,
+        time: f64,
+    ) -> Result<Range<usize>, (usize, Cause)> {
+        let group = self.motion(scene).coupled_group(body);
+        let bodies = group.map_or(body..body + 1, |(bodies, _)| bodies);
+        if self.since[body] == time {
+            return Ok(bodies);
+        }
+        let mut probe = mem::take(&mut self.probe);
+        let mut motion = mem::take(&mut self.restarted_motion);
+        motion.clear();
+        let found = bodies.clone().try_for_each(|body| {
+            motion.push(self.motion(scene).motion_at(body, time, &mut probe)?);
+            Ok(())
+        });
+        if found.is_ok() {
+            for (body, &(x, v)) in bodies.clone().zip(&motion) {
+                self.start.position[body] = x;
+                self.start.velocity[body] = v;
+                self.since[body] = time;
+            }
+        }
+        (self.probe, self.restarted_motion) = (probe, motion);
+        found.map(|()| bodies)
+    }
+
+    /// Moves bodies whose trajectories have started again, in order, to the end of the step: of those that
+    /// are stepped together once all.
+    pub(super) fn finish_restarted(
+        &mut self,
+        scene: &Scene<'_>,
+        contacts: &ContactSet,
+        restarted: &[usize],
+    ) -> Result<(), (usize, Cause)> {
+        for &body in restarted {
+            let group = self.motion(scene).coupled_group(body);
+            let bodies = group.map_or(body..body + 1, |(bodies, _)| bodies);
+            if bodies.start == body {
+                self.finish(scene, contacts, bodies)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves bodies that are stepped together from the start of their trajectories to the end of the
+    /// step, or to their horizon.
+    fn finish(
+        &mut self,
+        scene: &Scene<'_>,
+        contacts: &ContactSet,
+        bodies: Range<usize>,
+    ) -> Result<(), (usize, Cause)> {
+        let dt = scene.settings.dt;
+        match self.motion(scene).coupled_group(bodies.start) {
+            None => {
+                for body in bodies.clone() {
+                    let (x, v) = self.motion(scene).on_parabola(body, dt - self.since[body]);
+                    self.end.position[body] = x;
+                    self.end.velocity[body] = self.motion(scene).unstaggered_velocity(body, v);
+                }
+            }
+            Some((bodies, is_coupled)) => {
+                let mut end = mem::take(&mut self.end);
+                let mut probe = mem::take(&mut self.probe);
+                let block = self.motion(scene).block_of(bodies.clone(), is_coupled, dt);
+                let moved = scene.step_to_horizon(contacts, block, &mut end, &mut probe.scratch);
+                (self.end, self.probe) = (end, probe);
+                self.horizons.set(bodies, moved?, scene);
+            }
+        }
+        for body in bodies.clone() {
+            self.version[body] += 1;
+        }
+        match self.end.beyond(bodies.clone(), error::LARGEST) {
+            Some(first) => Err((bodies.start + first, Cause::Range)),
+            None => Ok(()),
+        }
+    }
+}
+
+impl<'a> Motion<'a> {
     /// The bodies that must be stepped with one, and whether forces couple them; `None` where its
     /// trajectory is a parabola.
     #[inline(always)]
     pub(super) fn coupled_group(&self, body: usize) -> Option<(Range<usize>, bool)> {
-        match self.continuous.is_free {
+        match self.paths.is_free {
             true => None,
             false => self.group_among_forced(body),
         }
@@ -84,11 +201,11 @@ impl World {
 
     #[inline(never)]
     fn group_among_forced(&self, body: usize) -> Option<(Range<usize>, bool)> {
-        let sections = self.plan.as_ref().map_or(&[][..], |plan| &plan.sections);
+        let sections = &self.scene.forces.plan.sections;
         let section = sections.get(sections.partition_point(|s| s.bodies.end <= body));
         match section.filter(|section| section.bodies.contains(&body)) {
             Some(section) if section.is_coupled => Some((section.bodies.clone(), true)),
-            None if self.settings.method.fall.is_some() => None,
+            None if self.scene.settings.method.fall.is_some() => None,
             _ => Some((body..body + 1, false)),
         }
     }
@@ -101,22 +218,28 @@ impl World {
         time: f64,
         probe: &mut Probe,
     ) -> Result<(DVec3, DVec3), (usize, Cause)> {
-        let continuous = &self.continuous;
-        let h = time - continuous.since[body];
+        let paths = self.paths;
+        let h = time - paths.since[body];
         if h == 0.0 {
-            let start = &continuous.start;
+            let start = &paths.start;
             return Ok((start.position[body], start.velocity[body]));
         }
         if time == self.horizon(body) {
-            let staggered = continuous.velocity_stagger * continuous.acceleration[body];
-            let v = self.current.velocity[body] + staggered;
-            return Ok((self.current.position[body], v));
+            let staggered = paths.velocity_stagger * paths.acceleration[body];
+            let v = self.paths.end.velocity[body] + staggered;
+            return Ok((self.paths.end.position[body], v));
         }
         let Some((bodies, is_coupled)) = self.coupled_group(body) else {
             return Ok(self.on_parabola(body, h));
         };
-        probe.state.position.resize(self.bodies.len(), DVec3::ZERO);
-        probe.state.velocity.resize(self.bodies.len(), DVec3::ZERO);
+        probe
+            .state
+            .position
+            .resize(self.scene.bodies.len(), DVec3::ZERO);
+        probe
+            .state
+            .velocity
+            .resize(self.scene.bodies.len(), DVec3::ZERO);
         self.step_group(
             bodies,
             is_coupled,
@@ -129,9 +252,9 @@ impl World {
 
     /// Position and velocity of a body on a parabola, some time after its trajectory has started.
     fn on_parabola(&self, body: usize, h: f64) -> (DVec3, DVec3) {
-        let start = &self.continuous.start;
+        let start = &self.paths.start;
         let (x, v) = (start.position[body], start.velocity[body]);
-        let a = self.continuous.acceleration[body];
+        let a = self.paths.acceleration[body];
         (x + h * (v + 0.5 * h * a), v + h * a)
     }
 
@@ -144,113 +267,28 @@ impl World {
         to: &mut State,
         scratch: &mut Scratch,
     ) -> Result<(), (usize, Cause)> {
-        let Some(plan) = &self.plan else {
-            return Ok(());
-        };
         let block = self.block_of(bodies, is_coupled, time);
-        self.step_block(plan, block, to, scratch, None)
+        self.scene.step_block(block, to, scratch, None)
     }
 
     /// Coupled bodies, or one, from the start of their trajectories to a time.
-    fn block_of(&self, bodies: Range<usize>, is_coupled: bool, time: f64) -> Block<'_> {
-        let continuous = &self.continuous;
-        let since = continuous.since[bodies.start];
+    fn block_of(&self, bodies: Range<usize>, is_coupled: bool, time: f64) -> Block<'a> {
+        let paths = self.paths;
+        let since = paths.since[bodies.start];
         Block {
             // Resting contacts push like constant forces.
-            acceleration: &continuous.acceleration[bodies.clone()],
+            acceleration: &paths.acceleration[bodies.clone()],
             bodies,
             is_coupled,
-            from: &continuous.start,
+            from: &paths.start,
             since,
             length: time - since,
         }
     }
 
-    /// Lets the trajectory of a body, and of those coupled to it, start again at a time, where they
-    /// are then, and tells which bodies those are.
-    pub(super) fn restart_at(
-        &mut self,
-        body: usize,
-        time: f64,
-    ) -> Result<Range<usize>, (usize, Cause)> {
-        let group = self.coupled_group(body);
-        let bodies = group.map_or(body..body + 1, |(bodies, _)| bodies);
-        if self.continuous.since[body] == time {
-            return Ok(bodies);
-        }
-        let mut probe = mem::take(&mut self.continuous.probe);
-        let mut motion = mem::take(&mut self.continuous.restarted_motion);
-        motion.clear();
-        let found = bodies.clone().try_for_each(|body| {
-            motion.push(self.motion_at(body, time, &mut probe)?);
-            Ok(())
-        });
-        let continuous = &mut self.continuous;
-        if found.is_ok() {
-            for (body, &(x, v)) in bodies.clone().zip(&motion) {
-                continuous.start.position[body] = x;
-                continuous.start.velocity[body] = v;
-                continuous.since[body] = time;
-            }
-        }
-        (continuous.probe, continuous.restarted_motion) = (probe, motion);
-        found.map(|()| bodies)
-    }
-
-    /// Moves bodies whose trajectories have started again, in order, to the end of the step: of those that
-    /// are stepped together once all.
-    pub(super) fn finish_restarted(&mut self, restarted: &[usize]) -> Result<(), (usize, Cause)> {
-        for &body in restarted {
-            let group = self.coupled_group(body);
-            let bodies = group.map_or(body..body + 1, |(bodies, _)| bodies);
-            if bodies.start == body {
-                self.finish_trajectories(bodies)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Moves bodies that are stepped together from the start of their trajectories to the end of the
-    /// step, or to their horizon.
-    pub(super) fn finish_trajectories(
-        &mut self,
-        bodies: Range<usize>,
-    ) -> Result<(), (usize, Cause)> {
-        let dt = self.settings.dt;
-        match self.coupled_group(bodies.start) {
-            None => {
-                for body in bodies.clone() {
-                    let (x, v) = self.on_parabola(body, dt - self.continuous.since[body]);
-                    self.current.position[body] = x;
-                    self.current.velocity[body] = self.unstaggered_velocity(body, v);
-                }
-            }
-            Some((bodies, is_coupled)) => {
-                let mut current = mem::take(&mut self.current);
-                let mut scratch = mem::take(&mut self.scratch);
-                let moved = match &self.plan {
-                    Some(plan) => {
-                        let block = self.block_of(bodies.clone(), is_coupled, dt);
-                        self.step_to_horizon(plan, block, &mut current, &mut scratch)
-                    }
-                    None => Ok(dt),
-                };
-                (self.current, self.scratch) = (current, scratch);
-                self.set_horizon(bodies, moved?);
-            }
-        }
-        for body in bodies.clone() {
-            self.continuous.version[body] += 1;
-        }
-        match self.current.beyond(bodies.clone(), error::LARGEST) {
-            Some(first) => Err((bodies.start + first, Cause::Range)),
-            None => Ok(()),
-        }
-    }
-
     /// The velocity that the method keeps where a body's trajectory has another one.
     fn unstaggered_velocity(&self, body: usize, on_trajectory: DVec3) -> DVec3 {
-        on_trajectory - self.continuous.velocity_stagger * self.continuous.acceleration[body]
+        on_trajectory - self.paths.velocity_stagger * self.paths.acceleration[body]
     }
 
     /// What forces and contacts do to a body where its trajectory starts, m/s².
@@ -260,25 +298,22 @@ impl World {
 
     /// The same if some bodies were moved from there, each by so much, m.
     pub(super) fn acceleration_beside(&self, body: usize, moved: &[(usize, DVec3)]) -> DVec3 {
-        let continuous = &self.continuous;
+        let paths = self.paths;
         let Some((bodies, is_coupled)) = self.coupled_group(body) else {
-            return continuous.acceleration[body];
-        };
-        let Some(plan) = &self.plan else {
-            return continuous.acceleration[body];
+            return paths.acceleration[body];
         };
         let part = Part {
-            forces: &self.forces,
-            plan,
+            forces: &self.scene.forces.list,
+            plan: &self.scene.forces.plan,
             is_coupled,
-            mass: &self.bodies.mass[bodies.clone()],
-            acceleration: &continuous.acceleration[bodies.clone()],
+            mass: &self.scene.bodies.mass[bodies.clone()],
+            acceleration: &paths.acceleration[bodies.clone()],
             bodies: bodies.clone(),
             group: None,
         };
-        let time = self.time() + continuous.since[body];
+        let time = self.scene.time + paths.since[body];
         let mut all = vec![DVec3::ZERO; bodies.len()];
-        let (x, v) = (&continuous.start.position, &continuous.start.velocity);
+        let (x, v) = (&paths.start.position, &paths.start.velocity);
         let mut x = x[bodies.clone()].to_vec();
         for &(other, by) in moved {
             if bodies.contains(&other) {
@@ -294,15 +329,15 @@ impl World {
     /// a step.
     #[inline(always)]
     pub(super) fn chord_deviation(&self, body: usize) -> DVec3 {
-        let continuous = &self.continuous;
-        let h = self.horizon(body) - continuous.since[body];
+        let paths = self.paths;
+        let h = self.horizon(body) - paths.since[body];
         if self.coupled_group(body).is_none() {
-            return (0.125 * h * h) * continuous.acceleration[body].abs();
+            return (0.125 * h * h) * paths.acceleration[body].abs();
         }
         // Of a parabola the sum is four times the deviation.
-        let chord = self.current.position[body] - continuous.start.position[body];
-        let before = chord - h * continuous.start.velocity[body];
-        let after = chord - h * self.current.velocity[body];
+        let chord = self.paths.end.position[body] - paths.start.position[body];
+        let before = chord - h * paths.start.velocity[body];
+        let after = chord - h * self.paths.end.velocity[body];
         0.25 * (before.abs() + after.abs())
     }
 
@@ -310,12 +345,12 @@ impl World {
     /// s², by component.
     pub(super) fn deviation_per_time2(&self, i: usize, j: usize) -> DVec3 {
         if self.coupled_group(i).is_none() && self.coupled_group(j).is_none() {
-            let push = &self.continuous.acceleration;
+            let push = &self.paths.acceleration;
             let relative = push[j] - push[i];
             return 0.125 * relative.abs();
         }
         let of = |body: usize| {
-            let h = self.horizon(body) - self.continuous.since[body];
+            let h = self.horizon(body) - self.paths.since[body];
             let deviation = self.chord_deviation(body);
             if deviation == DVec3::ZERO {
                 DVec3::ZERO

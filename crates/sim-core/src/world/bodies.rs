@@ -1,0 +1,224 @@
+//! What bodies are: masses, materials and shapes, in columns. Steps read them and change none.
+
+use alloc::{boxed::Box, collections::BTreeMap, sync::Arc, vec::Vec};
+use glam::DVec3;
+use once_cell::race::OnceBox;
+
+use crate::{
+    Bvh, Extent, Mesh, Shape,
+    collide::{self, Form, snap},
+};
+
+/// The bodies of a world, by index.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Bodies {
+    /// kg; infinite for an immovable body.
+    pub(super) mass: Vec<f64>,
+    /// Constant resultant, N.
+    pub(super) force: Vec<DVec3>,
+    /// What constant forces and weight do to each body, m/s².
+    pub(super) acceleration: Vec<DVec3>,
+    /// What bodies keep of an approaching speed; empty while all are elastic.
+    pub(super) restitution: Vec<f64>,
+    /// Coefficients of friction; empty while all bodies are smooth.
+    pub(super) friction: Vec<f64>,
+    /// The shape of each body, as an index of `shapes`; `None` is a point that meets nothing.
+    shape: Vec<Option<u32>>,
+    shapes: Vec<SharedShape>,
+    /// Where a shape is among them.
+    known_shapes: BTreeMap<ShapeKey, u32>,
+    /// The bodies that have a shape.
+    pub(super) solid: Vec<usize>,
+}
+
+/// A shape, shared by all bodies that have it, and its tree once one is needed.
+#[derive(Clone, Debug)]
+struct SharedShape {
+    shape: Shape,
+    extent: Extent,
+    bvh: OnceBox<Arc<Bvh>>,
+}
+
+/// What makes two shapes the same: of meshes their place in memory, as comparing triangles takes too
+/// long; of others the bits of their numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum ShapeKey {
+    Mesh(usize),
+    Sphere(u64),
+    HalfSpace([u64; 3]),
+}
+
+impl ShapeKey {
+    fn of(shape: &Shape) -> ShapeKey {
+        match shape {
+            Shape::Mesh(mesh) => ShapeKey::Mesh(Arc::as_ptr(mesh) as usize),
+            Shape::Sphere { radius } => ShapeKey::Sphere(radius.to_bits()),
+            Shape::HalfSpace { normal } => ShapeKey::HalfSpace(normal.to_array().map(f64::to_bits)),
+        }
+    }
+}
+
+impl Bodies {
+    pub(super) fn len(&self) -> usize {
+        self.mass.len()
+    }
+
+    /// Adds a body, of which numbers have been checked.
+    pub(super) fn push(
+        &mut self,
+        (mass, force): (f64, DVec3),
+        (restitution, friction): (f64, f64),
+        shape: Option<Shape>,
+    ) {
+        let body = self.len();
+        let shape = shape.map(|shape| self.share(shape));
+        self.mass.push(mass);
+        self.force.push(force);
+        self.acceleration.push(DVec3::ZERO);
+        self.set_restitution(body, restitution);
+        self.set_friction(body, friction);
+        self.solid.extend(shape.map(|_| body));
+        self.shape.push(shape);
+    }
+
+    /// The index of a shape among the shapes, which bodies with the same one share.
+    fn share(&mut self, shape: Shape) -> u32 {
+        let next = self.shapes.len() as u32;
+        let place = *self
+            .known_shapes
+            .entry(ShapeKey::of(&shape))
+            .or_insert(next);
+        if place == next {
+            self.shapes.push(SharedShape {
+                extent: shape.extent(),
+                shape,
+                bvh: OnceBox::new(),
+            });
+        }
+        place
+    }
+
+    pub(super) fn set_restitution(&mut self, body: usize, restitution: f64) {
+        if !self.restitution.is_empty() || restitution != 1.0 {
+            self.restitution.resize(self.len(), 1.0);
+            self.restitution[body] = restitution;
+        }
+    }
+
+    pub(super) fn set_friction(&mut self, body: usize, friction: f64) {
+        if !self.friction.is_empty() || friction != 0.0 {
+            self.friction.resize(self.len(), 0.0);
+            self.friction[body] = friction;
+        }
+    }
+
+    /// Whether impulses and forces change the motion of a body.
+    pub(super) fn is_movable(&self, body: usize) -> bool {
+        self.mass[body].is_finite()
+    }
+
+    pub(super) fn restitution(&self, body: usize) -> f64 {
+        self.restitution.get(body).copied().unwrap_or(1.0)
+    }
+
+    pub(super) fn pair_restitution(&self, i: usize, j: usize) -> f64 {
+        self.restitution(i).min(self.restitution(j))
+    }
+
+    pub(super) fn friction(&self, body: usize) -> f64 {
+        self.friction.get(body).copied().unwrap_or(0.0)
+    }
+
+    /// The coefficient of friction between two bodies: the geometric mean of theirs, and 0 where one
+    /// is smooth, whatever the other is.
+    pub(super) fn pair_friction(&self, i: usize, j: usize) -> f64 {
+        let (first, second) = (self.friction(i), self.friction(j));
+        if first == 0.0 || second == 0.0 {
+            return 0.0;
+        }
+        // Of the product, so that two equal coefficients give themselves to the bit.
+        libm::sqrt(first * second)
+    }
+
+    /// Whether some body is not smooth.
+    pub(super) fn is_rough(&self) -> bool {
+        !self.friction.is_empty()
+    }
+
+    fn shared_shape(&self, body: usize) -> Option<&SharedShape> {
+        self.shape[body].map(|s| &self.shapes[s as usize])
+    }
+
+    pub(super) fn has_shape(&self, body: usize) -> bool {
+        self.shape[body].is_some()
+    }
+
+    pub(super) fn shape(&self, body: usize) -> Option<&Shape> {
+        self.shared_shape(body).map(|shared| &shared.shape)
+    }
+
+    pub(super) fn mesh(&self, body: usize) -> Option<&Arc<Mesh>> {
+        self.shape(body).and_then(Shape::mesh)
+    }
+
+    pub(super) fn is_half_space(&self, body: usize) -> bool {
+        matches!(self.shape(body), Some(Shape::HalfSpace { .. }))
+    }
+
+    /// How far a body's shape reaches about its position.
+    pub(super) fn extent(&self, body: usize) -> Extent {
+        self.shared_shape(body)
+            .map_or_else(Extent::default, |shared| shared.extent)
+    }
+
+    /// Tree over a body's mesh, if it has been built.
+    pub(super) fn bvh(&self, body: usize) -> Option<&Bvh> {
+        let shared = self.shared_shape(body)?;
+        shared.bvh.get().map(|bvh| &**bvh)
+    }
+
+    /// Builds the tree over a body's mesh, unless there is one.
+    pub(super) fn need_bvh(&self, body: usize) {
+        if let Some(SharedShape {
+            shape: Shape::Mesh(mesh),
+            bvh,
+            ..
+        }) = self.shared_shape(body)
+        {
+            bvh.get_or_init(|| Box::new(Arc::new(Bvh::build(mesh))));
+        }
+    }
+
+    /// A body's shape for questions about pairs; a mesh has one once its tree is built.
+    pub(super) fn form(&self, body: usize) -> Option<Form<'_>> {
+        match *self.shape(body)? {
+            Shape::Mesh(_) => self.bvh(body).map(Form::Mesh),
+            Shape::Sphere { radius } => Some(Form::Sphere(radius)),
+            Shape::HalfSpace { normal } => Some(Form::HalfSpace(normal)),
+        }
+    }
+
+    /// Those of two bodies.
+    pub(super) fn forms(&self, i: usize, j: usize) -> Option<(Form<'_>, Form<'_>)> {
+        self.form(i).zip(self.form(j))
+    }
+
+    /// Whether two bodies meet, through trees, with the second one at `offset` from the first.
+    pub(super) fn meet_at(&self, i: usize, j: usize, offset: DVec3) -> bool {
+        if let Some((first, second)) = self.mesh(i).zip(self.mesh(j))
+            && !first.bounds().meets(&second.bounds(), snap(offset))
+        {
+            return false;
+        }
+        self.need_bvh(i);
+        self.need_bvh(j);
+        self.meet_built(i, j, offset)
+    }
+
+    /// The same with the trees there.
+    pub(super) fn meet_built(&self, i: usize, j: usize, offset: DVec3) -> bool {
+        let offset = snap(offset);
+        let forms = self.forms(i, j);
+        forms.is_some_and(|(first, second)| collide::meet(first, second, offset))
+    }
+}

@@ -1,0 +1,88 @@
+//! What happens on the way of a step, and waits for its time.
+
+use alloc::{collections::BinaryHeap, vec::Vec};
+use core::cmp::Ordering;
+use glam::DVec3;
+
+use super::{crush::CrushDetector, progress::Progress};
+use crate::collide::Contact;
+
+/// The events of a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct EventQueue {
+    pub(super) waiting: BinaryHeap<Event>,
+    /// How many have been resolved.
+    pub(super) resolved: u64,
+    /// What happens at one instant.
+    pub(super) group: Vec<Event>,
+    pub(super) crush: CrushDetector,
+    pub(super) progress: Progress,
+}
+
+/// What happens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum EventKind {
+    Impact,
+    /// The surface of a contact ends, or begins to turn.
+    ContactEnd,
+    /// A trajectory is known no farther.
+    Horizon,
+}
+
+/// What becomes of an impact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Outcome {
+    Bounce,
+    /// The bodies stay in contact.
+    Rest,
+}
+
+/// An event to come.
+#[derive(Clone, Debug)]
+pub(super) struct Event {
+    /// From the start of the step, s.
+    pub(super) time: f64,
+    pub(super) bodies: (usize, usize),
+    pub(super) versions: (u32, u32),
+    pub(super) kind: EventKind,
+    /// Its point is in the world.
+    pub(super) contact: Contact,
+    /// What becomes of it, once its time has come.
+    pub(super) outcome: Outcome,
+    /// Speed at which forces would close it in a step, m/s.
+    pub(super) load_speed: f64,
+    /// How far the bodies are apart where it is taken for a contact before its time, m.
+    pub(super) gap: f64,
+}
+
+impl Event {
+    pub(super) fn is_rest(&self) -> bool {
+        self.kind == EventKind::Impact && self.outcome == Outcome::Rest
+    }
+
+    pub(super) fn plane(&self) -> ((usize, usize), DVec3) {
+        (self.bodies, self.contact.normal)
+    }
+}
+
+impl Ord for Event {
+    /// The earliest is the greatest; at the same time the one of the lowest bodies.
+    fn cmp(&self, other: &Event) -> Ordering {
+        let time = other.time.total_cmp(&self.time);
+        time.then(other.bodies.cmp(&self.bodies))
+    }
+}
+
+impl PartialOrd for Event {
+    fn partial_cmp(&self, other: &Event) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Event {
+    fn eq(&self, other: &Event) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Event {}

@@ -1,0 +1,149 @@
+//! Islands: what contacts tie together through bodies that may move.
+
+use alloc::vec::Vec;
+use core::mem;
+use glam::DVec3;
+
+use super::super::{bodies::Bodies, order, state::State};
+use super::view::View;
+use crate::impulse::Joined;
+
+/// Bodies and constraints that contacts tie together.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Island {
+    /// The bodies that may move.
+    pub(super) bodies: Vec<usize>,
+    /// Indices of the constraints.
+    pub(super) constraints: Vec<usize>,
+}
+
+/// Who has been visited in a search for islands.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Visited {
+    round: u32,
+    body: Vec<u32>,
+}
+
+impl Visited {
+    /// Begins with nobody visited.
+    pub(super) fn begin(&mut self, bodies: usize) {
+        self.body.resize(bodies, 0);
+        self.round = self.round.wrapping_add(1);
+        if self.round == 0 {
+            self.body.fill(0);
+            self.round = 1;
+        }
+    }
+
+    /// Whether a body has been visited.
+    pub(super) fn has(&self, body: usize) -> bool {
+        self.body[body] == self.round
+    }
+
+    /// Visits a body, and tells whether it is new.
+    pub(super) fn visit(&mut self, body: usize) -> bool {
+        mem::replace(&mut self.body[body], self.round) != self.round
+    }
+}
+
+impl View<'_> {
+    /// The island of a body, unless it has been visited.
+    pub(super) fn island_of(&self, seed: usize, visited: &mut Visited) -> Option<Island> {
+        if !self.scene.bodies.is_movable(seed) || !visited.visit(seed) {
+            return None;
+        }
+        let mut island = Island {
+            bodies: alloc::vec![seed],
+            constraints: Vec::new(),
+        };
+        let mut next = 0;
+        while let Some(&body) = island.bodies.get(next) {
+            next += 1;
+            for &index in self.contacts.of_body(body) {
+                let (i, j) = self.contacts.all()[index as usize].bodies;
+                let other = i + j - body;
+                // Of two that may move, the lower one names it.
+                if !self.scene.bodies.is_movable(other) || body < other {
+                    island.constraints.push(index as usize);
+                }
+                if self.scene.bodies.is_movable(other) && visited.visit(other) {
+                    island.bodies.push(other);
+                }
+            }
+        }
+        if island.bodies.len() + island.constraints.len() > 2 {
+            self.sort(&mut island);
+        }
+        Some(island)
+    }
+
+    /// Puts an island into an order that is not that of the places of bodies: sums over it round.
+    fn sort(&self, island: &mut Island) {
+        let all = self.contacts.all();
+        let pairs = island.constraints.iter().map(|&index| all[index].bodies);
+        let order = self.scene.in_order(pairs);
+        island
+            .bodies
+            .sort_unstable_by_key(|&body| order.place(body));
+        island.constraints.sort_by_cached_key(|&index| {
+            let contact = &all[index];
+            (order.between(contact.bodies, contact.normal), index)
+        });
+    }
+}
+
+/// The bodies of some constraints, once each, in order, and the constraints between their places.
+pub(in crate::world) struct Places {
+    pub(super) bodies: Vec<usize>,
+    pub(super) joined: Vec<Joined>,
+    pub(super) inverse_mass: Vec<f64>,
+}
+
+impl Places {
+    pub(super) fn of(view: View<'_>, constraints: &[usize]) -> Places {
+        let all = view.contacts.all();
+        let pairs = constraints.iter().map(|&index| &all[index]);
+        let pairs = pairs.map(|c| (c.bodies, c.normal));
+        Places::between(view.scene.bodies, view.scene.before, pairs)
+    }
+
+    pub(in crate::world) fn between(
+        of: &Bodies,
+        motion: &State,
+        contacts: impl Iterator<Item = ((usize, usize), DVec3)> + Clone,
+    ) -> Places {
+        let order = order::in_order(of, motion, contacts.clone().map(|(bodies, _)| bodies));
+        let joined = contacts
+            .map(|((i, j), normal)| Joined {
+                bodies: (order.place(i), order.place(j)),
+                normal,
+            })
+            .collect();
+        let bodies = order.bodies;
+        let inverse_mass = bodies.iter().map(|&body| 1.0 / of.mass[body]).collect();
+        Places {
+            bodies,
+            joined,
+            inverse_mass,
+        }
+    }
+
+    /// What an impulse on a contact opens it by, 1/kg.
+    pub(super) fn yielding(&self, k: usize) -> f64 {
+        let (i, j) = self.joined[k].bodies;
+        self.inverse_mass[i] + self.inverse_mass[j]
+    }
+
+    pub(super) fn each(&self, of: impl Fn(usize) -> DVec3) -> Vec<DVec3> {
+        self.bodies.iter().map(|&body| of(body)).collect()
+    }
+
+    /// Writes the values of bodies that may move.
+    pub(super) fn put(&self, values: &[DVec3], to: &mut [DVec3], inverse_mass: &[f64]) {
+        for ((&body, &value), &inverse) in self.bodies.iter().zip(values).zip(inverse_mass) {
+            if inverse > 0.0 {
+                to[body] = value;
+            }
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! A step with continuous collision, to look at: nothing here changes it.
+
+use alloc::vec::Vec;
+
+use super::super::{layout::Layout, order::ordinal, scene::Scene};
+use super::{
+    contact_set::{ContactConstraint, ContactSet},
+    event::{Event, EventKind, Outcome},
+    tallies::Tallies,
+    trajectory::{Motion, Trajectories},
+};
+use crate::collide::Contact;
+
+/// Trajectories and contacts as they are now.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    pub(super) paths: &'a Trajectories,
+    pub(super) contacts: &'a ContactSet,
+    pub(super) tallies: &'a Tallies,
+    /// Bodies that are at rest, to which nothing happens until something comes; empty where none are.
+    pub(super) asleep: &'a [bool],
+    /// Pairs in overlap that move as one in this step.
+    pub(super) held: &'a [(usize, usize)],
+}
+
+impl<'a> View<'a> {
+    pub(super) fn motion(&self) -> Motion<'a> {
+        Motion {
+            scene: self.scene,
+            paths: self.paths,
+        }
+    }
+
+    /// Bodies where their trajectories end.
+    pub(super) fn layout(&self) -> Layout<'a> {
+        Layout {
+            bodies: self.scene.bodies,
+            at: &self.paths.end.position,
+            before: self.scene.before,
+            contacts: self.contacts,
+            overlaps: self.scene.overlaps,
+        }
+    }
+
+    /// Puts events of one time into an order that is not that of the places of bodies.
+    pub(super) fn sort_events(&self, events: &mut [Event]) {
+        if events.len() < 2 {
+            return;
+        }
+        let order = self.scene.in_order(events.iter().map(|event| event.bodies));
+        events.sort_by_cached_key(|event| {
+            let time = ordinal(event.time);
+            (time, order.between(event.bodies, event.contact.normal))
+        });
+    }
+
+    /// Whether the bodies of an event are still on the trajectories that lead to it.
+    pub(super) fn is_current(&self, event: &Event) -> bool {
+        let ((i, j), version) = (event.bodies, &self.paths.version);
+        event.versions == (version[i], version[j])
+    }
+
+    /// The contacts of bodies that are awake, in an order that is not that of the places of bodies.
+    pub(super) fn contacts_in_order(&self) -> Vec<usize> {
+        let all = self.contacts.all();
+        let is_awake = |&index: &usize| {
+            let (i, j) = all[index].bodies;
+            !self.is_asleep(i) && !self.is_asleep(j)
+        };
+        let mut awake: Vec<usize> = (0..all.len()).filter(is_awake).collect();
+        let order = self
+            .scene
+            .in_order(awake.iter().map(|&index| all[index].bodies));
+        awake.sort_by_cached_key(|&index| order.between(all[index].bodies, all[index].normal));
+        awake
+    }
+
+    /// A contact as an impact now.
+    pub(super) fn event_of(&self, constraint: &ContactConstraint, time: f64) -> Event {
+        let (i, j) = constraint.bodies;
+        let version = &self.paths.version;
+        Event {
+            time,
+            bodies: (i, j),
+            versions: (version[i], version[j]),
+            kind: EventKind::Impact,
+            outcome: Outcome::Bounce,
+            load_speed: 0.0,
+            gap: 0.0,
+            contact: Contact {
+                time: 0.0,
+                point: self.paths.start.position[i] + constraint.point,
+                normal: constraint.normal,
+                feature: None,
+                face: None,
+            },
+        }
+    }
+}

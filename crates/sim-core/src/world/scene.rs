@@ -1,0 +1,68 @@
+//! What a step reads and does not change.
+
+use super::{
+    Settings,
+    bodies::Bodies,
+    forces::Forces,
+    order::{self, InOrder, Key},
+    overlap::Overlaps,
+    state::State,
+};
+
+/// The scene of a world, of whose other fields something may be borrowed for a change.
+macro_rules! scene {
+    ($world:expr) => {
+        $crate::world::scene::Scene {
+            settings: &$world.settings,
+            bodies: &$world.bodies,
+            forces: &$world.forces,
+            before: &$world.previous,
+            earlier: &$world.earlier,
+            time: $world.elapsed.time(&$world.settings),
+            step: $world.elapsed.steps + 1,
+            overlaps: &$world.overlaps,
+        }
+    };
+}
+pub(super) use scene;
+
+/// A world as a step finds it.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub(super) settings: &'a Settings,
+    pub(super) bodies: &'a Bodies,
+    pub(super) forces: &'a Forces,
+    /// Motion where the step starts, and where the one before it did.
+    pub(super) before: &'a State,
+    pub(super) earlier: &'a State,
+    /// When the step starts, s.
+    pub(super) time: f64,
+    /// Its number, from 1.
+    pub(super) step: u64,
+    pub(super) overlaps: &'a Overlaps,
+}
+
+impl Scene<'_> {
+    /// Whether two bodies with shapes can have an impact: not if nothing moves either, nor if they
+    /// began in overlap and have not parted since.
+    pub(super) fn may_collide(&self, i: usize, j: usize) -> bool {
+        let is_movable = self.bodies.is_movable(i) || self.bodies.is_movable(j);
+        let pair = (i.min(j), i.max(j));
+        is_movable && self.overlaps.pairs.binary_search(&pair).is_err()
+    }
+
+    /// What tells a body from others: its motion where the step begins.
+    pub(super) fn motion_key(&self, body: usize) -> Key {
+        order::key(self.bodies, self.before, body)
+    }
+
+    /// The bodies of some pairs, once each, in that order.
+    pub(super) fn in_order(&self, pairs: impl Iterator<Item = (usize, usize)>) -> InOrder {
+        order::in_order(self.bodies, self.before, pairs)
+    }
+
+    /// Whether the step before has left a body where it was.
+    pub(super) fn stood_still(&self, body: usize) -> bool {
+        self.earlier.position.get(body) == Some(&self.before.position[body])
+    }
+}
