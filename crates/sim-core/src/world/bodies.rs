@@ -113,14 +113,17 @@ impl Bodies {
     }
 
     /// Whether impulses and forces change the motion of a body.
+    #[inline]
     pub(super) fn is_movable(&self, body: usize) -> bool {
         self.mass[body].is_finite()
     }
 
+    #[inline]
     pub(super) fn restitution(&self, body: usize) -> f64 {
         self.restitution.get(body).copied().unwrap_or(1.0)
     }
 
+    #[inline]
     pub(super) fn pair_restitution(&self, i: usize, j: usize) -> f64 {
         self.restitution(i).min(self.restitution(j))
     }
@@ -145,14 +148,17 @@ impl Bodies {
         !self.friction.is_empty()
     }
 
+    #[inline]
     fn shared_shape(&self, body: usize) -> Option<&SharedShape> {
         self.shape[body].map(|s| &self.shapes[s as usize])
     }
 
+    #[inline]
     pub(super) fn has_shape(&self, body: usize) -> bool {
         self.shape[body].is_some()
     }
 
+    #[inline]
     pub(super) fn shape(&self, body: usize) -> Option<&Shape> {
         self.shared_shape(body).map(|shared| &shared.shape)
     }
@@ -166,18 +172,21 @@ impl Bodies {
     }
 
     /// How far a body's shape reaches about its position.
+    #[inline]
     pub(super) fn extent(&self, body: usize) -> Extent {
         self.shared_shape(body)
             .map_or_else(Extent::default, |shared| shared.extent)
     }
 
     /// Tree over a body's mesh, if it has been built.
+    #[inline]
     pub(super) fn bvh(&self, body: usize) -> Option<&Bvh> {
         let shared = self.shared_shape(body)?;
         shared.bvh.get().map(|bvh| &**bvh)
     }
 
     /// Builds the tree over a body's mesh, unless there is one.
+    #[inline]
     pub(super) fn need_bvh(&self, body: usize) {
         if let Some(SharedShape {
             shape: Shape::Mesh(mesh),
@@ -190,6 +199,7 @@ impl Bodies {
     }
 
     /// A body's shape for questions about pairs; a mesh has one once its tree is built.
+    #[inline]
     pub(super) fn form(&self, body: usize) -> Option<Form<'_>> {
         match *self.shape(body)? {
             Shape::Mesh(_) => self.bvh(body).map(Form::Mesh),
@@ -199,6 +209,7 @@ impl Bodies {
     }
 
     /// Those of two bodies.
+    #[inline]
     pub(super) fn forms(&self, i: usize, j: usize) -> Option<(Form<'_>, Form<'_>)> {
         self.form(i).zip(self.form(j))
     }

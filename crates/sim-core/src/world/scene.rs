@@ -45,6 +45,7 @@ pub(super) struct Scene<'a> {
 impl Scene<'_> {
     /// Whether two bodies with shapes can have an impact: not if nothing moves either, nor if they
     /// began in overlap and have not parted since.
+    #[inline]
     pub(super) fn may_collide(&self, i: usize, j: usize) -> bool {
         let is_movable = self.bodies.is_movable(i) || self.bodies.is_movable(j);
         let pair = (i.min(j), i.max(j));

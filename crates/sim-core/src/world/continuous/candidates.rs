@@ -85,10 +85,11 @@ impl EventLoop<'_> {
     pub(super) fn find_candidate_pairs(&mut self) {
         let mut broad = mem::take(&mut self.solver.near.broad);
         let mut pairs = mem::take(&mut self.solver.near.candidate_pairs);
+        let view = self.view();
         broad.fill(
-            &self.solver.scene.bodies.solid,
-            |body| self.view().swept(body),
-            |body| self.view().front(body),
+            &view.scene.bodies.solid,
+            |body| view.swept(body),
+            |body| view.front(body),
         );
         pairs.clear();
         broad.each_pair(|i, j| pairs.push((i, j)));

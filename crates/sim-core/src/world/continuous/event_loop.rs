@@ -26,6 +26,7 @@ pub(super) struct EventLoop<'a> {
 }
 
 impl EventLoop<'_> {
+    #[inline]
     pub(super) fn view(&self) -> View<'_> {
         self.solver.view()
     }
@@ -83,11 +84,12 @@ impl EventLoop<'_> {
     fn find_impacts_of_candidates(&mut self) -> Result<(), (usize, Cause)> {
         let mut probe = mem::take(&mut self.solver.paths.probe);
         let mut events = mem::take(&mut self.queue.waiting);
+        let view = self.view();
         let pairs = self.solver.near.candidate_pairs.iter();
         let found = pairs
-            .filter(|&&(i, j)| !self.view().sleep_together(i, j))
+            .filter(|&&(i, j)| !view.sleep_together(i, j))
             .try_for_each(|&(i, j)| {
-                events.extend(self.view().find_impact(i, j, &mut probe)?);
+                events.extend(view.find_impact(i, j, &mut probe)?);
                 Ok(())
             });
         (self.solver.paths.probe, self.queue.waiting) = (probe, events);
@@ -99,11 +101,11 @@ impl EventLoop<'_> {
     #[cfg(feature = "rayon")]
     fn find_impacts_of_candidates(&mut self) -> Result<(), (usize, Cause)> {
         use rayon::prelude::*;
-        let find =
-            |probe: &mut Probe, &(i, j): &(usize, usize)| match self.view().sleep_together(i, j) {
-                true => None,
-                false => self.view().find_impact(i, j, probe).transpose(),
-            };
+        let view = self.view();
+        let find = |probe: &mut Probe, &(i, j): &(usize, usize)| match view.sleep_together(i, j) {
+            true => None,
+            false => view.find_impact(i, j, probe).transpose(),
+        };
         let pairs = self.solver.near.candidate_pairs.par_iter();
         let pairs = pairs.with_min_len(PAIRS_A_TASK);
         let found = pairs.map_init(Probe::default, find).flatten_iter();
@@ -156,7 +158,7 @@ impl EventLoop<'_> {
                 return None;
             }
             let event = self.queue.waiting.pop()?;
-            if self.view().is_current(&event) {
+            if self.solver.paths.is_current(&event) {
                 return Some(event);
             }
         }

@@ -40,6 +40,7 @@ const HALVINGS: u32 = 52;
 
 impl Motion<'_> {
     /// Until when the trajectory of a body is known, s from the step's start.
+    #[inline]
     pub(super) fn horizon(&self, body: usize) -> f64 {
         let known = self.paths.horizons.known.get(body).copied();
         known.unwrap_or(self.scene.settings.dt)

@@ -118,7 +118,7 @@ impl EventLoop<'_> {
             let is_tied = |event: &&Event| {
                 let (i, j) = event.bodies;
                 event.kind == EventKind::Impact
-                    && self.view().is_current(event)
+                    && self.solver.paths.is_current(event)
                     && (visited.has(i) || visited.has(j))
                     && group.iter().all(|known| known.bodies != event.bodies)
             };

@@ -80,6 +80,7 @@ pub(super) struct ContactSolver<'a> {
 }
 
 impl ContactSolver<'_> {
+    #[inline]
     pub(super) fn view(&self) -> View<'_> {
         View {
             scene: self.scene,

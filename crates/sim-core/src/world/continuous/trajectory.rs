@@ -24,7 +24,7 @@ use super::super::{
     stepping::{Block, Cause},
     system::Part,
 };
-use super::{contact_set::ContactSet, horizon::Horizons};
+use super::{contact_set::ContactSet, event::Event, horizon::Horizons};
 use crate::{System, integrate::Scratch};
 
 /// Room to ask where bodies are.
@@ -69,6 +69,13 @@ pub(super) struct Motion<'a> {
 impl Trajectories {
     fn motion<'a>(&'a self, scene: &'a Scene<'a>) -> Motion<'a> {
         Motion { scene, paths: self }
+    }
+
+    /// Whether the bodies of an event are still on the trajectories that lead to it.
+    #[inline]
+    pub(super) fn is_current(&self, event: &Event) -> bool {
+        let ((i, j), version) = (event.bodies, &self.version);
+        event.versions == (version[i], version[j])
     }
 
     /// Lets every trajectory start where the step does. The ends are there already.
@@ -251,6 +258,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Position and velocity of a body on a parabola, some time after its trajectory has started.
+    #[inline]
     fn on_parabola(&self, body: usize, h: f64) -> (DVec3, DVec3) {
         let start = &self.paths.start;
         let (x, v) = (start.position[body], start.velocity[body]);

@@ -25,6 +25,7 @@ pub(super) struct View<'a> {
 }
 
 impl<'a> View<'a> {
+    #[inline]
     pub(super) fn motion(&self) -> Motion<'a> {
         Motion {
             scene: self.scene,
@@ -33,6 +34,7 @@ impl<'a> View<'a> {
     }
 
     /// Bodies where their trajectories end.
+    #[inline]
     pub(super) fn layout(&self) -> Layout<'a> {
         Layout {
             bodies: self.scene.bodies,
@@ -53,12 +55,6 @@ impl<'a> View<'a> {
             let time = ordinal(event.time);
             (time, order.between(event.bodies, event.contact.normal))
         });
-    }
-
-    /// Whether the bodies of an event are still on the trajectories that lead to it.
-    pub(super) fn is_current(&self, event: &Event) -> bool {
-        let ((i, j), version) = (event.bodies, &self.paths.version);
-        event.versions == (version[i], version[j])
     }
 
     /// The contacts of bodies that are awake, in an order that is not that of the places of bodies.
