@@ -85,11 +85,13 @@ pub mod collide;
 mod expansion;
 mod force;
 pub mod impulse;
+mod inertia;
 mod integrate;
 mod measure;
 mod mesh;
 pub mod ode;
 mod pieces;
+pub mod rotation;
 mod shape;
 #[cfg(test)]
 mod test_meshes;
@@ -104,6 +106,7 @@ pub use clock::{ClockError, FixedStep};
 pub use collide::Feature;
 pub use force::{BodyLaw, BodyMotion, Force, ForceError, Law, PairLaw, PairMotion};
 pub use glam::{DMat3, DQuat, DVec3, Vec3};
+pub use inertia::{Inertia, InertiaError, Solid};
 pub use integrate::{
     Ask, Failure, Jacobians, METHODS, Method, Scratch, Step, Stepper, System, Watch,
 };

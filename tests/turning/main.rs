@@ -1,0 +1,3 @@
+//! Bodies that turn, against closed forms.
+
+mod flight;
