@@ -203,13 +203,7 @@ fn the_separatrix_is_followed() {
 #[test]
 fn a_million_steps_keep_energy_and_momentum() {
     let dt = 1.0 / 60.0;
-    // Each step rounds the rotation, and energy with it: a walk of a thousand times some 1e-16, and
-    // less where it hardly depends on the rotation, as about the middle axis.
-    let starts = [
-        (DVec3::new(0.0, 1.0, 0.01), 1e-13),
-        (DVec3::new(3.0, 4.0, 5.0), 1e-12),
-    ];
-    for (start, bar) in starts {
+    for start in [DVec3::new(0.0, 1.0, 0.01), DVec3::new(3.0, 4.0, 5.0)] {
         let momentum = RACKET * start;
         let energy = |rotation: DQuat| 0.5 * momentum.dot(spin(RACKET, rotation, momentum));
         let mut rotation = DQuat::IDENTITY;
@@ -223,7 +217,7 @@ fn a_million_steps_keep_energy_and_momentum() {
             worst = worst.max((energy(rotation) / first - 1.0).abs());
         }
         println!("{start}: {worst:e}");
-        assert!(worst < bar, "{start}: {worst:e}");
+        assert!(worst < 1e-13, "{start}: {worst:e}");
     }
 }
 
@@ -363,7 +357,7 @@ fn derivatives_stay_within_their_bounds() {
         let momentum = if case % 5 == 4 { slow } else { momentum };
         let t = 0.3;
         let flight = Flight::new(moments, rotation, momentum, torque, t);
-        let bounds = flight.bounds(flight.at(0.0).spin.length(), 0.0, t);
+        let bounds = flight.bounds(&flight.at(0.0), t);
         let h = 1e-4 * t;
         // What rounding of a rotation does to the spin, over the time between two of them.
         let noise = 1e-15 * momentum.length() / moments.min_element() / h;

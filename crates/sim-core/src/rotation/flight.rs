@@ -171,7 +171,7 @@ impl Flight {
             Kind::Symmetric(outer, own) => {
                 (about(*outer, t) * self.rotation * about(*own, t)).normalize()
             }
-            Kind::One(series) => further(self.rotation, series.at(t)),
+            Kind::One(series) => (self.rotation * series.at(t)).normalize(),
             Kind::Pieces(pieces) => {
                 let next = pieces.partition_point(|piece| piece.time.abs() <= t.abs());
                 pieces[next.max(1) - 1].at(t)
@@ -202,12 +202,12 @@ impl Flight {
         }
     }
 
-    /// Bounds that hold from a time, at which the angular speed is `spin` (rad/s), for `left` more, s.
+    /// Bounds that hold from where it has a pose for `left` more, s.
     ///
     /// From Euler's equations, with `k = max |I_j - I_k| / I_i <= 1` and `a` a bound on what the torque
     /// does: `|Ω'| <= k|Ω|²/√3 + a`, `|Ω''| <= (2k/√3)|Ω||Ω'| + a|Ω|`, put into `r'' = ω'×r + ω×(ω×r)` and
     /// its derivative. The speed is bounded by that of `y' = k y²/√3 + a`, and by momentum and energy.
-    pub fn bounds(&self, spin: f64, t: f64, left: f64) -> Bounds {
+    pub fn bounds(&self, pose: &Pose, left: f64) -> Bounds {
         let (least, left) = (self.moments.min_element(), left.abs());
         let pull = self.torque.length();
         let a = pull / least;
@@ -215,7 +215,7 @@ impl Flight {
             Kind::Steady(_) => 0.0,
             _ => lopsidedness(self.moments),
         };
-        let spin = spin * (1.0 + ROUNDING);
+        let spin = pose.spin.length() * (1.0 + ROUNDING);
         let fastest = match self.kind {
             // Of the same speed always: own and outer parts keep their angle.
             Kind::Steady(_) | Kind::Symmetric(..) => spin,
@@ -227,10 +227,8 @@ impl Flight {
                 } else {
                     f64::INFINITY
                 };
-                let momentum = self.momentum_at(t);
-                let inside = self.rotation_at(t).inverse() * momentum;
-                let root = libm::sqrt(inside.dot(inside / self.moments));
-                let by_momentum = (momentum.length() + pull * left) / least;
+                let root = libm::sqrt(pose.momentum.dot(pose.spin));
+                let by_momentum = (pose.momentum.length() + pull * left) / least;
                 let by_energy = (root + pull * left / libm::sqrt(least)) / libm::sqrt(least);
                 nearby.min(by_momentum).min(by_energy).max(spin)
             }
@@ -259,17 +257,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 impl Piece {
     fn at(&self, t: f64) -> DQuat {
-        further(self.rotation, self.series.at(t - self.time))
+        (self.rotation * self.series.at(t - self.time)).normalize()
     }
-}
-
-/// `q (1 + change)`, of unit length: one rounding of what is not small, so that energy, which depends on
-/// the rotation alone, wanders as little as it can.
-fn further(q: DQuat, change: DQuat) -> DQuat {
-    let step = q * change;
-    let end = q + step;
-    let short = 0.5 * (1.0 - end.length_squared());
-    q + (step + end * short)
 }
 
 /// `max |I_j - I_k| / I_i`, at most 1 of a body.

@@ -99,7 +99,7 @@ impl Series {
         Series { order, turn }
     }
 
-    /// The rotation after a time (s), less the one at the start.
+    /// The rotation since the start of the piece, after a time, s.
     pub(super) fn at(&self, t: f64) -> DQuat {
         let mut sum = [0.0; 4];
         for term in self.turn[1..=self.order].iter().rev() {
@@ -108,6 +108,6 @@ impl Series {
             }
         }
         let [x, y, z, w] = sum.map(|sum| sum * t);
-        DQuat::from_xyzw(x, y, z, w)
+        DQuat::from_xyzw(x, y, z, 1.0 + w)
     }
 }
