@@ -40,6 +40,10 @@ pub struct Flight {
 }
 
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "an allocation would cost more than most flights"
+)]
 enum Kind {
     /// About an axis that stays, with this angular velocity in the world, rad/s.
     Steady(DVec3),
