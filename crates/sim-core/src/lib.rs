@@ -59,7 +59,8 @@
 //!
 //! # Limits
 //!
-//! - Bodies translate and do not turn.
+//! - Bodies translate and do not turn. What turning needs is here by itself: [`Inertia`], [`rotation`]
+//!   and [`collide::turning`].
 //! - Ways that bend under forces are searched along chords. A graze shallower than a thousandth of
 //!   the smaller body may be missed within a step; never an overlap at its end.
 //! - In a heap whose contacts are solved at once, contacts close ahead of their time by up to a step,
