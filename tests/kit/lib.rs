@@ -3,6 +3,7 @@
 pub mod agree;
 pub mod bodies;
 pub mod cases;
+pub mod elliptic;
 pub mod inputs;
 pub mod meshes;
 pub mod oracle;

@@ -59,7 +59,8 @@
 //!
 //! # Limits
 //!
-//! - Bodies translate and do not turn.
+//! - Bodies translate and do not turn. What turning needs is here by itself: [`Inertia`], [`rotation`]
+//!   and [`collide::turning`].
 //! - Ways that bend under forces are searched along chords. A graze shallower than a thousandth of
 //!   the smaller body may be missed within a step; never an overlap at its end.
 //! - In a heap whose contacts are solved at once, contacts close ahead of their time by up to a step,
@@ -85,11 +86,13 @@ pub mod collide;
 mod expansion;
 mod force;
 pub mod impulse;
+mod inertia;
 mod integrate;
 mod measure;
 mod mesh;
 pub mod ode;
 mod pieces;
+pub mod rotation;
 mod shape;
 #[cfg(test)]
 mod test_meshes;
@@ -104,6 +107,7 @@ pub use clock::{ClockError, FixedStep};
 pub use collide::Feature;
 pub use force::{BodyLaw, BodyMotion, Force, ForceError, Law, PairLaw, PairMotion};
 pub use glam::{DMat3, DQuat, DVec3, Vec3};
+pub use inertia::{Inertia, InertiaError, Solid};
 pub use integrate::{
     Ask, Failure, Jacobians, METHODS, Method, Scratch, Step, Stepper, System, Watch,
 };

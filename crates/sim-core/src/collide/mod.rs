@@ -22,6 +22,7 @@ mod sweep;
 pub mod touch;
 pub mod tree;
 mod triple;
+pub mod turning;
 
 pub(crate) use ball::nearest;
 pub use ball::{BallTouch, ball_meets, ball_touch};

@@ -1,0 +1,265 @@
+//! When do two shapes that move and turn come together first? Never told too late.
+//!
+//! A *certificate* is a direction that keeps two sets of points apart for some time: let `s` be the gap
+//! along it now, `w` how fast that changes, and the second derivative of every point's place be bounded;
+//! then the gap is above a parabola, and until that has its root the sets are apart (a plane lies between
+//! their hulls, which a rigid motion moves with their points). [`certificate`] has the parabolas, and for
+//! triangles a cubic.
+//!
+//! A queue holds pairs of boxes and of triangles, each with the time until which it is certified. The
+//! pair with the least time is looked at: boxes are split into pairs of what is in them, triangles are
+//! certified anew from where they are then. Every two triangles are below one pair in the queue, or below
+//! one that was certified to the end. So no contact is before the least time in the queue: **a time that is
+//! told is never later than the first contact, and that there is none is proven.** Triangles nearer than
+//! [`NEAR`] roundings that do not move apart are a contact.
+//!
+//! Times come from poses at one time ([`View`]), in a frame at rest that then has the first shape's axes.
+//! All bounds are relative: no length or time is in here.
+
+mod certificate;
+mod nearest;
+mod pieces;
+mod view;
+
+use alloc::collections::BinaryHeap;
+use core::cmp::Ordering;
+
+use glam::{DQuat, DVec3};
+
+use crate::{Bvh, rotation::Flight};
+use certificate::Gap;
+use pieces::{Boxed, Item, Points};
+use view::View;
+
+/// What moves.
+#[derive(Clone, Copy, Debug)]
+pub enum Figure<'a> {
+    /// A mesh, by its tree.
+    Mesh(&'a Bvh),
+    /// A ball about the origin of its frame, of this radius, m.
+    Ball(f64),
+    /// All below the plane through the origin of its frame with this unit normal. It does not turn.
+    HalfSpace(DVec3),
+}
+
+/// How it is turned.
+#[derive(Clone, Copy, Debug)]
+pub enum Turning<'a> {
+    /// As this tells, always.
+    Still(DQuat),
+    /// On its way: the flight turns principal axes, which are `axes` in the shape's frame
+    /// ([`Inertia::axes`](crate::Inertia::axes)).
+    Flight(&'a Flight, DQuat),
+}
+
+/// A shape on its way: its centre of mass on a parabola, and about it a rotation.
+#[derive(Clone, Copy, Debug)]
+pub struct Moving<'a> {
+    /// What moves.
+    pub figure: Figure<'a>,
+    /// The centre of mass in the frame of the shape, m.
+    pub centre: DVec3,
+    /// Where the centre of mass is at the start, m.
+    pub position: DVec3,
+    /// Its velocity at the start, m/s.
+    pub velocity: DVec3,
+    /// Its acceleration, m/s².
+    pub acceleration: DVec3,
+    /// How it turns.
+    pub turning: Turning<'a>,
+}
+
+/// Where two shapes come together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurningTouch {
+    /// When, s from the start: at or before the first contact.
+    pub time: f64,
+    /// How far apart they are then, m.
+    pub distance: f64,
+    /// No more than this, m, is a contact: 2^-46 of sizes, distance and way together. A greater distance
+    /// tells that no direction gave a proof, which no test has seen.
+    pub near: f64,
+    /// The points nearest each other at that time, of the first shape and of the second, as seen from the
+    /// first one's centre of mass, m.
+    pub points: [DVec3; 2],
+    /// A unit vector from the first to the second, along which they were kept apart last.
+    pub normal: DVec3,
+    /// The triangles, where they are meshes.
+    pub faces: [Option<u32>; 2],
+}
+
+/// What an answer has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Poses at one time.
+    pub views: u32,
+    /// Pairs of boxes certified.
+    pub boxes: u32,
+    /// Pairs of triangles, points and planes certified.
+    pub pieces: u32,
+}
+
+/// Roundings of 2^-53 in which two surfaces touch; placing them is right to 16, and certificates keep 32.
+pub const NEAR: f64 = 128.0;
+
+/// No search looks at more pairs of triangles: it stops where it is, which is no later than a contact.
+const MOST: u32 = 1 << 20;
+
+/// The first contact within `duration`, s; `None` proves that there is none.
+///
+/// Shapes that touch at the start are in contact then, unless they move apart.
+pub fn first_contact(a: &Moving<'_>, b: &Moving<'_>, duration: f64) -> Option<TurningTouch> {
+    first_contact_counted(a, b, duration).0
+}
+
+/// The same, with its cost.
+pub fn first_contact_counted(
+    a: &Moving<'_>,
+    b: &Moving<'_>,
+    duration: f64,
+) -> (Option<TurningTouch>, Effort) {
+    let mut effort = Effort::default();
+    let touch = match (&a.figure, &b.figure) {
+        (Figure::HalfSpace(_), Figure::HalfSpace(_)) => None,
+        (_, Figure::HalfSpace(_)) => search(b, a, duration, &mut effort).map(|touch| {
+            let [first, second] = touch.points;
+            let between = b.place(touch.time) - a.place(touch.time);
+            TurningTouch {
+                points: [second + between, first + between],
+                normal: -touch.normal,
+                faces: [touch.faces[1], touch.faces[0]],
+                ..touch
+            }
+        }),
+        _ => search(a, b, duration, &mut effort),
+    };
+    (touch, effort)
+}
+
+impl Moving<'_> {
+    /// Where the centre of mass is at a time, m.
+    fn place(&self, t: f64) -> DVec3 {
+        self.position + t * (self.velocity + 0.5 * t * self.acceleration)
+    }
+
+    /// Turns the shape's frame into the world at a time.
+    pub fn rotation_at(&self, t: f64) -> DQuat {
+        match self.turning {
+            Turning::Still(rotation) => rotation,
+            Turning::Flight(flight, axes) => flight.rotation_at(t) * axes.inverse(),
+        }
+    }
+
+    /// Where the origin of the shape's frame is at a time, m.
+    pub fn origin_at(&self, t: f64) -> DVec3 {
+        self.place(t) - self.rotation_at(t) * self.centre
+    }
+}
+
+/// A pair that is apart until a time.
+struct Entry {
+    time: f64,
+    a: Item,
+    b: Item,
+}
+
+impl Ord for Entry {
+    /// The greatest is the one with the least time.
+    fn cmp(&self, other: &Entry) -> Ordering {
+        let pair = (self.a, self.b).cmp(&(other.a, other.b));
+        other.time.total_cmp(&self.time).then(pair)
+    }
+}
+
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Entry) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Entry) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Entry {}
+
+fn search(a: &Moving<'_>, b: &Moving<'_>, end: f64, effort: &mut Effort) -> Option<TurningTouch> {
+    let only = match a.figure {
+        Figure::HalfSpace(normal) => Some(normal),
+        _ => None,
+    };
+    let mut view = View::new(a, b, 0.0, end);
+    effort.views += 1;
+    let (root_a, root_b) = (Boxed::root(a), Boxed::root(b));
+    effort.boxes += 1;
+    if view.boxes_apart(&root_a, &root_b, only) >= end {
+        return None;
+    }
+    let mut queue = BinaryHeap::new();
+    queue.push(Entry {
+        time: 0.0,
+        a: root_a.item,
+        b: root_b.item,
+    });
+    while let Some(entry) = queue.pop() {
+        let now = entry.time;
+        if let (Item::Piece(..), Item::Piece(..)) = (entry.a, entry.b) {
+            if now != view.time {
+                view = View::new(a, b, now, end);
+                effort.views += 1;
+            }
+            effort.pieces += 1;
+            let (first, second) = (Points::of(a, entry.a), Points::of(b, entry.b));
+            let gap = view.pieces_apart(&first, &second, only);
+            let until = now + gap.lasts;
+            // Without a proof for any time, and where they are near and come nearer.
+            let is_contact = until <= now || gap.distance <= gap.near && !gap.opens;
+            if is_contact || effort.pieces == MOST {
+                return Some(touch(&view, &gap, [&first, &second]));
+            }
+            if until < end {
+                queue.push(Entry {
+                    time: until,
+                    ..entry
+                });
+            }
+            continue;
+        }
+        // Boxes take a view that is not much older than they are.
+        if now - view.time > RENEW * (end - view.time) {
+            view = View::new(a, b, now, end);
+            effort.views += 1;
+        }
+        let (of_a, of_b) = (Boxed::within(a, entry.a), Boxed::within(b, entry.b));
+        for a in of_a.iter() {
+            for b in of_b.iter() {
+                effort.boxes += 1;
+                let until = (view.time + view.boxes_apart(a, b, only)).max(now);
+                if until < end {
+                    queue.push(Entry {
+                        time: until,
+                        a: a.item,
+                        b: b.item,
+                    });
+                }
+            }
+        }
+    }
+    None
+}
+
+/// Part of what is left of the time after which boxes get new poses. It changes cost only.
+const RENEW: f64 = 0.25;
+
+fn touch(view: &View, gap: &Gap, pieces: [&Points; 2]) -> TurningTouch {
+    TurningTouch {
+        time: view.time,
+        distance: gap.distance,
+        near: gap.near,
+        points: gap.points.map(|point| view.axes * point),
+        normal: view.axes * gap.normal,
+        faces: pieces.map(|points| points.face),
+    }
+}

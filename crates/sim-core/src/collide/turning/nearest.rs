@@ -1,0 +1,103 @@
+//! The nearest points of triangles and points, in rounded arithmetic.
+
+use glam::DVec3;
+
+use super::pieces::Points;
+
+/// Two points, and how far they are from each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub(super) length: f64,
+    pub(super) points: [DVec3; 2],
+}
+
+impl Pair {
+    fn of(first: DVec3, second: DVec3) -> Pair {
+        Pair {
+            length: (second - first).length(),
+            points: [first, second],
+        }
+    }
+
+    fn keep_nearer(&mut self, other: Pair) {
+        if other.length < self.length {
+            *self = other;
+        }
+    }
+}
+
+/// The nearest points of two pieces that do not cross, placed in one frame.
+pub(super) fn nearest(a: &Points, first: &[DVec3; 3], b: &Points, second: &[DVec3; 3]) -> Pair {
+    let mut best = Pair::of(first[0], second[0]);
+    match (a.is_point, b.is_point) {
+        (true, true) => (),
+        (true, false) => best.keep_nearer(Pair::of(first[0], on_triangle(first[0], second))),
+        (false, true) => best.keep_nearer(Pair::of(on_triangle(second[0], first), second[0])),
+        (false, false) => {
+            for k in 0..3 {
+                best.keep_nearer(Pair::of(first[k], on_triangle(first[k], second)));
+                best.keep_nearer(Pair::of(on_triangle(second[k], first), second[k]));
+                for m in 0..3 {
+                    let ends = |p: &[DVec3; 3], k: usize| [p[k], p[(k + 1) % 3]];
+                    best.keep_nearer(segments(ends(first, k), ends(second, m)));
+                }
+            }
+        }
+    }
+    best
+}
+
+/// The point of a triangle nearest another one (Ericson 2004, Real-Time Collision Detection, sec. 5.1.5).
+fn on_triangle(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> DVec3 {
+    let (ab, ac) = (b - a, c - a);
+    let [from_a, from_b, from_c] = [p - a, p - b, p - c];
+    let (a1, a2) = (ab.dot(from_a), ac.dot(from_a));
+    if a1 <= 0.0 && a2 <= 0.0 {
+        return a;
+    }
+    let (b1, b2) = (ab.dot(from_b), ac.dot(from_b));
+    if b1 >= 0.0 && b2 <= b1 {
+        return b;
+    }
+    let of_c = a1 * b2 - b1 * a2;
+    if of_c <= 0.0 && a1 >= 0.0 && b1 <= 0.0 {
+        return a + a1 / (a1 - b1) * ab;
+    }
+    let (c1, c2) = (ab.dot(from_c), ac.dot(from_c));
+    if c2 >= 0.0 && c1 <= c2 {
+        return c;
+    }
+    let of_b = c1 * a2 - a1 * c2;
+    if of_b <= 0.0 && a2 >= 0.0 && c2 <= 0.0 {
+        return a + a2 / (a2 - c2) * ac;
+    }
+    let of_a = b1 * c2 - c1 * b2;
+    let (along, rest) = (b2 - b1, c1 - c2);
+    if of_a <= 0.0 && along >= 0.0 && rest >= 0.0 {
+        return b + along / (along + rest) * (c - b);
+    }
+    let whole = of_a + of_b + of_c;
+    let inside = a + of_b / whole * ab + of_c / whole * ac;
+    // Of a triangle without area nothing is inside.
+    if inside.is_finite() { inside } else { a }
+}
+
+/// The nearest points of two segments.
+fn segments([p, p1]: [DVec3; 2], [q, q1]: [DVec3; 2]) -> Pair {
+    let (u, v, r) = (p1 - p, q1 - q, p - q);
+    let (uu, vv, uv) = (u.dot(u), v.dot(v), u.dot(v));
+    let (ur, vr) = (u.dot(r), v.dot(r));
+    let depth = uu * vv - uv * uv;
+    let mut s = if depth > f64::EPSILON * uu * vv {
+        ((uv * vr - ur * vv) / depth).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let mut t = (uv * s + vr) / vv;
+    if t < 0.0 {
+        (s, t) = ((-ur / uu).clamp(0.0, 1.0), 0.0);
+    } else if t > 1.0 {
+        (s, t) = (((uv - ur) / uu).clamp(0.0, 1.0), 1.0);
+    }
+    Pair::of(p + s * u, q + t * v)
+}

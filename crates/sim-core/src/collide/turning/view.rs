@@ -1,0 +1,127 @@
+//! Two shapes at one time, and bounds on how they go on.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use super::{Moving, Turning, certificate::Margin};
+
+/// Poses and velocities at a time, in a frame at rest with the axes that the first shape has then, and
+/// its origin where that one's centre of mass is.
+pub(super) struct View {
+    pub(super) time: f64,
+    /// What is left from here.
+    pub(super) left: f64,
+    /// Turns this frame into the world.
+    pub(super) axes: DQuat,
+    /// Turns the second shape's frame into this one.
+    pub(super) turn: DMat3,
+    /// Of the second centre of mass relative to the first.
+    pub(super) offset: DVec3,
+    pub(super) velocity: DVec3,
+    pub(super) acceleration: DVec3,
+    pub(super) first: Spinning,
+    pub(super) second: Spinning,
+    /// Directions that boxes are compared along: axes of both.
+    pub(super) directions: [Direction; 6],
+}
+
+/// How one of both turns at that time, and bounds for what is left.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Spinning {
+    pub(super) spin: DVec3,
+    pub(super) turning: DVec3,
+    /// On the speed, and on second and third derivatives of a place, each a metre from the centre of mass.
+    pub(super) fastest: f64,
+    pub(super) second: f64,
+    pub(super) third: f64,
+}
+
+/// A direction, and what boxes extend and move along it for a metre of half extent.
+#[derive(Clone, Copy)]
+pub(super) struct Direction {
+    pub(super) along: DVec3,
+    pub(super) reach: [DVec3; 2],
+    pub(super) sweep: [DVec3; 2],
+}
+
+impl View {
+    pub(super) fn new(a: &Moving<'_>, b: &Moving<'_>, time: f64, end: f64) -> View {
+        let left = end - time;
+        let (rotation_a, first) = spinning(a, time, left);
+        let (rotation_b, second) = spinning(b, time, left);
+        let to_frame = rotation_a.inverse();
+        let seen = |of: Spinning| Spinning {
+            spin: to_frame * of.spin,
+            turning: to_frame * of.turning,
+            ..of
+        };
+        let (first, second) = (seen(first), seen(second));
+        let turn = DMat3::from_quat((to_frame * rotation_b).normalize());
+        // Differences first: where in the world both are is no matter.
+        let (v, acceleration) = (b.velocity - a.velocity, b.acceleration - a.acceleration);
+        let offset = (b.position - a.position) + time * (v + 0.5 * time * acceleration);
+        let mut view = View {
+            time,
+            left,
+            axes: rotation_a,
+            turn,
+            offset: to_frame * offset,
+            velocity: to_frame * (v + time * acceleration),
+            acceleration: to_frame * acceleration,
+            first,
+            second,
+            directions: [Direction {
+                along: DVec3::X,
+                reach: [DVec3::ZERO; 2],
+                sweep: [DVec3::ZERO; 2],
+            }; 6],
+        };
+        let axes = DVec3::AXES
+            .into_iter()
+            .chain(DVec3::AXES.map(|axis| turn * axis));
+        for (place, along) in axes.enumerate() {
+            view.directions[place] = view.direction(along);
+        }
+        view
+    }
+
+    /// Of a unit vector.
+    pub(super) fn direction(&self, along: DVec3) -> Direction {
+        let back = self.turn.transpose();
+        Direction {
+            along,
+            reach: [along.abs(), (back * along).abs()],
+            sweep: [
+                along.cross(self.first.spin).abs(),
+                (back * along.cross(self.second.spin)).abs(),
+            ],
+        }
+    }
+
+    /// What rounding does to places and velocities of what is so far from both centres of mass, m.
+    pub(super) fn margin(&self, [a, b]: [f64; 2]) -> Margin {
+        let speed = self.velocity.length() + self.first.fastest * a + self.second.fastest * b;
+        // Angles and offsets are rounded by what they have become since the start.
+        let size = self.offset.length() + a + b + speed * self.time;
+        let bend = self.acceleration.length() + self.first.second * a + self.second.second * b;
+        Margin { size, speed, bend }
+    }
+}
+
+/// Rotation of the shape's frame, and how it goes on.
+fn spinning(moving: &Moving<'_>, time: f64, left: f64) -> (DQuat, Spinning) {
+    match moving.turning {
+        Turning::Still(rotation) => (rotation.normalize(), Spinning::default()),
+        Turning::Flight(flight, axes) => {
+            let pose = flight.at(time);
+            let bounds = flight.bounds(&pose, left);
+            let spinning = Spinning {
+                spin: pose.spin,
+                turning: pose.acceleration,
+                fastest: bounds.spin,
+                second: bounds.second,
+                third: bounds.third,
+            };
+            ((pose.rotation * axes.inverse()).normalize(), spinning)
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! The way of a rotation under no torque, or under a constant one.
+
+use alloc::vec::Vec;
+use glam::{DQuat, DVec3};
+
+use super::series::{FARTHEST, ROOT_3, Series, order, reach};
+
+/// How a body is turned at a time, and how it goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Turns principal axes into the world; of unit length.
+    pub rotation: DQuat,
+    /// Angular momentum about the centre of mass in the world, kg m²/s.
+    pub momentum: DVec3,
+    /// Angular velocity in the world, rad/s.
+    pub spin: DVec3,
+    /// Its derivative, rad/s².
+    pub acceleration: DVec3,
+}
+
+/// The angular velocity (world, rad/s) that belongs to a momentum (world, kg m²/s).
+pub fn spin(moments: DVec3, rotation: DQuat, momentum: DVec3) -> DVec3 {
+    rotation * (rotation.inverse() * momentum / moments)
+}
+
+/// A rotation for some time: under no torque, or under one that is constant in the world.
+///
+/// Exact to rounding for any moments at any speed. The momentum is that of the start plus torque times
+/// time, and nothing else. Where all moments are equal and nothing pulls the rotation is one about an
+/// axis; where two are, it is two; else Taylor polynomials, as many and of such an order that what
+/// they leave out is below rounding.
+#[derive(Clone, Debug)]
+pub struct Flight {
+    moments: DVec3,
+    rotation: DQuat,
+    momentum: DVec3,
+    torque: DVec3,
+    duration: f64,
+    kind: Kind,
+}
+
+#[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "an allocation would cost more than most flights"
+)]
+enum Kind {
+    /// About an axis that stays, with this angular velocity in the world, rad/s.
+    Steady(DVec3),
+    /// About the momentum in the world with the first, and about the body's own axis with the second,
+    /// rad/s.
+    Symmetric(DVec3, DVec3),
+    /// All of it in one piece.
+    One(Series),
+    /// One after the other, each with where it starts.
+    Pieces(Vec<Piece>),
+}
+
+#[derive(Clone, Debug)]
+struct Piece {
+    time: f64,
+    rotation: DQuat,
+    series: Series,
+}
+
+/// Bounds on a rotation from a time on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// On the angular speed, rad/s.
+    pub spin: f64,
+    /// A point of the body at a distance `r` from its centre of mass is accelerated by at most this
+    /// times `r`, 1/s², relative to that centre.
+    pub second: f64,
+    /// And the third derivative of its place is at most this times `r`, 1/s³.
+    pub third: f64,
+}
+
+impl Flight {
+    /// From principal `moments` (kg m², of a body: see [`Inertia`](crate::Inertia)), from a `rotation`
+    /// of unit length and a `momentum` (kg m²/s), under a `torque` (N m, constant in the world), for
+    /// a `duration` in s, which may be negative.
+    pub fn new(
+        moments: DVec3,
+        rotation: DQuat,
+        momentum: DVec3,
+        torque: DVec3,
+        duration: f64,
+    ) -> Flight {
+        let mut flight = Flight {
+            moments,
+            rotation,
+            momentum,
+            torque,
+            duration,
+            kind: Kind::Steady(DVec3::ZERO),
+        };
+        flight.kind = flight.kind();
+        flight
+    }
+
+    fn kind(&self) -> Kind {
+        let inside = self.rotation.inverse() * self.momentum;
+        let spin = inside / self.moments;
+        if self.torque == DVec3::ZERO {
+            let DVec3 { x, y, z } = self.moments;
+            // Where the momentum is along the spin, the latter stays where it is.
+            if inside.cross(spin) == DVec3::ZERO || x == y && y == z {
+                return Kind::Steady(self.rotation * spin);
+            }
+            for (axis, alone, pair) in [
+                (DVec3::Z, z, [x, y]),
+                (DVec3::X, x, [y, z]),
+                (DVec3::Y, y, [z, x]),
+            ] {
+                if pair[0] == pair[1] {
+                    // ω = L/I₁ + (1 - I₃/I₁) ω₃ e₃: the first stays in the world, the second in the body.
+                    let own = (1.0 - alone / pair[0]) * spin.dot(axis);
+                    return Kind::Symmetric(self.momentum / pair[0], own * axis);
+                }
+            }
+        }
+        let pull = self.torque.length() / self.moments.min_element();
+        let whole = reach(spin.length(), pull, self.duration.abs());
+        if whole <= FARTHEST {
+            return Kind::One(self.series(self.rotation, self.momentum, order(whole)));
+        }
+        let mut pieces = Vec::new();
+        let (mut time, mut rotation) = (0.0, self.rotation);
+        while time != self.duration {
+            let momentum = self.momentum_at(time);
+            let spin = (rotation.inverse() * momentum / self.moments).length();
+            let left = self.duration - time;
+            let length = longest(spin, pull).min(left.abs());
+            let order = order(reach(spin, pull, length));
+            let series = self.series(rotation, momentum, order);
+            pieces.push(Piece {
+                time,
+                rotation,
+                series,
+            });
+            let end = time + length.copysign(left);
+            // What is left may be less than time has digits for.
+            let end = if length == left.abs() || end == time {
+                self.duration
+            } else {
+                end
+            };
+            rotation = pieces[pieces.len() - 1].at(end);
+            time = end;
+        }
+        Kind::Pieces(pieces)
+    }
+
+    fn series(&self, rotation: DQuat, momentum: DVec3, order: usize) -> Series {
+        let inverse = rotation.inverse();
+        let spin = inverse * momentum / self.moments;
+        let torque = (self.torque != DVec3::ZERO).then(|| inverse * self.torque);
+        Series::new(self.moments, spin, torque, order)
+    }
+
+    /// How long it lasts, s.
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// Principal moments, kg m².
+    pub fn moments(&self) -> DVec3 {
+        self.moments
+    }
+
+    /// The rotation at a time from the start, s, from 0 to [`Flight::duration`].
+    pub fn rotation_at(&self, t: f64) -> DQuat {
+        match &self.kind {
+            Kind::Steady(spin) => (about(*spin, t) * self.rotation).normalize(),
+            Kind::Symmetric(outer, own) => {
+                (about(*outer, t) * self.rotation * about(*own, t)).normalize()
+            }
+            Kind::One(series) => (self.rotation * series.at(t)).normalize(),
+            Kind::Pieces(pieces) => {
+                let next = pieces.partition_point(|piece| piece.time.abs() <= t.abs());
+                pieces[next.max(1) - 1].at(t)
+            }
+        }
+    }
+
+    /// The angular momentum at a time from the start (s), kg m²/s.
+    pub fn momentum_at(&self, t: f64) -> DVec3 {
+        match self.torque == DVec3::ZERO {
+            true => self.momentum,
+            false => self.momentum + t * self.torque,
+        }
+    }
+
+    /// All about the rotation at a time from the start, s, from 0 to [`Flight::duration`].
+    pub fn at(&self, t: f64) -> Pose {
+        let (rotation, momentum) = (self.rotation_at(t), self.momentum_at(t));
+        let inverse = rotation.inverse();
+        let inside = inverse * momentum;
+        let own = inside / self.moments;
+        let turning = (inside.cross(own) + inverse * self.torque) / self.moments;
+        Pose {
+            rotation,
+            momentum,
+            spin: rotation * own,
+            acceleration: rotation * turning,
+        }
+    }
+
+    /// Bounds that hold from where it has a pose for `left` more, s.
+    ///
+    /// From Euler's equations, with `k = max |I_j - I_k| / I_i <= 1` and `a` a bound on what the torque
+    /// does: `|Ω'| <= k|Ω|²/√3 + a`, `|Ω''| <= (2k/√3)|Ω||Ω'| + a|Ω|`, put into `r'' = ω'×r + ω×(ω×r)` and
+    /// its derivative. The speed is bounded by that of `y' = k y²/√3 + a`, and by momentum and energy.
+    pub fn bounds(&self, pose: &Pose, left: f64) -> Bounds {
+        let (least, left) = (self.moments.min_element(), left.abs());
+        let pull = self.torque.length();
+        let a = pull / least;
+        let k = match self.kind {
+            Kind::Steady(_) => 0.0,
+            _ => lopsidedness(self.moments),
+        };
+        let spin = pose.spin.length() * (1.0 + ROUNDING);
+        let fastest = match self.kind {
+            // Of the same speed always: own and outer parts keep their angle.
+            Kind::Steady(_) | Kind::Symmetric(..) => spin,
+            _ => {
+                let start = spin + a * left;
+                let share = 1.0 - k / ROOT_3 * start * left;
+                let nearby = if share > 0.0 {
+                    start / share
+                } else {
+                    f64::INFINITY
+                };
+                let root = libm::sqrt(pose.momentum.dot(pose.spin));
+                let by_momentum = (pose.momentum.length() + pull * left) / least;
+                let by_energy = (root + pull * left / libm::sqrt(least)) / libm::sqrt(least);
+                nearby.min(by_momentum).min(by_energy).max(spin)
+            }
+        } * (1.0 + ROUNDING);
+        let turning = match self.kind {
+            // The own axis goes about the momentum.
+            Kind::Symmetric(outer, own) => outer.length() * own.length(),
+            _ => k / ROOT_3 * fastest * fastest + a,
+        };
+        let again = match self.kind {
+            Kind::Symmetric(outer, _) => outer.length() * turning,
+            _ => fastest * turning * (1.0 + 2.0 * k / ROOT_3) + a * fastest,
+        };
+        let second = turning + fastest * fastest;
+        Bounds {
+            spin: fastest,
+            second: second * (1.0 + ROUNDING),
+            third: (again + 3.0 * turning * fastest + fastest * fastest * fastest)
+                * (1.0 + ROUNDING),
+        }
+    }
+}
+
+/// More than what rounding does to a bound, relative.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+impl Piece {
+    fn at(&self, t: f64) -> DQuat {
+        (self.rotation * self.series.at(t - self.time)).normalize()
+    }
+}
+
+/// `max |I_j - I_k| / I_i`, at most 1 of a body.
+fn lopsidedness(moments: DVec3) -> f64 {
+    let DVec3 { x, y, z } = moments;
+    (DVec3::new(y - z, z - x, x - y) / moments)
+        .abs()
+        .max_element()
+}
+
+/// The longest piece, s: what solves `reach = FARTHEST`.
+fn longest(spin: f64, acceleration: f64) -> f64 {
+    let (rate, way) = (spin + libm::sqrt(acceleration), ROOT_3 * FARTHEST);
+    2.0 * way / (rate + libm::sqrt(rate * rate + 4.0 * acceleration * way))
+}
+
+/// The rotation with an angular velocity (rad/s) in a time, s.
+pub(super) fn about(spin: DVec3, t: f64) -> DQuat {
+    // To half an ulp also where squares would be no numbers.
+    let scale = spin.abs().max_element();
+    if scale == 0.0 {
+        return DQuat::IDENTITY;
+    }
+    let speed = scale * (spin / scale).length();
+    let (sin, cos) = libm::sincos(0.5 * speed * t);
+    let axis = spin / speed * sin;
+    DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)
+}

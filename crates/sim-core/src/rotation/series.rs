@@ -1,0 +1,113 @@
+//! Taylor polynomials of a rotation.
+//!
+//! With `δ` the rotation since the start of a piece, in the frame that the body had there, `Ω` the
+//! angular velocity and `g` the torque, both in the frame of the body,
+//!
+//! ```text
+//! δ' = ½ δ Ω,   Ω' = I⁻¹(IΩ × Ω + g),   g' = g × Ω
+//! ```
+//!
+//! are products, so that each coefficient is a sum over those before it.
+
+use glam::{DQuat, DVec3};
+
+/// No polynomial is of a higher order.
+pub(super) const MOST: usize = 24;
+
+/// The least order whose remainder is below rounding, of a piece in which `reach` is
+/// [`reach`]'s: the majorant is a geometric series, so that what follows order `n` is at most
+/// `reach^(n+1) / (1 - reach)`.
+pub(super) fn order(reach: f64) -> usize {
+    let mut rest = reach / (1.0 - reach);
+    let mut order = 0;
+    while rest > 1e-4 * f64::EPSILON && order < MOST {
+        rest *= reach;
+        order += 1;
+    }
+    order
+}
+
+/// Pieces are so long that this is reached: order [`MOST`] is enough there.
+pub(super) const FARTHEST: f64 = 0.16;
+
+/// How far a piece of length `h` goes on the way to where its series may diverge.
+///
+/// Of a real body `|I_j - I_k| <= I_i`, so `|IΩ × Ω|` over the moments is at most `|Ω|²/√3`, and with
+/// `a` a bound on `|I⁻¹g|` the speed is majorised by `y' = y²/√3 + a`, that is by
+/// `y0/(1 - y0 t/√3)` with `y0 = |Ω0| + a h`; `|δ|` by the root of the same. A turning torque grows with
+/// them: `√a` is a rate as `|Ω|` is.
+pub(super) fn reach(spin: f64, acceleration: f64, h: f64) -> f64 {
+    let rate = spin + acceleration * h + libm::sqrt(acceleration);
+    rate * h / ROOT_3
+}
+
+pub(super) const ROOT_3: f64 = 1.732_050_807_568_877_2;
+
+/// The rotation since the start of a piece, as a polynomial.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Series {
+    order: usize,
+    /// Of `x, y, z, w`.
+    turn: [[f64; 4]; MOST + 1],
+}
+
+impl Series {
+    /// Of a body with principal moments, of an angular velocity and a torque in its frame.
+    pub(super) fn new(moments: DVec3, spin: DVec3, torque: Option<DVec3>, order: usize) -> Series {
+        let inverse = moments.recip();
+        let factor = DVec3::new(
+            moments.y - moments.z,
+            moments.z - moments.x,
+            moments.x - moments.y,
+        ) * inverse;
+        let mut omega = [[0.0; 3]; MOST + 1];
+        let mut load = [[0.0; 3]; MOST + 1];
+        let mut turn = [[0.0; 4]; MOST + 1];
+        omega[0] = spin.to_array();
+        load[0] = torque.unwrap_or(DVec3::ZERO).to_array();
+        turn[0] = [0.0, 0.0, 0.0, 1.0];
+        for n in 0..order {
+            let (mut w, mut g, mut d) = ([0.0; 3], [0.0; 3], [0.0; 4]);
+            for k in 0..=n {
+                let [x, y, z] = omega[n - k];
+                let [a, b, c] = omega[k];
+                w[0] += b * z;
+                w[1] += c * x;
+                w[2] += a * y;
+                let [p, q, r, s] = turn[k];
+                d[0] += s * x + (q * z - r * y);
+                d[1] += s * y + (r * x - p * z);
+                d[2] += s * z + (p * y - q * x);
+                d[3] -= p * x + q * y + r * z;
+            }
+            if torque.is_some() {
+                for k in 0..=n {
+                    let ([a, b, c], [x, y, z]) = (load[k], omega[n - k]);
+                    g[0] += b * z - c * y;
+                    g[1] += c * x - a * z;
+                    g[2] += a * y - b * x;
+                }
+            }
+            let part = 1.0 / (n as f64 + 1.0);
+            for axis in 0..3 {
+                let pull = inverse[axis] * load[n][axis];
+                omega[n + 1][axis] = part * (factor[axis] * w[axis] + pull);
+                load[n + 1][axis] = part * g[axis];
+            }
+            turn[n + 1] = d.map(|d| 0.5 * part * d);
+        }
+        Series { order, turn }
+    }
+
+    /// The rotation since the start of the piece, after a time, s.
+    pub(super) fn at(&self, t: f64) -> DQuat {
+        let mut sum = [0.0; 4];
+        for term in self.turn[1..=self.order].iter().rev() {
+            for (sum, term) in sum.iter_mut().zip(term) {
+                *sum = *sum * t + term;
+            }
+        }
+        let [x, y, z, w] = sum.map(|sum| sum * t);
+        DQuat::from_xyzw(x, y, z, 1.0 + w)
+    }
+}

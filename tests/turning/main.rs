@@ -1,0 +1,4 @@
+//! Bodies that turn, against closed forms.
+
+mod flight;
+mod times;
