@@ -19,6 +19,7 @@ use glam::DVec3;
 use super::{
     World,
     order::{self, Key},
+    profile::Phase,
     record::Record,
     scene::{Scene, scene},
     state::State,
@@ -103,7 +104,9 @@ impl World {
         self.contacts.clear();
         self.continuous.placed = true;
         let mut step = self.discrete_step();
+        step.record.enter(Phase::Narrow);
         step.collide();
+        step.record.enter(Phase::Respond);
         if !step.scene.overlaps.pairs.is_empty() {
             self.overlaps.pairs = step.part_overlapping();
         }
@@ -141,7 +144,9 @@ impl DiscreteStep<'_> {
                 }
             }
         } else {
+            self.record.enter(Phase::Broad);
             self.find_near_pairs();
+            self.record.enter(Phase::Narrow);
             let near = self.memory.near.iter().copied();
             meeting.extend(near.filter(|&(i, j)| self.collides(i, j)));
         }
@@ -189,7 +194,9 @@ impl DiscreteStep<'_> {
             while let Some(meeting) = next(&mut meetings, until, &is_back) {
                 group.push(meeting);
             }
+            self.record.enter(Phase::Respond);
             self.exchange_at_once(&group);
+            self.record.enter(Phase::Narrow);
             for body in group
                 .drain(..)
                 .flat_map(|meeting| [meeting.bodies.0, meeting.bodies.1])
@@ -299,8 +306,7 @@ impl DiscreteStep<'_> {
     }
 
     fn note_exchange(&mut self, bodies: (usize, usize), contact: &Contact) {
-        let velocity = &mut self.end.velocity;
-        let impact = self.scene.exchange_on_way(bodies, contact, velocity);
+        let impact = self.scene.exchange_on_way(bodies, contact, self.end);
         impact
             .into_iter()
             .for_each(|impact| self.record.note(impact));
@@ -344,10 +350,9 @@ impl DiscreteStep<'_> {
         for ((touching, joined), impulse) in piece().zip(&joined).zip(impulses) {
             if impulse > 0.0 {
                 let speeds = (-joined.opening(&before), joined.opening(&after));
-                let time = self.scene.time + touching.contact.time * self.scene.settings.dt;
-                let impact =
-                    self.scene
-                        .impact(touching.pair(), &touching.contact, impulse, speeds, time);
+                let (pair, contact) = (touching.pair(), &touching.contact);
+                let at = self.scene.on_way(pair, contact, self.end);
+                let impact = self.scene.impact(pair, contact, (impulse, speeds), at);
                 self.record.note(impact);
             }
         }
@@ -388,7 +393,6 @@ impl DiscreteStep<'_> {
                 *shares.entry(body).or_insert(0) += 1;
             }
         }
-        let time = self.scene.time + self.scene.settings.dt;
         let (mut changes, mut noted) = (Vec::new(), Vec::new());
         for ((i, j), normal) in closing {
             let centre = |body: usize| self.scene.bodies.centre(&self.end.position, body);
@@ -434,9 +438,9 @@ impl DiscreteStep<'_> {
         for ((i, j), contact, impulse, closing) in noted {
             let velocity = &self.end.velocity;
             let parting = (velocity[j] - velocity[i]).dot(contact.normal);
-            let impact = self
-                .scene
-                .impact((i, j), &contact, impulse, (closing, parting), time);
+            let at = self.scene.on_way((i, j), &contact, self.end);
+            let exchanged = (impulse, (closing, parting));
+            let impact = self.scene.impact((i, j), &contact, exchanged, at);
             self.record.note(impact);
         }
     }

@@ -21,6 +21,8 @@ pub struct Impact {
     pub bodies: (usize, usize),
     /// Point of contact in the world, m.
     pub point: DVec3,
+    /// Where the bodies were then, m; in the discrete modes too, though they go back from there.
+    pub positions: (DVec3, DVec3),
     /// Unit normal, from the first body to the second.
     pub normal: DVec3,
     /// Impulse on the second body along the normal, and on the first against it, N s.
@@ -29,6 +31,13 @@ pub struct Impact {
     pub speeds: (f64, f64),
     /// What touched, where both are meshes and it is known.
     pub feature: Option<Feature>,
+}
+
+/// When two bodies have an impact, s, and where they are then, m.
+#[derive(Clone, Copy)]
+pub(super) struct Instant {
+    pub(super) time: f64,
+    pub(super) positions: (DVec3, DVec3),
 }
 
 impl Scene<'_> {
@@ -82,10 +91,20 @@ impl Scene<'_> {
         &self,
         bodies: (usize, usize),
         contact: &Contact,
-        velocity: &mut [DVec3],
+        end: &mut State,
     ) -> Option<Impact> {
-        let time = self.time + contact.time * self.settings.dt;
-        self.exchange(bodies, contact, velocity, time)
+        let at = self.on_way(bodies, contact, end);
+        self.exchange(bodies, contact, &mut end.velocity, at)
+    }
+
+    /// When two bodies touch on the way of the step, and where they are then.
+    pub(super) fn on_way(&self, (i, j): (usize, usize), contact: &Contact, end: &State) -> Instant {
+        let part = contact.time;
+        let place = |body: usize| self.before.position[body].lerp(end.position[body], part);
+        Instant {
+            time: self.time + part * self.settings.dt,
+            positions: (place(i), place(j)),
+        }
     }
 
     /// Lets two bodies part by their restitution, if they approach each other. The contact's point is in
@@ -95,7 +114,7 @@ impl Scene<'_> {
         (i, j): (usize, usize),
         contact: &Contact,
         velocity: &mut [DVec3],
-        time: f64,
+        at: Instant,
     ) -> Option<Impact> {
         let (normal, restitution) = (contact.normal, self.bodies.pair_restitution(i, j));
         let masses = (self.bodies.mass[i], self.bodies.mass[j]);
@@ -112,22 +131,22 @@ impl Scene<'_> {
                 velocity[body] = after;
             }
         }
-        Some(self.impact((i, j), contact, given.impulse, speeds, time))
+        Some(self.impact((i, j), contact, (given.impulse, speeds), at))
     }
 
     pub(super) fn impact(
         &self,
         bodies: (usize, usize),
         contact: &Contact,
-        impulse: f64,
-        speeds: (f64, f64),
-        time: f64,
+        (impulse, speeds): (f64, (f64, f64)),
+        at: Instant,
     ) -> Impact {
         Impact {
             step: self.step,
-            time,
+            time: at.time,
             bodies,
             point: contact.point,
+            positions: at.positions,
             normal: contact.normal,
             impulse,
             speeds,

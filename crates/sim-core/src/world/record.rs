@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::Impact;
+use super::{Impact, profile::Timer};
 
 /// What has happened since the world was made.
 #[derive(Clone, Debug, Default)]
@@ -11,6 +11,8 @@ pub(super) struct Record {
     pub(super) last_impact: Option<Impact>,
     /// Where impacts are listed, while someone asks.
     pub(super) list: Option<Vec<Impact>>,
+    /// Reads a clock between phases, while someone asks.
+    pub(super) timer: Option<Timer>,
     /// Steps that have ended with bodies in contact.
     pub(super) contact_steps: u64,
 }

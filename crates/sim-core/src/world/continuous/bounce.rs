@@ -159,8 +159,8 @@ impl EventLoop<'_> {
         );
         for ((event, joined), given) in events.zip(&places.joined).zip(given) {
             let speeds = (-joined.opening(&before), joined.opening(&velocity));
-            let time = self.solver.scene.time + time;
-            let impact = scene.impact(event.bodies, &event.contact, given, speeds, time);
+            let at = self.view().instant(event.bodies, time);
+            let impact = scene.impact(event.bodies, &event.contact, (given, speeds), at);
             self.note_impact(impact);
         }
     }
@@ -168,8 +168,9 @@ impl EventLoop<'_> {
     /// Exchanges the impulse of one impact.
     pub(super) fn exchange_there(&mut self, event: &Event, time: f64) {
         let scene = self.solver.scene;
+        let at = self.view().instant(event.bodies, time);
         let velocity = &mut self.solver.paths.start.velocity;
-        let impact = scene.exchange(event.bodies, &event.contact, velocity, scene.time + time);
+        let impact = scene.exchange(event.bodies, &event.contact, velocity, at);
         impact
             .into_iter()
             .for_each(|impact| self.note_impact(impact));

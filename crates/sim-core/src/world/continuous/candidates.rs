@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::mem;
 
-use super::super::stepping::Cause;
+use super::super::{profile::Phase, stepping::Cause};
 use super::{event_loop::EventLoop, view::View};
 use crate::{
     Extent, Shape,
@@ -124,6 +124,7 @@ impl EventLoop<'_> {
         if self.solver.scene.bodies.shape(body).is_none() {
             return Ok(());
         }
+        let phase = self.record.enter(Phase::Narrow);
         let mut partners = mem::take(&mut self.solver.near.partners);
         partners.clear();
         let broad = &self.solver.near.broad;
@@ -145,6 +146,7 @@ impl EventLoop<'_> {
             }
         }
         self.solver.near.partners = partners;
+        self.record.enter(phase);
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::mem;
 
-use super::super::{Impact, record::Record, stepping::Cause};
+use super::super::{Impact, profile::Phase, record::Record, stepping::Cause};
 #[cfg(feature = "rayon")]
 use super::trajectory::Probe;
 use super::{
@@ -74,7 +74,9 @@ impl EventLoop<'_> {
 
     /// Finds the first impact of every pair that may have one.
     pub(super) fn find_all_impacts(&mut self) -> Result<(), (usize, Cause)> {
+        self.record.enter(Phase::Broad);
         self.find_candidate_pairs();
+        self.record.enter(Phase::Narrow);
         self.queue_horizons(0..self.solver.scene.bodies.len());
         self.find_impacts_of_candidates()
     }

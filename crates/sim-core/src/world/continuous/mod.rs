@@ -53,7 +53,7 @@ mod view;
 use alloc::vec::Vec;
 use core::mem;
 
-use super::{Bundled, World, scene::scene, stepping::Cause};
+use super::{Bundled, World, profile::Phase, scene::scene, stepping::Cause};
 use candidates::Neighbours;
 pub(super) use contact_set::ContactSet;
 use event::EventQueue;
@@ -152,15 +152,20 @@ impl World {
             record: &mut self.record,
             restarted: &mut continuous.restarted,
         };
+        events.record.enter(Phase::Respond);
         events.keep_contacts(is_placed)?;
         events.find_all_impacts()?;
+        events.record.enter(Phase::Respond);
         events.resolve_all()?;
+        self.record.enter(Phase::Narrow);
         let mut correction = Correction {
             scene: &scene,
             end: &mut continuous.paths.end,
             contacts: &self.contacts,
             record: &mut self.record,
         };
-        correction.separate_meeting(&mut continuous.near.candidate_pairs)
+        correction.separate_meeting(&mut continuous.near.candidate_pairs)?;
+        self.record.enter(Phase::Respond);
+        Ok(())
     }
 }

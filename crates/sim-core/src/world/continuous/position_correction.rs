@@ -196,8 +196,7 @@ impl Correction<'_> {
                 continue;
             }
             if let Some(contact) = self.scene.contact_on_way(self.end, i, j) {
-                let velocity = &mut self.end.velocity;
-                let impact = self.scene.exchange_on_way((i, j), &contact, velocity);
+                let impact = self.scene.exchange_on_way((i, j), &contact, self.end);
                 impact
                     .into_iter()
                     .for_each(|impact| self.record.note(impact));

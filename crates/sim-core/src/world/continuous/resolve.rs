@@ -108,7 +108,7 @@ impl EventLoop<'_> {
                 .iter()
                 .flat_map(|event| [event.bodies.0, event.bodies.1])
             {
-                if let Some(island) = self.view().island_of(body, &mut visited) {
+                if let Some(island) = self.view().island_around(body, &mut visited) {
                     is_bundled |= island
                         .bodies
                         .iter()
@@ -259,10 +259,10 @@ impl EventLoop<'_> {
             .find(same)
             .map(|c| c.impulse);
         let speeds = (closing, -self.view().closing(event));
-        let at = self.solver.scene.time + time;
         let impulse = impulse.unwrap_or(0.0);
         let scene = self.solver.scene;
-        let impact = scene.impact(event.bodies, &event.contact, impulse, speeds, at);
+        let at = self.view().instant(event.bodies, time);
+        let impact = scene.impact(event.bodies, &event.contact, (impulse, speeds), at);
         self.note_impact(impact);
     }
 }

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::super::{layout::Layout, order::ordinal, scene::Scene};
+use super::super::{exchange::Instant, layout::Layout, order::ordinal, scene::Scene};
 use super::{
     contact_set::{ContactConstraint, ContactSet},
     event::{Event, EventKind, Outcome},
@@ -91,6 +91,23 @@ impl<'a> View<'a> {
                 feature: None,
                 face: None,
             },
+        }
+    }
+
+    /// Where two bodies are that have an impact at a time, s from the step's start, at which the trajectories
+    /// of those that it moves start.
+    pub(super) fn instant(&self, bodies: (usize, usize), time: f64) -> Instant {
+        let scene = self.scene;
+        let place = |body: usize| match scene.bodies.is_movable(body) {
+            true => self.paths.start.position[body],
+            false => {
+                let part = time / scene.settings.dt;
+                scene.before.position[body].lerp(self.paths.end.position[body], part)
+            }
+        };
+        Instant {
+            time: scene.time + time,
+            positions: (place(bodies.0), place(bodies.1)),
         }
     }
 }
