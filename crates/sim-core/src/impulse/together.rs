@@ -155,16 +155,31 @@ fn missing_speeds(contacts: &[Joined], velocity: &[DVec3]) -> Vec<f64> {
 
 /// Adds the impulses of contacts to the velocities.
 fn push(contacts: &[Joined], inverse_mass: &[f64], velocity: &mut [DVec3], impulse: &[f64]) {
-    let mut terms: Vec<(usize, DVec3)> = Vec::with_capacity(2 * contacts.len());
+    // The terms of each body side by side: where they begin, and then where the next one goes.
+    let mut next = vec![0; velocity.len() + 1];
+    for contact in contacts {
+        next[contact.bodies.0 + 1] += 1;
+        next[contact.bodies.1 + 1] += 1;
+    }
+    for body in 0..velocity.len() {
+        next[body + 1] += next[body];
+    }
+    let mut terms = vec![DVec3::ZERO; 2 * contacts.len()];
     for (contact, &impulse) in contacts.iter().zip(impulse) {
         let (i, j) = contact.bodies;
-        terms.push((i, -impulse * inverse_mass[i] * contact.normal));
-        terms.push((j, impulse * inverse_mass[j] * contact.normal));
+        for (body, impulse) in [(i, -impulse), (j, impulse)] {
+            terms[next[body]] = impulse * inverse_mass[body] * contact.normal;
+            next[body] += 1;
+        }
     }
-    terms.sort_by_key(|&(body, _)| body);
-    for same in terms.chunk_by(|a, b| a.0 == b.0) {
-        let along = |axis: usize| sum(same.iter().map(|(_, term)| term[axis]));
-        velocity[same[0].0] += DVec3::new(along(0), along(1), along(2));
+    let mut begin = 0;
+    for (velocity, &end) in velocity.iter_mut().zip(&next) {
+        let of_body = &terms[begin..end];
+        begin = end;
+        if !of_body.is_empty() {
+            let along = |axis: usize| sum(of_body.iter().map(|term| term[axis]));
+            *velocity += DVec3::new(along(0), along(1), along(2));
+        }
     }
 }
 

@@ -4,7 +4,7 @@ mod cholesky;
 mod guess;
 mod proximal;
 
-use alloc::{vec, vec::Vec};
+use alloc::vec::Vec;
 
 use super::{Joined, Known};
 
@@ -28,107 +28,93 @@ pub(super) fn multipliers(
     guess.unwrap_or_else(|| proximal::multipliers(contacts, inverse_mass, wanted, known))
 }
 
-/// The matrix `N M⁻¹ Nᵀ` by rows, of which most is zero; rows and columns scaled, so that heavy bodies
-/// count like light ones.
+/// A number for each of a few contacts.
+type Few = [f64; FEW];
+
+/// The matrix `N M⁻¹ Nᵀ` of a few contacts; rows and columns scaled, so that heavy bodies count like light
+/// ones.
 struct Matrix {
-    /// Where each begins, and where the last one ends.
-    begin: Vec<usize>,
-    entries: Vec<(u32, f64)>,
+    count: usize,
+    rows: [Few; FEW],
     /// Of each row and column, powers of two.
-    scale: Vec<f64>,
+    scale: Few,
 }
 
 impl Matrix {
     fn of(contacts: &[Joined], inverse_mass: &[f64]) -> Matrix {
-        let mut at: Vec<Vec<usize>> = vec![Vec::new(); inverse_mass.len()];
-        for (k, contact) in contacts.iter().enumerate() {
-            for body in [contact.bodies.0, contact.bodies.1] {
-                // Nothing arrives through a body that nothing moves.
-                if inverse_mass[body] > 0.0 {
-                    at[body].push(k);
-                }
-            }
-        }
-        let scale = |contact: &Joined| {
-            let own = contact.shared(contact, inverse_mass);
-            match own > 0.0 {
-                true => libm::ldexp(1.0, -libm::ilogb(own) / 2),
-                false => 1.0,
-            }
+        let mut matrix = Matrix {
+            count: contacts.len(),
+            rows: [[0.0; FEW]; FEW],
+            scale: [1.0; FEW],
         };
-        let scale: Vec<f64> = contacts.iter().map(scale).collect();
-        let (mut begin, mut entries) = (vec![0], Vec::new());
-        let mut others: Vec<usize> = Vec::new();
-        for (contact, own) in contacts.iter().zip(&scale) {
-            let (i, j) = contact.bodies;
-            others.clear();
-            others.extend(at[i].iter().chain(&at[j]));
-            others.sort_unstable();
-            others.dedup();
-            let shared = |&l: &usize| {
-                let shared = contact.shared(&contacts[l], inverse_mass);
-                (l as u32, own * scale[l] * shared)
-            };
-            entries.extend(others.iter().map(shared).filter(|entry| entry.1 != 0.0));
-            begin.push(entries.len());
+        for (contact, scale) in contacts.iter().zip(&mut matrix.scale) {
+            let own = contact.shared(contact, inverse_mass);
+            if own > 0.0 {
+                *scale = libm::ldexp(1.0, -libm::ilogb(own) / 2);
+            }
         }
-        Matrix {
-            begin,
-            entries,
-            scale,
+        for (k, contact) in contacts.iter().enumerate() {
+            for (l, other) in contacts.iter().enumerate() {
+                let shared = contact.shared(other, inverse_mass);
+                matrix.rows[k][l] = matrix.scale[k] * matrix.scale[l] * shared;
+            }
         }
-    }
-
-    fn rows(&self) -> impl Iterator<Item = &[(u32, f64)]> {
-        let bounds = self.begin.windows(2);
-        bounds.map(|bounds| &self.entries[bounds[0]..bounds[1]])
+        matrix
     }
 
     /// The multipliers, if they are found.
     fn multipliers(&self, wanted: &[f64], held: &[bool]) -> Option<Vec<f64>> {
-        let scaled = |values: &[f64]| -> Vec<f64> {
-            let pairs = values.iter().zip(&self.scale);
-            pairs.map(|(value, scale)| value * scale).collect()
-        };
-        self.guess(&scaled(wanted), held)
-            .map(|given| scaled(&given))
+        let mut scaled = [0.0; FEW];
+        for ((scaled, wanted), scale) in scaled.iter_mut().zip(wanted).zip(&self.scale) {
+            *scaled = wanted * scale;
+        }
+        let given = self.guess(&scaled, held)?;
+        let pairs = given.iter().zip(&self.scale).take(self.count);
+        Some(pairs.map(|(given, scale)| given * scale).collect())
     }
 
     /// What is left of the wanted change after some impulses.
-    fn missing(&self, wanted: &[f64], given: &[f64]) -> Vec<f64> {
-        let done = |row: &[(u32, f64)]| sum(row.iter().map(|&(l, x)| x * given[l as usize]));
-        let pairs = wanted.iter().zip(self.rows());
-        pairs.map(|(w, row)| w - done(row)).collect()
+    fn missing(&self, wanted: &Few, given: &Few) -> Few {
+        let mut missing = [0.0; FEW];
+        for (k, row) in self.rows[..self.count].iter().enumerate() {
+            let parts = row[..self.count].iter().zip(given);
+            missing[k] = wanted[k] - sum(parts.map(|(x, given)| x * given));
+        }
+        missing
     }
 }
 
 /// A sum that does not depend on the order of its terms, and that only changes its sign with theirs:
 /// positive and negative terms apart, each from the least on.
 pub(super) fn sum(terms: impl Iterator<Item = f64>) -> f64 {
-    let (mut few, mut count, mut many) = ([0.0; 16], 0, Vec::new());
+    let (mut few, mut count, mut many) = ([0.0_f64; 16], 0, Vec::new());
     for term in terms.filter(|&term| term != 0.0) {
-        if count < few.len() {
-            few[count] = term;
-            count += 1;
-        } else {
+        if count == few.len() {
             many.push(term);
+            continue;
         }
+        let mut place = count;
+        while place > 0 && few[place - 1].abs() > term.abs() {
+            few[place] = few[place - 1];
+            place -= 1;
+        }
+        few[place] = term;
+        count += 1;
     }
     let terms = if many.is_empty() {
-        &mut few[..count]
+        &few[..count]
     } else {
         many.extend(few);
-        &mut many[..]
+        many.sort_unstable_by(|a: &f64, b| a.abs().total_cmp(&b.abs()));
+        &many[..]
     };
-    if terms.len() > 2 {
-        terms.sort_unstable_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let (mut up, mut down) = (0.0, 0.0);
+    for &term in terms {
+        if term > 0.0 {
+            up += term;
+        } else if term < 0.0 {
+            down -= term;
+        }
     }
-    let total = |sign: f64| {
-        let part = terms
-            .iter()
-            .map(|term| sign * term)
-            .filter(|&term| term > 0.0);
-        part.sum::<f64>()
-    };
-    total(1.0) - total(-1.0)
+    up - down
 }
