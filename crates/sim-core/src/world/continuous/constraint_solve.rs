@@ -97,6 +97,15 @@ impl Visited {
 impl World {
     /// The island of a body, unless it has been visited.
     pub(super) fn island_of(&self, seed: usize, visited: &mut Visited) -> Option<Island> {
+        let mut island = self.island_around(seed, visited)?;
+        if island.bodies.len() + island.constraints.len() > 2 {
+            self.sort(&mut island);
+        }
+        Some(island)
+    }
+
+    /// The same in no order.
+    pub(super) fn island_around(&self, seed: usize, visited: &mut Visited) -> Option<Island> {
         if !self.is_movable(seed) || !visited.visit(seed) {
             return None;
         }
@@ -119,9 +128,6 @@ impl World {
                 }
             }
         }
-        if island.bodies.len() + island.constraints.len() > 2 {
-            self.sort(&mut island);
-        }
         Some(island)
     }
 
@@ -130,9 +136,8 @@ impl World {
         let all = self.contacts.all();
         let pairs = island.constraints.iter().map(|&index| all[index].bodies);
         let order = self.in_order(pairs);
-        island
-            .bodies
-            .sort_unstable_by_key(|&body| order.place(body));
+        let bodies = order.bodies.iter().copied();
+        island.bodies = bodies.filter(|&body| self.is_movable(body)).collect();
         island.constraints.sort_by_cached_key(|&index| {
             let contact = &all[index];
             (order.between(contact.bodies, contact.normal), index)

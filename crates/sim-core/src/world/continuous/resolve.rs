@@ -152,7 +152,7 @@ impl World {
                 .iter()
                 .flat_map(|event| [event.bodies.0, event.bodies.1])
             {
-                if let Some(island) = self.island_of(body, &mut visited) {
+                if let Some(island) = self.island_around(body, &mut visited) {
                     is_bundled |= island.bodies.iter().any(|&body| self.is_bundled(body));
                 }
             }
