@@ -28,40 +28,43 @@ impl Cholesky {
     /// Of matrices of so many rows of blocks that are zero but on the diagonal and where two rows are
     /// tied.
     pub(super) fn of_graph(count: usize, ties: impl Iterator<Item = (usize, usize)>) -> Cholesky {
-        let mut near: Vec<Vec<u32>> = vec![Vec::new(); count];
+        // By row, a bit for each row that it is tied to and that has no place yet.
+        let words = count.div_ceil(64);
+        let mut near = vec![0_u64; count * words];
         for (i, j) in ties {
-            near[i].push(j as u32);
-            near[j].push(i as u32);
+            near[i * words + j / 64] |= 1 << (j % 64);
+            near[j * words + i / 64] |= 1 << (i % 64);
         }
-        for list in &mut near {
-            list.sort_unstable();
-            list.dedup();
-        }
-        let (mut place, mut below) = (vec![NONE; count], Vec::with_capacity(count));
-        let mut merged = Vec::new();
+        let of_row = |row: usize| row * words..(row + 1) * words;
+        let size = |set: &[u64]| set.iter().map(|word| word.count_ones()).sum::<u32>();
+        let mut degree: Vec<u32> = (0..count).map(|row| size(&near[of_row(row)])).collect();
+        let (mut place, mut own) = (vec![NONE; count], vec![0; words]);
+        let (mut begin, mut rows) = (vec![0], Vec::new());
         for step in 0..count {
             let left = (0..count).filter(|&row| place[row] == NONE);
-            let Some(row) = left.min_by_key(|&row| near[row].len()) else {
+            let Some(row) = left.min_by_key(|&row| degree[row]) else {
                 break;
             };
             place[row] = step as u32;
-            let own = core::mem::take(&mut near[row]);
+            own.copy_from_slice(&near[of_row(row)]);
             // Whatever is tied to it is tied together from now on.
-            for &other in &own {
-                let list = &mut near[other as usize];
-                merged.clear();
-                merge(list, &own, &mut merged);
-                merged.retain(|&third| third != other && third != row as u32);
-                core::mem::swap(list, &mut merged);
+            for other in bits(&own) {
+                let set = &mut near[of_row(other)];
+                for (word, own) in set.iter_mut().zip(&own) {
+                    *word |= own;
+                }
+                for gone in [other, row] {
+                    set[gone / 64] &= !(1 << (gone % 64));
+                }
+                degree[other] = size(set);
+                rows.push(other as u32);
             }
-            below.push(own);
-        }
-        let (mut begin, mut rows) = (vec![0], Vec::new());
-        for list in below {
-            let first = rows.len();
-            rows.extend(list.iter().map(|&row| place[row as usize]));
-            rows[first..].sort_unstable();
             begin.push(rows.len());
+        }
+        for bounds in begin.windows(2) {
+            let rows = &mut rows[bounds[0]..bounds[1]];
+            rows.iter_mut().for_each(|row| *row = place[*row as usize]);
+            rows.sort_unstable();
         }
         Cholesky {
             blocks: vec![DMat3::ZERO; rows.len()],
@@ -169,19 +172,16 @@ impl Cholesky {
     }
 }
 
-/// Two ascending lists as one.
-fn merge(a: &[u32], b: &[u32], merged: &mut Vec<u32>) {
-    let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
-    while let (Some(&&x), Some(&&y)) = (a.peek(), b.peek()) {
-        merged.push(x.min(y));
-        if x <= y {
-            a.next();
-        }
-        if y <= x {
-            b.next();
-        }
-    }
-    merged.extend(a.chain(b));
+/// The places of the bits of a set, ascending.
+fn bits(set: &[u64]) -> impl Iterator<Item = usize> {
+    set.iter().enumerate().flat_map(|(word, &bits)| {
+        let mut left = bits;
+        core::iter::from_fn(move || {
+            let bit = (left != 0).then(|| left.trailing_zeros() as usize)?;
+            left &= left - 1;
+            Some(64 * word + bit)
+        })
+    })
 }
 
 /// The inverse of the lower triangle `l` with `l lᵀ` a positive matrix.
