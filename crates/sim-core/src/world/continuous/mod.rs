@@ -1,18 +1,19 @@
 //! Impacts at the time at which they happen, and contacts that last.
 //!
-//! A step goes through these phases, a file each:
+//! A step goes through these phases (`World::go_through_phases`):
 //!
 //! 1. [`trajectory`]: each body has a trajectory through the step, as its method makes it, or as far as
 //!    contact lets the method be asked ([`horizon`]).
 //! 2. [`initial_contacts`]: of bodies that have just been placed it is found out who touches.
-//! 3. [`contact_motion`]: the contacts that the last step has left are measured;
-//!    [`constraint_solve`]: the bodies of each island get the velocities and accelerations with which
-//!    none of its contacts closes.
-//! 4. [`impact_search`]: for each pair whose swept boxes meet, the next impact is found and waits in a
-//!    queue, and so does the end of each contact that is left behind.
-//! 5. [`resolve`]: the earliest event is resolved, with all of its instant: impulses are exchanged, or a
-//!    contact begins or ends and its island is solved; new trajectories start, and their events
-//!    are found. [`progress`] and [`crush`] stop a step that would have no end.
+//! 3. [`contact_motion`]: the contacts that the last step has left ([`contact_set`]) are measured;
+//!    [`solver`]: the bodies of each [`island`] get the velocities ([`velocity_solve`]) and accelerations
+//!    ([`acceleration_solve`], [`friction`]) with which none of its contacts closes.
+//! 4. [`candidates`]: pairs whose swept boxes meet; [`impact_search`]: for each of them the next impact is
+//!    found and waits in a queue ([`event`]), and so does the end of each contact that is left behind.
+//! 5. [`event_loop`]: the earliest event is taken, with all of its instant ([`resolve`]); [`outcome`]: bodies
+//!    part ([`bounce`]), or stay in contact and their island is solved; new trajectories start, and their
+//!    events are found. [`hand_over`] and [`ledge`]: what slides goes on from one body to the next.
+//!    [`progress`] and [`crush`] stop a step that would have no end.
 //! 6. [`position_correction`]: an exact test makes sure that no two bodies meet.
 //!
 //! [`held_overlaps`]: where bodies that were placed in overlap would get deeper, all of it is done again
