@@ -46,7 +46,7 @@ pub(super) const TOUCHING: f64 = 4.0;
 
 /// The search for the next impact of two bodies.
 struct PairSearch<'a> {
-    view: View<'a>,
+    view: &'a View<'a>,
     forms: (Form<'a>, Form<'a>),
     i: usize,
     j: usize,
@@ -73,7 +73,7 @@ impl View<'_> {
             return Ok(None);
         };
         let search = PairSearch {
-            view: *self,
+            view: self,
             forms,
             i,
             j,
