@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use glam::{DQuat, DVec3};
 
-use super::series::{FARTHEST, ROOT_3, Series, order, reach};
+use super::series::{FARTHEST, ROOT_3, Series, order, rate};
 
 /// How a body is turned at a time, and how it goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +120,7 @@ impl Flight {
             }
         }
         let pull = self.torque.length() / self.moments.min_element();
-        let whole = reach(spin.length(), pull, self.duration.abs());
+        let whole = rate(spin.length(), pull) * self.duration.abs();
         if whole <= FARTHEST {
             return Kind::One(self.series(self.rotation, self.momentum, order(whole)));
         }
@@ -130,8 +130,9 @@ impl Flight {
             let momentum = self.momentum_at(time);
             let spin = (rotation.inverse() * momentum / self.moments).length();
             let left = self.duration - time;
-            let length = longest(spin, pull).min(left.abs());
-            let order = order(reach(spin, pull, length));
+            let rate = rate(spin, pull);
+            let length = (FARTHEST / rate).min(left.abs());
+            let order = order(rate * length);
             let series = self.series(rotation, momentum, order);
             pieces.push(Piece {
                 time,
@@ -271,12 +272,6 @@ fn lopsidedness(moments: DVec3) -> f64 {
     (DVec3::new(y - z, z - x, x - y) / moments)
         .abs()
         .max_element()
-}
-
-/// The longest piece, s: what solves `reach = FARTHEST`.
-fn longest(spin: f64, acceleration: f64) -> f64 {
-    let (rate, way) = (spin + libm::sqrt(acceleration), ROOT_3 * FARTHEST);
-    2.0 * way / (rate + libm::sqrt(rate * rate + 4.0 * acceleration * way))
 }
 
 /// The rotation with an angular velocity (rad/s) in a time, s.
