@@ -51,13 +51,9 @@ impl Mover {
     fn turning(self, moments: DVec3, rotation: DQuat, spin: DVec3, duration: f64) -> Mover {
         let momentum = rotation * (moments * (rotation.inverse() * spin));
         Mover {
-            flight: Some(Flight::new(
-                moments,
-                rotation,
-                momentum,
-                DVec3::ZERO,
-                duration,
-            )),
+            flight: Some(
+                Flight::new(moments, rotation, momentum, DVec3::ZERO, duration).expect("a flight"),
+            ),
             ..self
         }
     }
