@@ -41,6 +41,7 @@ pub struct Racket {
 }
 
 impl Racket {
+    /// Of moments and of the second and third component at the start.
     pub fn new(moments: DVec3, b: f64, c: f64) -> Racket {
         let [i, j, k] = moments.to_array();
         // L² - 2 E I₁ and 2 E I₃ - L², as sums of what is positive.

@@ -27,7 +27,8 @@ fn main() {
             let first = energy(rotation);
             let start = Instant::now();
             for _ in 0..STEPS {
-                let flight = Flight::new(moments, rotation, momentum, DVec3::ZERO, black_box(dt));
+                let flight = Flight::new(moments, rotation, momentum, DVec3::ZERO, black_box(dt))
+                    .expect("a flight");
                 rotation = flight.rotation_at(dt);
             }
             let nanoseconds = start.elapsed().as_secs_f64() * 1e9 / f64::from(STEPS);

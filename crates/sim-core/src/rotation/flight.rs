@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use glam::{DQuat, DVec3};
 
-use super::series::{FARTHEST, ROOT_3, Series, order, reach};
+use super::series::{FARTHEST, ROOT_3, Series, order, rate};
 
 /// How a body is turned at a time, and how it goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +22,27 @@ pub struct Pose {
 pub fn spin(moments: DVec3, rotation: DQuat, momentum: DVec3) -> DVec3 {
     rotation * (rotation.inverse() * momentum / moments)
 }
+
+/// Why a rotation cannot be followed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum FlightError {
+    /// Something is not a number, or beyond all numbers on the way.
+    #[error(
+        "a rotation, its momentum and its torque must be finite, and so must what becomes of them"
+    )]
+    NotFinite,
+    /// It tumbles too often.
+    #[error(
+        "a body tumbles more than {MOST_PIECES} times {FARTHEST} rad in {duration:e} s: take shorter steps"
+    )]
+    TooFar {
+        /// How long it was to be followed, s.
+        duration: f64,
+    },
+}
+
+/// No flight has more pieces, of about a quarter of a radian each.
+const MOST_PIECES: usize = 1 << 16;
 
 /// A rotation for some time: under no torque, or under one that is constant in the world.
 ///
@@ -79,13 +100,16 @@ impl Flight {
     /// From principal `moments` (kg m², of a body: see [`Inertia`](crate::Inertia)), from a `rotation`
     /// of unit length and a `momentum` (kg m²/s), under a `torque` (N m, constant in the world), for
     /// a `duration` in s, which may be negative.
+    ///
+    /// An error where these are not finite, or where a body whose moments all differ tumbles more than some
+    /// 2,000 times.
     pub fn new(
         moments: DVec3,
         rotation: DQuat,
         momentum: DVec3,
         torque: DVec3,
         duration: f64,
-    ) -> Flight {
+    ) -> Result<Flight, FlightError> {
         let mut flight = Flight {
             moments,
             rotation,
@@ -94,18 +118,22 @@ impl Flight {
             duration,
             kind: Kind::Steady(DVec3::ZERO),
         };
-        flight.kind = flight.kind();
-        flight
+        let is_finite = rotation.is_finite() && momentum.is_finite() && torque.is_finite();
+        if !(is_finite && duration.is_finite() && flight.momentum_at(duration).is_finite()) {
+            return Err(FlightError::NotFinite);
+        }
+        flight.kind = flight.kind()?;
+        Ok(flight)
     }
 
-    fn kind(&self) -> Kind {
+    fn kind(&self) -> Result<Kind, FlightError> {
         let inside = self.rotation.inverse() * self.momentum;
         let spin = inside / self.moments;
         if self.torque == DVec3::ZERO {
             let DVec3 { x, y, z } = self.moments;
             // Where the momentum is along the spin, the latter stays where it is.
             if inside.cross(spin) == DVec3::ZERO || x == y && y == z {
-                return Kind::Steady(self.rotation * spin);
+                return Ok(Kind::Steady(self.rotation * spin));
             }
             for (axis, alone, pair) in [
                 (DVec3::Z, z, [x, y]),
@@ -115,23 +143,36 @@ impl Flight {
                 if pair[0] == pair[1] {
                     // ω = L/I₁ + (1 - I₃/I₁) ω₃ e₃: the first stays in the world, the second in the body.
                     let own = (1.0 - alone / pair[0]) * spin.dot(axis);
-                    return Kind::Symmetric(self.momentum / pair[0], own * axis);
+                    return Ok(Kind::Symmetric(self.momentum / pair[0], own * axis));
                 }
             }
         }
         let pull = self.torque.length() / self.moments.min_element();
-        let whole = reach(spin.length(), pull, self.duration.abs());
+        if !spin.is_finite() {
+            return Err(FlightError::NotFinite);
+        }
+        let whole = rate(spin.length(), pull) * self.duration.abs();
         if whole <= FARTHEST {
-            return Kind::One(self.series(self.rotation, self.momentum, order(whole)));
+            return Ok(Kind::One(self.series(
+                self.rotation,
+                self.momentum,
+                order(whole),
+            )));
         }
         let mut pieces = Vec::new();
         let (mut time, mut rotation) = (0.0, self.rotation);
         while time != self.duration {
+            if pieces.len() == MOST_PIECES {
+                return Err(FlightError::TooFar {
+                    duration: self.duration,
+                });
+            }
             let momentum = self.momentum_at(time);
             let spin = (rotation.inverse() * momentum / self.moments).length();
             let left = self.duration - time;
-            let length = longest(spin, pull).min(left.abs());
-            let order = order(reach(spin, pull, length));
+            let rate = rate(spin, pull);
+            let length = (FARTHEST / rate).min(left.abs());
+            let order = order(rate * length);
             let series = self.series(rotation, momentum, order);
             pieces.push(Piece {
                 time,
@@ -148,7 +189,7 @@ impl Flight {
             rotation = pieces[pieces.len() - 1].at(end);
             time = end;
         }
-        Kind::Pieces(pieces)
+        Ok(Kind::Pieces(pieces))
     }
 
     fn series(&self, rotation: DQuat, momentum: DVec3, order: usize) -> Series {
@@ -271,12 +312,6 @@ fn lopsidedness(moments: DVec3) -> f64 {
     (DVec3::new(y - z, z - x, x - y) / moments)
         .abs()
         .max_element()
-}
-
-/// The longest piece, s: what solves `reach = FARTHEST`.
-fn longest(spin: f64, acceleration: f64) -> f64 {
-    let (rate, way) = (spin + libm::sqrt(acceleration), ROOT_3 * FARTHEST);
-    2.0 * way / (rate + libm::sqrt(rate * rate + 4.0 * acceleration * way))
 }
 
 /// The rotation with an angular velocity (rad/s) in a time, s.

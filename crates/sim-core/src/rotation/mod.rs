@@ -11,4 +11,4 @@
 mod flight;
 mod series;
 
-pub use flight::{Bounds, Flight, Pose, spin};
+pub use flight::{Bounds, Flight, FlightError, Pose, spin};

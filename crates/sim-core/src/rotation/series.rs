@@ -14,9 +14,10 @@ use glam::{DQuat, DVec3};
 /// No polynomial is of a higher order.
 pub(super) const MOST: usize = 24;
 
-/// The least order whose remainder is below rounding, of a piece in which `reach` is
-/// [`reach`]'s: the majorant is a geometric series, so that what follows order `n` is at most
-/// `reach^(n+1) / (1 - reach)`.
+/// The least order whose remainder is a ten-thousandth of rounding, of a piece that goes a part
+/// `reach` of the way to where its series may diverge: what follows order `n` is at most
+/// `reach^(n+1) / (1 - reach)`. It is left out to one side in every step, so that more of it would add
+/// up.
 pub(super) fn order(reach: f64) -> usize {
     let mut rest = reach / (1.0 - reach);
     let mut order = 0;
@@ -27,18 +28,21 @@ pub(super) fn order(reach: f64) -> usize {
     order
 }
 
-/// Pieces are so long that this is reached: order [`MOST`] is enough there.
+/// Pieces go as far as this: order [`MOST`] is enough there.
 pub(super) const FARTHEST: f64 = 0.16;
 
-/// How far a piece of length `h` goes on the way to where its series may diverge.
+/// Which part of the way to where its series may diverge a rotation goes in a second, with an angular
+/// speed (rad/s) at the start and a bound `a` on what a torque does to it, rad/s².
 ///
-/// Of a real body `|I_j - I_k| <= I_i`, so `|IΩ × Ω|` over the moments is at most `|Ω|²/√3`, and with
-/// `a` a bound on `|I⁻¹g|` the speed is majorised by `y' = y²/√3 + a`, that is by
-/// `y0/(1 - y0 t/√3)` with `y0 = |Ω0| + a h`; `|δ|` by the root of the same. A turning torque grows with
-/// them: `√a` is a rate as `|Ω|` is.
-pub(super) fn reach(spin: f64, acceleration: f64, h: f64) -> f64 {
-    let rate = spin + acceleration * h + libm::sqrt(acceleration);
-    rate * h / ROOT_3
+/// Of a real body `|I_j - I_k| <= I_i`, so that without torque `y' = y²/√3` majorises the speed, which has
+/// its pole at `√3/|Ω|`. With one, `y' = y²/√3 + a z, z' = z y` does, where `z` majorises the torque in the
+/// frame of the body. Over the rate `|Ω| + √a` all terms of that are at most those of
+/// `y' = y²/√3 + z, z' = z y, y(0) = z(0) = 1`, which has its pole at 1.02126.
+pub(super) fn rate(spin: f64, a: f64) -> f64 {
+    match a > 0.0 {
+        true => (spin + libm::sqrt(a)) / 1.0212,
+        false => spin / ROOT_3,
+    }
 }
 
 pub(super) const ROOT_3: f64 = 1.732_050_807_568_877_2;

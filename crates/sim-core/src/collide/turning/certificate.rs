@@ -135,6 +135,34 @@ impl View {
         );
         let bend = self.first.second * far_a + self.second.second * far_b;
         let third = self.first.third * far_a + self.second.third * far_b;
+        let heights = |n: DVec3, points: &[DVec3; 3]| points.map(|p| n.dot(p));
+        // How long a unit vector keeps them apart, and whether they part along it; 0 as soon as that is
+        // known to be no longer than what there is.
+        let lasts_along = |n: DVec3, than: f64, is_last: bool| {
+            let (low, high) = (heights(n, &first), heights(n, &second));
+            let (speeds_a, speeds_b) = (heights(n, &va), heights(n, &vb));
+            let (bends_a, bends_b) = (heights(n, &ca), heights(n, &cb));
+            let q = n.dot(self.acceleration) - bend - 64.0 * UNIT * margin.bend;
+            let (mut lasts, mut opens) = (f64::INFINITY, true);
+            for (i, j) in PAIRS {
+                let s = high[j] - low[i] - radius - 32.0 * UNIT * margin.size;
+                if s <= 0.0 {
+                    return (0.0, false);
+                }
+                let w = speeds_b[j] - speeds_a[i] - 32.0 * UNIT * margin.speed;
+                let c = bends_b[j] - bends_a[i] - 64.0 * UNIT * margin.bend;
+                opens &= w >= 0.0;
+                let mut until = root(s, w, q.max(c - third * self.left / 3.0));
+                if is_last && until < self.left.min(lasts) {
+                    until = longer(until, s, w, [c, third], self.left);
+                }
+                lasts = lasts.min(until);
+                if lasts <= than {
+                    return (0.0, false);
+                }
+            }
+            (lasts, opens)
+        };
         let mut along = |direction: DVec3| -> f64 {
             // Also where squares of lengths would be no numbers.
             let scaled = direction / direction.abs().max_element();
@@ -142,51 +170,29 @@ impl View {
             if !n.is_finite() {
                 return 0.0;
             }
-            let heights = |points: &[DVec3; 3]| points.map(|p| n.dot(p));
-            let (low, high) = (heights(&first), heights(&second));
-            let extremes = |h: [f64; 3]| (h[0].min(h[1]).min(h[2]), h[0].max(h[1]).max(h[2]));
-            let ((least_a, most_a), (least_b, most_b)) = (extremes(low), extremes(high));
-            let sign = match (least_b > most_a, only.is_none() && least_a > most_b) {
-                (true, _) => 1.0,
-                (_, true) => -1.0,
-                _ => return 0.0,
-            };
-            let pull = sign * n.dot(self.acceleration);
-            let (speeds_a, speeds_b) = (heights(&va), heights(&vb));
-            let (bends_a, bends_b) = (heights(&ca), heights(&cb));
-            let mut lasts = f64::INFINITY;
-            let mut opens = true;
-            for i in 0..3 {
-                for j in 0..3 {
-                    let s = sign * (high[j] - low[i]) - radius - 32.0 * UNIT * margin.size;
-                    if s <= 0.0 {
-                        return 0.0;
-                    }
-                    let w = sign * (speeds_b[j] - speeds_a[i]) - 32.0 * UNIT * margin.speed;
-                    opens &= w >= 0.0;
-                    let q = pull - bend - 64.0 * UNIT * margin.bend;
-                    let mut until = root(s, w, q);
-                    if until < self.left && until < lasts {
-                        let c = sign * (bends_b[j] - bends_a[i]) - 64.0 * UNIT * margin.bend;
-                        until = longer(until, s, w, [c, third], self.left);
-                    }
-                    lasts = lasts.min(until);
-                }
-            }
+            // From the first to the second, as far as both are on sides of their own.
+            let is_turned = only.is_none() && n.dot(second[0] - first[0]) < 0.0;
+            let n = if is_turned { -n } else { n };
+            let (lasts, opens) = lasts_along(n, gap.lasts, false);
             if lasts > gap.lasts {
-                gap.lasts = lasts;
-                gap.opens = opens;
-                gap.normal = sign * n;
+                (gap.lasts, gap.opens, gap.normal) = (lasts, opens, n);
             }
-            lasts
+            gap.lasts
+        };
+        let refined = |mut gap: Gap| {
+            if gap.lasts > 0.0 && gap.lasts < self.left {
+                let (lasts, _) = lasts_along(gap.normal, 0.0, true);
+                gap.lasts = gap.lasts.max(lasts);
+            }
+            gap
         };
         if let Some(normal) = only {
             along(normal);
             gap.normal = normal;
-            return gap;
+            return refined(gap);
         }
         if along(pair.points[1] - pair.points[0]) >= ENOUGH * self.left {
-            return gap;
+            return refined(gap);
         }
         // Near each other only features' own directions have enough digits.
         let sides = |points: &[DVec3; 3]| [0, 1, 2].map(|k| points[(k + 1) % 3] - points[k]);
@@ -211,13 +217,36 @@ impl View {
                 }
             }
         }
+        // And where a corner is nearest to an edge, or to a corner with an edge across, the direction
+        // between them, which must be exact across the edge only.
+        let straight = pair.points[1] - pair.points[0];
+        for side in sides_a.into_iter().chain(sides_b) {
+            let length = side.length_squared();
+            if length > 0.0 {
+                let across = straight - straight.dot(side) / length * side;
+                along(across - across.dot(side) / length * side);
+            }
+        }
         if gap.normal == DVec3::ZERO {
             let straight = (pair.points[1] - pair.points[0]).try_normalize();
             gap.normal = straight.unwrap_or(DVec3::ZERO);
         }
-        gap
+        refined(gap)
     }
 }
+
+/// Corners of both, those next to each other in no order apart, as most directions fail early.
+const PAIRS: [(usize, usize); 9] = [
+    (0, 0),
+    (1, 1),
+    (2, 2),
+    (0, 1),
+    (1, 2),
+    (2, 0),
+    (0, 2),
+    (1, 0),
+    (2, 1),
+];
 
 /// A certificate for this part of what is left is not made longer. It changes cost only.
 const ENOUGH: f64 = 0.125;

@@ -78,8 +78,23 @@ fn on_triangle(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> DVec3 {
     }
     let whole = of_a + of_b + of_c;
     let inside = a + of_b / whole * ab + of_c / whole * ac;
+    // Where a triangle is thin its plane has few digits, and a step to what is left has the others.
+    let onward = step([ab, ac], p - inside);
+    let inside = inside + onward[0] * ab + onward[1] * ac;
     // Of a triangle without area nothing is inside.
     if inside.is_finite() { inside } else { a }
+}
+
+/// The sum of multiples of two vectors that comes nearest to a third one; no numbers where the two are
+/// along each other.
+fn step([u, v]: [DVec3; 2], to: DVec3) -> [f64; 2] {
+    let (uu, vv, uv) = (u.dot(u), v.dot(v), u.dot(v));
+    let (along_u, along_v) = (u.dot(to), v.dot(to));
+    let depth = uu * vv - uv * uv;
+    [
+        (vv * along_u - uv * along_v) / depth,
+        (uu * along_v - uv * along_u) / depth,
+    ]
 }
 
 /// The nearest points of two segments.
@@ -98,6 +113,12 @@ fn segments([p, p1]: [DVec3; 2], [q, q1]: [DVec3; 2]) -> Pair {
         (s, t) = ((-ur / uu).clamp(0.0, 1.0), 0.0);
     } else if t > 1.0 {
         (s, t) = (((uv - ur) / uu).clamp(0.0, 1.0), 1.0);
+    } else if 0.0 < s && s < 1.0 {
+        // As for thin triangles.
+        let [onward, back] = step([u, v], (q + t * v) - (p + s * u));
+        if onward.is_finite() && back.is_finite() {
+            (s, t) = ((s + onward).clamp(0.0, 1.0), (t - back).clamp(0.0, 1.0));
+        }
     }
     Pair::of(p + s * u, q + t * v)
 }
