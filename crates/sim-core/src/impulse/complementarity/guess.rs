@@ -29,7 +29,9 @@ impl Matrix {
                 true => given[*k] < -ROUNDING * scale && !is_held(*k),
                 false => missing[*k] > ROUNDING * scale,
             };
-            let wrong = (0..count).filter(is_wrong).fold(0, |wrong, k| wrong | 1 << k);
+            let wrong = (0..count)
+                .filter(is_wrong)
+                .fold(0, |wrong, k| wrong | 1 << k);
             if wrong == 0 {
                 let is_unsolved = |k: usize| pushes[k] && missing[k].abs() > UNSOLVED * scale;
                 if (0..count).any(is_unsolved) {
