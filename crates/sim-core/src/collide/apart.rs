@@ -18,7 +18,7 @@
 //! ([`Reach::has_planes`]).
 
 use super::pairs::{Lanes, Meshes, Reach, dot0, splat};
-use crate::bvh::{Triangles, WIDTH};
+use crate::bvh::{Boxes, Triangles, WIDTH};
 
 /// Columns of four triangles.
 type Four = [f32; WIDTH];
@@ -65,6 +65,17 @@ impl Planes {
             }
         }
         planes
+    }
+
+    /// Along each normal, a motion.
+    #[inline(always)]
+    fn along(&self, motion: &[f32; 3]) -> Four {
+        let [x, y, z] = &self.normal;
+        let mut along = [0.0; WIDTH];
+        for i in 0..WIDTH {
+            along[i] = x[i] * motion[0] + y[i] * motion[1] + z[i] * motion[2];
+        }
+        along
     }
 }
 
@@ -124,6 +135,74 @@ pub(super) fn glance<L: Lanes>(
         first_above: firsts.above,
         second_above: seconds.above,
     }
+}
+
+/// How the second mesh moves, as f32 sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    /// Where it starts, and by how much it moves.
+    pub(super) offset: [f32; 3],
+    pub(super) motion: [f32; 3],
+    /// More than twice that, and than margins of comparisons of boxes, along each axis.
+    pub(super) wide: [f32; 3],
+    /// What f32 misses placed corners by, and placing moves sides by, at most ([`Reach`]).
+    pub(super) miss: f32,
+    pub(super) shift: f32,
+}
+
+/// A bit for each pair of triangles of two leaves of which one stays on one side of the other's plane all
+/// the way, for certain. Their boxes are known to meet on the way.
+///
+/// What the motion adds to a height is another determinant, of which `16 e` leaves half for the sum of the
+/// two and for the rounding of the motion.
+#[inline(always)]
+pub(super) fn stay_apart<L: Lanes>(
+    (boxes, first): (&Boxes, &Triangles),
+    (others, second): (&Boxes, &Triangles),
+    way: &Way,
+) -> u32 {
+    let [x, y, z] = wide(&boxes.half, &others.half, 0.0);
+    let wide = [x + way.wide[0], y + way.wide[1], z + way.wide[2]];
+    let offset = splat(way.offset);
+    let (u, v) = (&first.corners, &second.corners);
+    let a = [rows(u, 0), rows(u, 3), rows(u, 6)];
+    let b = [
+        placed(v, 0, &offset),
+        placed(v, 3, &offset),
+        placed(v, 6, &offset),
+    ];
+
+    let planes = Planes::of(first, 0.0, way.miss, &wide);
+    let [x, y, z] = &planes.normal;
+    let normal = [L::rows(x), L::rows(y), L::rows(z)];
+    let (added, error) = (planes.along(&way.motion), L::rows(&planes.error));
+    let seconds = stay(&normal, (L::rows(&added), error), &a[0], &b);
+
+    let planes = Planes::of(second, way.shift, way.miss, &wide);
+    let [x, y, z] = &planes.normal;
+    let normal = [L::columns(x), L::columns(y), L::columns(z)];
+    let added = planes.along(&way.motion);
+    let added = L::splat(0.0).sub(L::columns(&added));
+    let firsts = stay(&normal, (added, L::columns(&planes.error)), &b[0], &a);
+    firsts | seconds
+}
+
+/// A bit for each lane in which three points stay on one side of a plane, for certain, as something is
+/// added to their heights.
+#[inline(always)]
+fn stay<L: Lanes>(
+    normal: &[L; 3],
+    (added, error): (L, L),
+    corner: &[L; 3],
+    points: &[[L; 3]; 3],
+) -> u32 {
+    let p = height(normal, corner, &points[0]);
+    let q = height(normal, corner, &points[1]);
+    let r = height(normal, corner, &points[2]);
+    let none = L::splat(0.0);
+    let lowest = p.min(q).min(r).add(added.min(none));
+    let highest = p.max(q).max(r).add(added.max(none));
+    lowest.above(error) | none.sub(error).above(highest)
 }
 
 /// Bounds what lies between two points of two boxes that meet, along each axis, whichever two of

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use crate::bvh::{Boxes, Bvh, WIDTH};
+use crate::bvh::{Boxes, Bvh, Triangles, WIDTH};
 use crate::collide::{
     Level,
+    apart::{Way, stay_apart},
     pairs::{InLanes, Lanes, Reach, TILE},
 };
 
@@ -43,6 +44,24 @@ impl Moving {
             }
             None => self.meet_in_f64(first, second, horizon),
         }
+    }
+
+    /// A bit for each pair of triangles of two leaves that a plane of one of them is seen to keep apart until
+    /// the horizon. Their boxes meet before.
+    pub(super) fn parted(
+        &self,
+        first: (&Boxes, &Triangles),
+        second: (&Boxes, &Triangles),
+        horizon: f64,
+    ) -> u32 {
+        let Some(way) = self.swift.as_ref().and_then(|swift| swift.way.as_ref()) else {
+            return 0;
+        };
+        let way = Way {
+            motion: (horizon * self.motion).as_vec3().to_array(),
+            ..*way
+        };
+        self.level.run(StayApart { first, second, way })
     }
 
     /// For meshes so large that f32 is of no use. It need not be fast.
@@ -100,6 +119,8 @@ struct Swift {
     inverse: [f32; 3],
     /// More than all roundings of distances, and than the motion that does not count.
     margin: [f32; 3],
+    /// All of it, where planes can be looked at as well.
+    way: Option<Way>,
 }
 
 impl Swift {
@@ -116,7 +137,18 @@ impl Swift {
             .to_array()
             .map(|m| m.abs() > f64::from(margin).max(1e-30));
         let of = |axis: usize| (counts[axis], motion[axis]);
+        let moved = Reach::new(first, second, &(offset + motion).into())?;
+        let has_planes = reach.has_planes() && moved.has_planes();
+        let way = has_planes.then(|| Way {
+            offset: reach.offset(),
+            motion: motion.as_vec3().to_array(),
+            // Boxes that meet on the way are no farther apart before.
+            wide: [0, 1, 2].map(|axis| 2.0 * margin + (motion[axis].abs() * 2.01) as f32),
+            miss: reach.miss(),
+            shift: reach.shift(),
+        });
         Some(Swift {
+            way,
             offset: reach.offset(),
             inverse: [0, 1, 2].map(|axis| match of(axis) {
                 (true, m) => (1.0 / m) as f32,
@@ -179,6 +211,22 @@ impl InLanes for Meet<'_> {
         let latest = leave.min(L::splat(self.horizon));
         let latest = latest.mul_add(L::splat(UP), least);
         meet & enter.at_most(latest) & 0xffff
+    }
+}
+
+/// [`stay_apart`] in lanes.
+struct StayApart<'a> {
+    first: (&'a Boxes, &'a Triangles),
+    second: (&'a Boxes, &'a Triangles),
+    way: Way,
+}
+
+impl InLanes for StayApart<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        stay_apart::<L>(self.first, self.second, &self.way)
     }
 }
 

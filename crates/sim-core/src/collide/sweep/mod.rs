@@ -31,6 +31,9 @@ pub(super) enum Kind {
     Any,
 }
 
+/// Pairs of triangles that are faster asked one by one than looked at in lanes first.
+const FEW: u32 = 2;
+
 pub(super) struct Search<'a> {
     first: &'a Bvh,
     second: &'a Bvh,
@@ -116,6 +119,11 @@ impl<'a> Search<'a> {
             _ => Among::Pairs,
         };
         let is_leaves = a & b & LEAF != 0;
+        if is_leaves && pairs.count_ones() > FEW {
+            let of_first = (&node.boxes, self.first.triangles(node));
+            let of_second = (&other.boxes, self.second.triangles(other));
+            pairs &= !self.boxes.parted(of_first, of_second, self.horizon);
+        }
         let (list, count) = in_order(pairs, &enter, among);
         for &(soonest, lane) in &list[..count] {
             // Quotients lose no more than that below the normal numbers.
