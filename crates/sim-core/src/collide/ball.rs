@@ -178,7 +178,7 @@ impl Ball {
         for _ in 0..MOST_STEPS {
             let centre = self.centre + time * self.motion;
             let point = nearest(centre, corners);
-            let apart = centre - point;
+            let apart = square(centre - point, (centre, point), corners);
             let distance = apart.length();
             let gap = distance - self.radius;
             // Over a face its normal, which a small distance does not spoil, and no rounding beside it
@@ -262,6 +262,22 @@ pub(crate) fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     nearer(nearer(x, y), z)
 }
 
+/// The way `apart` to `p` from the point of a triangle that is nearest to it, at a right angle to the edge
+/// that this point is on, if it is on one: the point is rounded along the edge, and a small way is turned by
+/// that, so that a ball that moves along the edge would seem to part from it.
+fn square(apart: DVec3, (p, point): (DVec3, DVec3), [a, b, c]: [DVec3; 3]) -> DVec3 {
+    let edges = [(a, b), (a, c), (b, c)];
+    let is_between =
+        |&(a, b): &(DVec3, DVec3)| point != a && point != b && nearest_on_edge(p, a, b) == point;
+    match edges.into_iter().find(is_between) {
+        Some((a, b)) => {
+            let along = b - a;
+            apart - (apart.dot(along) / along.length_squared()) * along
+        }
+        None => apart,
+    }
+}
+
 /// A direction as a unit vector, exact along an axis.
 fn unit(way: DVec3) -> Option<DVec3> {
     let unit = way / way.length();
@@ -336,6 +352,30 @@ mod tests {
             let at = from + touch.time * motion - radius * normal;
             assert!((touch.point - at).length() < 1e-13, "{touch:?}");
         }
+    }
+
+    /// Beside an edge, a tenth of a nanometre over a face, on a way that leads along the edge.
+    #[test]
+    fn what_moves_along_an_edge_touches_the_face_beside_it() {
+        let corner = |x: f32, y: f32, z: f32| crate::Vec3::new(x, y, z);
+        let corners = vec![
+            corner(-0.43301263, 0.49999997, -0.75000006),
+            corner(0.433013, -0.50000006, -0.7499998),
+            corner(-0.4330126, -0.50000006, -0.75),
+        ];
+        let face = Bvh::build(&crate::Mesh::new(corners, vec![[0, 1, 2]]).unwrap());
+        let from = v(
+            -0.4330126240876674,
+            0.14997237507681924,
+            -0.7500000387347324,
+        );
+        let to = v(
+            -0.4330126240688852,
+            0.14997158591157433,
+            -0.7500000387671764,
+        );
+        let touch = ball_touch(&face, from, 0.0, to - from).unwrap();
+        assert!((touch.time - 0.2044).abs() < 1e-3, "{touch:?}");
     }
 
     #[test]
