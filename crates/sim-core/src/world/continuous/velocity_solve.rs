@@ -47,18 +47,15 @@ impl ContactSolver<'_> {
             hover.max(4.0 * rounding).max(SLIGHTEST * hop[k])
         };
         let still: Vec<f64> = (0..count).map(still).collect();
-        // In a heap, what forces close again by the end of the step does not part. That takes energy and gives
-        // none, as standing still is among what is allowed.
+        // In a heap, what forces press does not part. That takes energy and gives none, as standing still is
+        // among what is allowed.
         let is_held =
             |k: usize| is_bundled && constraint(k).target >= 0.0 && constraint(k).load_speed > 0.0;
-        let mut held: Vec<bool> = (0..count).map(is_held).collect();
+        let held: Vec<bool> = (0..count).map(is_held).collect();
         let before = velocity.clone();
-        let driven = velocity.iter().zip(&free).map(|(&v, &a)| v + left * a);
-        let driven: Vec<DVec3> = driven.collect();
-        let limits = (&driven[..], &still[..], rounding);
         let (mut given, target) =
             self.view()
-                .stop_closing(island, places, &mut velocity, &mut held, limits);
+                .stop_closing(island, places, &mut velocity, (&held, &still, rounding));
         let mut spent = None;
         if self.scene.bodies.is_rough() {
             let bundled = is_bundled.then_some(left);
@@ -162,8 +159,7 @@ impl View<'_> {
         island: &Island,
         places: &Places,
         velocity: &mut [DVec3],
-        held: &mut [bool],
-        (driven, still, rounding): (&[DVec3], &[f64], f64),
+        (held, still, rounding): (&[bool], &[f64], f64),
     ) -> (Vec<f64>, Vec<f64>) {
         let (joined, inverse_mass) = (&places.joined, &places.inverse_mass);
         let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
@@ -183,12 +179,6 @@ impl View<'_> {
                     enough,
                 };
                 given = project_with(joined, inverse_mass, velocity, &closing, known);
-                let leaving = leaving(places, driven, (held, still), (&target, &given), enough);
-                if !leaving.is_empty() {
-                    velocity.copy_from_slice(&before);
-                    leaving.into_iter().for_each(|k| held[k] = false);
-                    continue;
-                }
             } else {
                 given.fill(0.0);
             }
@@ -262,32 +252,4 @@ impl View<'_> {
         };
         Some((body, Cause::Squeezed((first.min(other), first.max(other)))))
     }
-}
-
-/// The contacts that are held and that part for the rest of the step where none is held, with the velocities to
-/// which forces drive bodies in it. Between surfaces that turn by little from one to the next, what is held would
-/// stop all that slides along them.
-fn leaving(
-    places: &Places,
-    driven: &[DVec3],
-    (held, still): (&[bool], &[f64]),
-    (target, given): (&[f64], &[f64]),
-    enough: f64,
-) -> Vec<usize> {
-    let joined = &places.joined;
-    let pulls = |&k: &usize| held[k] && given[k] * places.yielding(k) < -still[k];
-    let mut leaving: Vec<usize> = (0..given.len()).filter(pulls).collect();
-    if leaving.is_empty() {
-        return leaving;
-    }
-    let mut velocity = driven.to_vec();
-    let missing = |k: usize| target[k] - joined[k].opening(driven);
-    let missing: Vec<f64> = (0..given.len()).map(missing).collect();
-    let known = Known {
-        enough,
-        ..Known::default()
-    };
-    project_with(joined, &places.inverse_mass, &mut velocity, &missing, known);
-    leaving.retain(|&k| joined[k].opening(&velocity) > still[k]);
-    leaving
 }
