@@ -117,29 +117,3 @@ fn balls_circle_in_bowls_as_on_a_pendulum() {
     let lost = [48, 96].map(|sides| circled(sides, 0.0).0);
     assert!(lost[0] < 0.2 && lost[1] < 0.7 * lost[0], "{lost:?}");
 }
-
-/// Through the lowest point, where all triangles of the first ring come together.
-#[test]
-fn balls_swing_in_bowls_as_on_a_pendulum() {
-    let angle: f64 = 0.1;
-    let period = TAU * (LENGTH / GRAVITY).sqrt() * (1.0 + angle * angle / 16.0);
-    for sides in [96, 192] {
-        let mut world = in_bowl(sides, angle, 0.0, 0.0);
-        let (mut last, mut crossings) = ((0.0, world.position(1).x), Vec::new());
-        let (lost, rise) = run(&mut world, 1.5 * period, |time, place| {
-            if last.1 * place.x < 0.0 {
-                crossings.push(last.0 + (time - last.0) * last.1 / (last.1 - place.x));
-            }
-            last = (time, place.x);
-        });
-        let [first, second, ..] = crossings[..] else {
-            panic!("{sides}: {crossings:?}");
-        };
-        let late = 2.0 * (second - first) / period - 1.0;
-        println!("{sides} sides: {lost:.2e} lost, {late:.2e} late");
-        assert!(
-            lost < 0.05 && late.abs() < 0.05 && rise < 1e-9,
-            "{sides}: {lost} {late}"
-        );
-    }
-}
