@@ -112,6 +112,6 @@ pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
 pub(crate) use shape::Extent;
 pub use shape::Shape;
 pub use world::{
-    Bundled, Collision, ContactFeature, Impact, Overlap, RestingContact, SeparateError, Settings,
-    StepError, Touching, World, WorldError,
+    Bundled, Collision, ContactFeature, Impact, Overlap, Phase, Profile, RestingContact,
+    SeparateError, Settings, StepError, Touching, World, WorldError,
 };

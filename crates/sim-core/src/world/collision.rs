@@ -22,6 +22,8 @@ pub struct Impact {
     pub bodies: (usize, usize),
     /// Point of contact in the world, m.
     pub point: DVec3,
+    /// Where the bodies were then, m; in the discrete modes too, though they go back from there.
+    pub positions: (DVec3, DVec3),
     /// Unit normal, from the first body to the second.
     pub normal: DVec3,
     /// Impulse on the second body along the normal, and on the first against it, N s.
@@ -171,11 +173,16 @@ impl World {
         self.continuous
             .progress
             .note_impulse(impulse, speeds.0, masses);
+        let part = ((time - self.time()) / self.settings.dt).clamp(0.0, 1.0);
         let impact = Impact {
             step: self.steps + 1,
             time,
             bodies,
             point: contact.point,
+            positions: (
+                self.position_in_step(bodies.0, part),
+                self.position_in_step(bodies.1, part),
+            ),
             normal: contact.normal,
             impulse,
             speeds,
@@ -185,6 +192,15 @@ impl World {
             report.push(impact.clone());
         }
         self.last_impact = Some(impact);
+    }
+
+    /// Where a body that has an impact is at a part of the step, while that is resolved.
+    fn position_in_step(&self, body: usize, part: f64) -> DVec3 {
+        // Within the step the trajectory of what impacts move starts at the impact.
+        if self.settings.collision == Collision::Continuous && self.is_movable(body) {
+            return self.continuous.start.position[body];
+        }
+        self.previous.position[body].lerp(self.current.position[body], part)
     }
 
     pub(super) fn pair_restitution(&self, i: usize, j: usize) -> f64 {

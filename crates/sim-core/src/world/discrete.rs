@@ -19,6 +19,7 @@ use glam::DVec3;
 use super::{
     World,
     order::{self, Key},
+    profile::Phase,
 };
 use crate::{
     collide::{Broad, Contact},
@@ -91,10 +92,12 @@ impl World {
         // What this mode does to bodies in contact it does where a step ends.
         self.contacts.clear();
         self.continuous.placed = true;
+        self.enter(Phase::Narrow);
         self.find_meeting_pairs();
         if !self.discrete.meeting.is_empty() {
             self.bounce_all();
         }
+        self.enter(Phase::Respond);
         self.part_overlapping();
     }
 
@@ -111,7 +114,9 @@ impl World {
                 }
             }
         } else {
+            self.enter(Phase::Broad);
             self.find_near_pairs();
+            self.enter(Phase::Narrow);
             let near = self.discrete.near.iter().copied();
             meeting.extend(near.filter(|&(i, j)| self.collides(i, j)));
         }
@@ -155,7 +160,9 @@ impl World {
             while let Some(meeting) = next(&mut meetings, until, &is_back) {
                 group.push(meeting);
             }
+            self.enter(Phase::Respond);
             self.exchange_at_once(&group);
+            self.enter(Phase::Narrow);
             for body in group
                 .drain(..)
                 .flat_map(|meeting| [meeting.bodies.0, meeting.bodies.1])

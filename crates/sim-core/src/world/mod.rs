@@ -13,6 +13,7 @@ mod order;
 mod overlap;
 mod penetration;
 mod plan;
+mod profile;
 mod separate;
 mod state;
 mod stepping;
@@ -40,6 +41,8 @@ use marks::Marks;
 use overlap::Placed;
 pub use penetration::Overlap;
 use plan::Plan;
+use profile::Timer;
+pub use profile::{Phase, Profile};
 pub use separate::SeparateError;
 use state::State;
 
@@ -106,6 +109,8 @@ pub struct World {
     last_impact: Option<Impact>,
     /// Where impacts are listed, while someone asks.
     report: Option<Vec<Impact>>,
+    /// Reads a clock between phases, while someone asks.
+    timer: Option<Timer>,
     /// Who is in touch, and along which normals.
     contacts: ContactSet,
     continuous: Continuous,
@@ -225,6 +230,7 @@ impl World {
             bundled: Bundled::default(),
             last_impact: None,
             report: None,
+            timer: None,
             contacts: ContactSet::default(),
             continuous: Continuous::default(),
             discrete: Discrete::default(),

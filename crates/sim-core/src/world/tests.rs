@@ -1,9 +1,9 @@
 use alloc::{format, string::ToString, sync::Arc, vec::Vec};
 use glam::DVec3;
 
-use super::{Collision, Settings, StepError, World, WorldError};
+use super::{Collision, Phase, Profile, Settings, StepError, World, WorldError};
 use crate::{
-    Body, METHODS, Mesh,
+    Body, METHODS, Mesh, Shape,
     test_meshes::{cube, sphere},
 };
 
@@ -231,6 +231,75 @@ fn a_placed_body_is_looked_at_afresh() {
     world.set_position(0, v(-5.0, 0.0, 0.0)).unwrap();
     assert!(world.overlapping().is_empty());
     assert_eq!(world.interpolated(0, 0.5), v(-5.0, 0.0, 0.0));
+}
+
+#[test]
+fn an_impact_says_where_its_bodies_were() {
+    let ball = |x: f64, speed: f64, mass: f64| Body {
+        mass,
+        position: v(x, 0.1, 0.0),
+        velocity: v(speed, 0.0, 0.0),
+        shape: Some(Shape::Sphere { radius: 0.5 }),
+        ..Body::default()
+    };
+    for collision in [Collision::Continuous, Collision::Bvh, Collision::Naive] {
+        // Also off a wall that moves and that nothing moves.
+        for mass in [1.0, f64::INFINITY] {
+            let mut world = world([ball(0.0, 20.0, 1.0), ball(1.2, -10.0, mass)]);
+            let settings = Settings {
+                collision,
+                ..*world.settings()
+            };
+            world.set_settings(settings).unwrap();
+            let mut impacts = Vec::new();
+            world.step_reporting(&mut impacts).unwrap();
+            let [impact] = &impacts[..] else {
+                panic!("{collision:?}: {impacts:?}");
+            };
+            let (first, second) = impact.positions;
+            let apart = first.distance(second);
+            assert!((apart - 1.0).abs() < 1e-9, "{collision:?}: {apart}");
+            assert!((first.x - 20.0 * impact.time).abs() < 1e-9);
+            assert!((impact.point.x - first.x - 0.5).abs() < 1e-9);
+        }
+    }
+}
+
+/// A clock that goes on by one each time it is read.
+fn ticks() -> u64 {
+    use core::sync::atomic::{AtomicU64, Ordering};
+    static TICKS: AtomicU64 = AtomicU64::new(0);
+    TICKS.fetch_add(1, Ordering::Relaxed)
+}
+
+#[test]
+fn a_profile_tells_the_phases_and_changes_no_bit() {
+    let cubes = [Arc::new(cube()), Arc::new(cube())];
+    for collision in [Collision::Continuous, Collision::Bvh] {
+        let bodies = cubes.iter().zip([1.0, -1.0]);
+        let mut plain = world(bodies.map(|(mesh, side)| {
+            let velocity = v(-6.0 * side, 0.0, 0.0);
+            body(mesh, 1.0, v(0.6 * side, 0.0, 0.0), velocity)
+        }));
+        let settings = Settings {
+            collision,
+            ..*plain.settings()
+        };
+        plain.set_settings(settings).unwrap();
+        let mut profiled = plain.clone();
+        let (mut impacts, mut profile) = (Vec::new(), Profile::default());
+        for _ in 0..4 {
+            plain.step().unwrap();
+            profiled
+                .step_profiled(&mut impacts, ticks, &mut profile)
+                .unwrap();
+        }
+        assert_eq!(plain.state_hash(), profiled.state_hash());
+        assert_eq!(impacts.len(), 1);
+        for phase in [Phase::Integrate, Phase::Narrow, Phase::Respond] {
+            assert!(profile.spent(phase) > 0, "{collision:?}: {phase:?}");
+        }
+    }
 }
 
 #[test]

@@ -47,7 +47,9 @@ use alloc::{
 use core::{cmp::Ordering, mem};
 use glam::DVec3;
 
-use super::{Bundled, StepError, World, order::ordinal, state::State, stepping::Cause};
+use super::{
+    Bundled, StepError, World, order::ordinal, profile::Phase, state::State, stepping::Cause,
+};
 use crate::{
     Extent, Shape,
     collide::{Broad, Contact, Front, Swept},
@@ -62,7 +64,7 @@ use trajectory::Probe;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Continuous {
     /// Motion of each body where its trajectory starts, and when that is, s from the step's start.
-    start: State,
+    pub(super) start: State,
     since: Vec<f64>,
     /// Until when each trajectory is known, s from the step's start ([`horizon`]); empty where all are to the
     /// step's end.
@@ -236,11 +238,17 @@ impl World {
 
     /// Goes through the phases once.
     fn collide_once(&mut self) -> Result<(), (usize, Cause)> {
+        self.enter(Phase::Integrate);
         self.begin_trajectories();
+        self.enter(Phase::Respond);
         self.keep_contacts()?;
         self.find_all_impacts()?;
+        self.enter(Phase::Respond);
         self.resolve_all()?;
-        self.separate_meeting()
+        self.enter(Phase::Narrow);
+        let outcome = self.separate_meeting();
+        self.enter(Phase::Respond);
+        outcome
     }
 
     /// Solves the islands of contacts that the last step has left.
@@ -274,7 +282,9 @@ impl World {
 
     /// Finds the first impact of every pair that may have one.
     fn find_all_impacts(&mut self) -> Result<(), (usize, Cause)> {
+        self.enter(Phase::Broad);
         self.find_candidate_pairs();
+        self.enter(Phase::Narrow);
         self.queue_horizons(0..self.len());
         self.find_impacts_of_candidates()
     }
@@ -422,6 +432,7 @@ impl World {
         if self.shape(body).is_none() {
             return Ok(());
         }
+        let phase = self.enter(Phase::Narrow);
         let mut partners = mem::take(&mut self.continuous.partners);
         partners.clear();
         let broad = &self.continuous.broad;
@@ -443,6 +454,7 @@ impl World {
             }
         }
         self.continuous.partners = partners;
+        self.enter(phase);
         Ok(())
     }
 
