@@ -163,7 +163,7 @@ impl Scene {
     fn of_mesh(path: &Path) -> Result<Scene, SceneError> {
         let mesh = MeshRef::load(path).map_err(|error| SceneError::Mesh(Box::new(error)))?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let mut scene = Scene::parse("", path)?;
+        let mut scene = Scene::parse("rate = 60", path)?;
         scene.title = name.clone().into_owned();
         let shape = SceneShape::Mesh(mesh);
         scene.bodies.push(SceneBody::new(name.into_owned(), shape));
