@@ -193,6 +193,47 @@ mod tests {
     }
 
     #[test]
+    fn a_rare_colour_stays_the_same_among_many() {
+        let violet = [148, 13, 217];
+        let mut film = Film::new(4);
+        for step in 0..12 {
+            let mut image = RgbaImage::from_fn(160, 120, |x, y| {
+                let shade = (x + y + 3 * step) % 256;
+                Rgba([shade as u8, (255 - shade) as u8, (x * 255 / 160) as u8, 255])
+            });
+            for (x, y) in (0..4).flat_map(|x| (0..4).map(move |y| (x, y))) {
+                image.put_pixel(
+                    20 + 5 * step + x,
+                    40 + y,
+                    Rgba([violet[0], violet[1], violet[2], 255]),
+                );
+            }
+            film.push(image);
+        }
+        let bytes = film.bytes(Form::Gif).expect("a file");
+        let mut options = ::gif::DecodeOptions::new();
+        options.set_color_output(::gif::ColorOutput::RGBA);
+        let mut decoder = options.read_info(&bytes[..]).expect("a GIF");
+        let mut step = 0;
+        while let Some(frame) = decoder.read_next_frame().expect("a frame") {
+            let (x, y) = (
+                21 + 5 * step - u32::from(frame.left),
+                41 - u32::from(frame.top),
+            );
+            let at = 4 * (y * u32::from(frame.width) + x) as usize;
+            for (found, wanted) in frame.buffer[at..].iter().zip(violet) {
+                assert!(
+                    found.abs_diff(wanted) <= 16,
+                    "frame {step}: {:?}",
+                    &frame.buffer[at..at + 4]
+                );
+            }
+            step += 1;
+        }
+        assert_eq!(step, 12);
+    }
+
+    #[test]
     fn an_animated_png_has_all_frames_and_begins_with_the_first() {
         let bytes = film().bytes(Form::Png).expect("a file");
         let decoder = ::png::Decoder::new(std::io::Cursor::new(&bytes[..]));

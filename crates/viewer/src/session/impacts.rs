@@ -54,7 +54,7 @@ impl Session {
             let fresh = (1.0 - age).clamp(0.0, 1.0).powi(2) as f32;
             // Of the latest instant alone, or that of a crowd would be a tangle.
             if impact.time >= latest && age < 1.0 {
-                self.add_touching(impact, panes, marks);
+                self.add_touching(impact, 1.0 - age as f32, panes, marks);
             }
             // Among stronger ones a weak one is small, or those of a crowd would hide it.
             let strength = impact.impulse / strongest;

@@ -82,6 +82,7 @@ impl Session {
     pub(super) fn add_touching(
         &self,
         impact: &Impact,
+        opacity: f32,
         panes: &mut Vec<Pane>,
         marks: &mut Vec<Line>,
     ) {
@@ -100,7 +101,7 @@ impl Session {
                 marks.push(Line {
                     from,
                     to,
-                    colour: [red, green, blue, 1.0],
+                    colour: [red, green, blue, opacity],
                     width,
                 });
             };
@@ -118,7 +119,7 @@ impl Session {
                     }
                     panes.push(Pane {
                         corners: corners.map(|at| at + OUT * size * outward).to_vec(),
-                        colour: [red, green, blue, 0.5],
+                        colour: [red, green, blue, 0.5 * opacity],
                     });
                 }
             }

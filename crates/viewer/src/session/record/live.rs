@@ -101,6 +101,7 @@ impl Session {
                 let why = error.text(&self.scene);
                 let text = format!("The replay cannot go on after step {step}: {why}");
                 self.notices.error("replay", text);
+                self.pause();
                 break;
             }
             replay.made += 1;
