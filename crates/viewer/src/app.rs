@@ -5,17 +5,19 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use egui::ViewportId;
-use scene::{Scene, shown};
+use scene::shown;
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
+use crate::canvas::UiFrame;
 use crate::failure::Failure;
-use crate::gpu::{Gpu, UiFrame};
+use crate::film;
+use crate::gpu::Gpu;
 use crate::session::{
-    Done, Job, Leaving, Outlook, STEP_BUDGET, Session, State, Trial, Tried, VariantJob,
+    Done, Job, Leaving, Outlook, STEP_BUDGET, Session, Shooting, State, Trial, Tried, VariantJob,
     VariantsDone,
 };
 use crate::stopwatch::Stopwatch;
@@ -27,9 +29,8 @@ const SHORTEST_FRAME: Duration = Duration::from_millis(4);
 /// While the window takes no pictures, or a single step takes long, frames come at this pace.
 const UNSEEN_FRAME: Duration = Duration::from_millis(100);
 
-/// Opens the window on a scene and stays until it is closed.
-pub fn run(scene: Scene) -> Result<(), Failure> {
-    let session = Session::new(scene).map_err(Failure::refused)?;
+/// Opens the window on a session and stays until it is closed.
+pub fn run(session: Session) -> Result<(), Failure> {
     let event_loop = event_loop()?;
     let mut app = App {
         session,
@@ -37,6 +38,7 @@ pub fn run(scene: Scene) -> Result<(), Failure> {
         worker: None,
         measurer: None,
         runner: None,
+        filmer: None,
         scout: None,
         stopwatch: Stopwatch::start(),
         proxy: event_loop.create_proxy(),
@@ -51,6 +53,9 @@ pub fn run(scene: Scene) -> Result<(), Failure> {
     app.failure.map_or(Ok(()), Err)
 }
 
+/// Bytes of a file of pictures, if it was not cancelled.
+type Shot = Result<Option<Vec<u8>>, String>;
+
 /// The control panel wants a frame after this time.
 #[derive(Debug)]
 struct Redraw(Duration);
@@ -64,6 +69,8 @@ struct App {
     measurer: Option<Worker<Trial, Tried>>,
     /// Runs the variants; none while there are none.
     runner: Option<Worker<VariantJob, VariantsDone>>,
+    /// Draws pictures into files; none while there are none to draw.
+    filmer: Option<Worker<Shooting, Shot>>,
     /// Looks ahead for the opening view; none while that is settled.
     scout: Option<Worker<Outlook, Outlook>>,
     stopwatch: Stopwatch,
@@ -234,6 +241,29 @@ impl App {
         }
     }
 
+    /// Lets pictures be drawn into files, never waiting for them.
+    fn film(&mut self) {
+        if let Some(shooting) = self.session.shooting_due() {
+            let run = |shooting: Shooting, _: &Stopwatch| film::shoot(&shooting);
+            self.filmer = Worker::start("pictures", run).ok();
+            match &mut self.filmer {
+                Some(filmer) => filmer.hand_over(shooting),
+                None => self.session.accept_shooting(Ok(None)),
+            }
+        }
+        let Some(filmer) = &mut self.filmer else {
+            return;
+        };
+        if let Some(outcome) = filmer.result(Duration::ZERO) {
+            self.session.accept_shooting(outcome);
+            self.filmer = None;
+        } else if filmer.is_gone() {
+            self.filmer = None;
+            let text = "The drawing of pictures broke down. This is a fault of the program: please report it.";
+            self.session.accept_shooting(Err(text.to_owned()));
+        }
+    }
+
     /// Lets physics go on, lays out the control panel and paints both.
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
         let now = self.stopwatch.read();
@@ -242,6 +272,7 @@ impl App {
         self.measure(elapsed);
         self.run_variants();
         self.look_ahead();
+        self.film();
         self.session.notices().pass(elapsed);
         self.session.settle(elapsed);
         if self.session.is_closing() {
@@ -292,6 +323,7 @@ impl App {
             || self.session.awaits_steps()
             || measuring
             || self.scout.is_some()
+            || self.session.reel().is_some()
             || self.session.is_settling()
             || self.session.notices().is_passing()
         {

@@ -8,9 +8,11 @@
 
 pub mod app;
 pub mod camera;
+pub mod canvas;
 pub mod cli;
 pub mod expression;
 pub mod failure;
+pub mod film;
 pub mod gpu;
 pub mod headless;
 pub mod interrupt;

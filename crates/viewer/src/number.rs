@@ -78,6 +78,17 @@ pub fn count(value: f64) -> String {
     text
 }
 
+/// Bytes, of two digits or more, in a unit that suits their number.
+pub fn bytes(count: usize) -> String {
+    let size = count as f64;
+    match size {
+        ..1e3 => format!("{count} B"),
+        ..1e6 => format!("{:.0} kB", size / 1e3),
+        ..1e9 => format!("{:.1} MB", size / 1e6),
+        _ => format!("{:.1} GB", size / 1e9),
+    }
+}
+
 /// An energy, J; not every one is finite, as where a body is at a centre of attraction.
 pub fn energy(value: f64) -> String {
     if value.is_finite() {

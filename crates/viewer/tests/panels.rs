@@ -8,6 +8,7 @@ use egui::{Key, Modifiers, TextureId, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use scene::Scene;
+use sim_core::{Collision, Method};
 use viewer::session::{Session, State};
 use viewer::ui::Ui;
 
@@ -219,4 +220,118 @@ fn names_cannot_reorder_or_act() {
         }
     }
     assert!(seen >= 4, "{seen}");
+}
+
+#[test]
+fn what_went_wrong_is_set_right_by_a_button() {
+    let mut window = opened("bullet");
+    window.run();
+    window.state_mut().1.set_collision(Collision::Bvh);
+    click(&mut window, "▶ Start");
+    go_on(&mut window, 0.5);
+    click(&mut window, "⏸ Pause");
+    click(&mut window, "Reset, and look within the step");
+    let session = &window.state().1;
+    assert_eq!(session.world().settings().collision, Collision::Continuous);
+    assert_eq!(session.state(), State::Layout);
+
+    let mut window = opened("stiff-spring");
+    window.run();
+    let explicit = Method::named("forward-euler").expect("it is in the table");
+    window.state_mut().1.set_method(explicit);
+    click(&mut window, "▶ Start");
+    go_on(&mut window, 10.0);
+    assert_eq!(window.state().1.state(), State::Paused, "it has blown up");
+    let before = window.state().1.world().settings().dt;
+    click(&mut window, "Reset, and step at 1,000 Hz");
+    let after = window.state().1.world().settings().dt;
+    assert!(after < before && (after - 1e-3).abs() < 1e-15, "{after}");
+}
+
+#[test]
+fn keys_go_from_impact_to_impact_and_draw_the_picture() {
+    let mut window = opened("cube-cow");
+    window.run();
+    click(&mut window, "▶ Start");
+    go_on(&mut window, 1.5);
+    click(&mut window, "⏸ Pause");
+    for key in [Key::U, Key::I] {
+        window
+            .state_mut()
+            .1
+            .go_to(if key == Key::U { usize::MAX } else { 0 });
+        window.key_press(key);
+        window.run();
+        let session = &window.state().1;
+        let impact = session.playback().impact_times().next().expect("one");
+        assert!((session.shown_time() - impact).abs() < 1e-9, "{key:?}");
+    }
+    assert!(window.query_by_label_contains("within a step").is_some());
+    window.key_press(Key::F12);
+    window.run();
+    let session = &mut window.state_mut().1;
+    let still = session.shooting_due().expect("a picture is wanted");
+    assert_eq!(still.pictures.len(), 1);
+    assert!(
+        still.size[0] > 300 && still.size[1] > 100,
+        "{:?}",
+        still.size
+    );
+    session.accept_shooting(Ok(None));
+}
+
+#[test]
+fn a_film_is_made_of_what_is_kept_and_can_be_given_up() {
+    let mut window = opened("cube-cow");
+    window.run();
+    click(&mut window, "GIF");
+    assert!(
+        window.state_mut().1.shooting_due().is_none(),
+        "nothing has run"
+    );
+    window.state_mut().1.notices().clear();
+    click(&mut window, "▶ Start");
+    go_on(&mut window, 1.0);
+    click(&mut window, "GIF");
+    let (_, session) = window.state_mut();
+    let time = session.shown_time();
+    let film = session.shooting_due().expect("a film is wanted");
+    assert!(
+        (24..=26).contains(&film.pictures.len()),
+        "{}",
+        film.pictures.len()
+    );
+    assert_eq!(film.size[0], 720);
+    assert!(
+        (session.shown_time() - time).abs() < 1e-9,
+        "it is looked at as before"
+    );
+    click(&mut window, "✖");
+    assert!(film.reel.is_cancelled());
+    window.state_mut().1.accept_shooting(Ok(None));
+    window.run();
+    assert!(window.query_by_label("Save run").is_some());
+}
+
+#[test]
+fn the_cost_of_phases_is_measured_while_it_is_plotted() {
+    let mut window = opened("cube-cow");
+    window.run();
+    click(&mut window, "▶ Start");
+    go_on(&mut window, 0.1);
+    let phases = |window: &Harness<'_, (Ui, Session)>| {
+        let samples = window.state().1.playback().samples();
+        samples.filter(|sample| sample.phases.is_some()).count()
+    };
+    assert_eq!(phases(&window), 0, "nobody looks");
+    click(&mut window, "Step cost");
+    go_on(&mut window, 0.5);
+    assert!(phases(&window) >= 29);
+    for part in ["integrate", "broad", "narrow", "response", "step"] {
+        assert!(window.query_by_label(part).is_some(), "{part}");
+    }
+    click(&mut window, "Step cost");
+    let known = phases(&window);
+    go_on(&mut window, 0.1);
+    assert_eq!(phases(&window), known);
 }

@@ -5,16 +5,23 @@ use std::path::{Path, PathBuf};
 use scene::{MeshRef, Scene, SceneBody, SceneShape, shown};
 
 use super::Session;
+use super::record::is_run_file;
 
 impl Session {
     /// Opens a scene of the gallery, by name, or of a file, by path. On failure the present one
     /// stays.
     pub fn open(&mut self, name_or_path: impl AsRef<Path>) {
         let name_or_path = name_or_path.as_ref();
-        let opened = Scene::load(name_or_path).map_err(anyhow::Error::new);
-        match opened.and_then(Session::new) {
+        let opened = match is_run_file(name_or_path) {
+            true => self.open_run(name_or_path),
+            false => Scene::load(name_or_path)
+                .map_err(anyhow::Error::new)
+                .and_then(Session::new),
+        };
+        match opened {
             Ok(session) => {
                 let (mut display, edition) = (self.display, self.edition + 1);
+                let profiled = self.profiled;
                 let opening = self.opening.next();
                 let mut compare = std::mem::take(&mut self.compare);
                 compare.forget();
@@ -22,12 +29,13 @@ impl Session {
                 display.trails = session.display.trails;
                 *self = session;
                 self.display = display;
+                self.profiled = profiled;
                 self.compare = compare;
                 self.edition = edition;
                 self.variants.edition = variants;
                 self.opening = opening;
                 let path = PathBuf::from(name_or_path);
-                self.file = path.extension().is_some().then_some(path);
+                self.file = is_scene_file(&path).then_some(path);
             }
             Err(error) => self.notices.error("open", error.to_string()),
         }
@@ -96,8 +104,12 @@ impl Session {
     /// and this ending, which is told.
     pub fn export(&mut self, ending: &str, bytes: &[u8]) {
         let path = self.new_file(ending);
-        let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
-        match scene::file::write(&path, bytes) {
+        self.export_to(&path, bytes);
+    }
+
+    pub(super) fn export_to(&mut self, path: &Path, bytes: &[u8]) {
+        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        match scene::file::write(path, bytes) {
             Ok(()) => {
                 let text = format!("Wrote {}.", shown::path(&whole));
                 self.notices.info("export", text);

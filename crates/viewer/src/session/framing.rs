@@ -3,7 +3,7 @@
 use scene::{SceneBody, SceneShape};
 use sim_core::{Aabb, DVec3, Shape};
 
-use super::{Session, State};
+use super::Session;
 
 /// Largest way that the opening view makes room for, in radii of the body: a bullet would be a
 /// dot in it. Half-spaces farther away are not looked at either.
@@ -20,14 +20,6 @@ pub(super) struct Bounds {
 }
 
 impl Session {
-    /// Where body `i` is drawn, m: between the last two states while running.
-    pub(super) fn shown_position(&self, i: usize) -> DVec3 {
-        match self.state {
-            State::Running => self.world.interpolated(i, self.clock.fraction()),
-            State::Layout | State::Paused => self.world.position(i),
-        }
-    }
-
     /// Centre and radius, m, of a ball around the selected body, or around all bodies.
     pub(super) fn extent(&self) -> Option<(DVec3, f64)> {
         let (min, max) = match self.selection {

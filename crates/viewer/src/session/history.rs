@@ -223,7 +223,7 @@ impl Session {
 
     /// Opens a scene or adds a mesh, by the name's ending; asks before edits are lost.
     pub fn take_in(&mut self, path: &Path) {
-        if super::files::is_scene_file(path) {
+        if super::files::is_scene_file(path) || super::record::is_run_file(path) {
             self.leave(Leaving::Open(path.to_path_buf()));
         } else {
             self.import(path);

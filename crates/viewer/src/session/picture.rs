@@ -44,6 +44,8 @@ pub struct Display {
     pub impacts: bool,
     /// The level of the descent through two hierarchies that is shown, if one is.
     pub descent: Option<usize>,
+    /// Bodies between the last two states while running, rather than at the last one.
+    pub between: bool,
 }
 
 impl Default for Display {
@@ -62,6 +64,7 @@ impl Default for Display {
             ties: true,
             impacts: true,
             descent: None,
+            between: true,
         }
     }
 }
@@ -119,7 +122,8 @@ impl Session {
         self.add_descent(lines);
         self.add_walls(&mut picture);
         if self.display.impacts {
-            self.add_impacts(&mut picture.marks);
+            let Picture { panes, marks, .. } = &mut picture;
+            self.add_impacts(panes, marks);
         }
         self.add_overlaps(&mut picture.marks);
         picture
@@ -184,7 +188,7 @@ impl Session {
 
     /// From the surface of the body's box, so that a slow body's arrow is not hidden inside it.
     fn velocity_arrow(&self, i: usize) -> Option<Arrow> {
-        let velocity = self.world.velocity(i);
+        let velocity = self.shown_velocity(i);
         let direction = velocity.try_normalize()?;
         let Bounds { centre, half } = self.bounds(i);
         let place = match self.world.shape(i) {

@@ -104,8 +104,7 @@ fn status(ui: &mut egui::Ui, session: &Session) {
     };
     ui.label(RichText::new(text).strong().color(colour))
         .on_hover_text(meaning);
-    let world = session.world();
-    ui.label(RichText::new(format!("{:.3} s", world.time())).monospace())
+    ui.label(RichText::new(format!("{:.3} s", session.shown_time())).monospace())
         .on_hover_text("Simulated time");
 }
 

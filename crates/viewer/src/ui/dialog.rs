@@ -46,11 +46,11 @@ impl Dialog {
                 let endings: Vec<&str> = scene::FORMATS
                     .iter()
                     .flat_map(|format| format.extensions.iter().copied())
-                    .chain(["toml"])
+                    .chain(["toml", "run"])
                     .collect();
                 let dialog = dialog
                     .set_title("Open a scene or add a mesh")
-                    .add_filter("Scenes and meshes", &endings);
+                    .add_filter("Scenes, runs and meshes", &endings);
                 Self::wait(ctx, purpose, dialog.pick_file())
             }
             Purpose::Save => {

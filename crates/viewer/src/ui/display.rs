@@ -60,9 +60,14 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         ui.checkbox(&mut session.display.ties, "Springs and centres")
             .on_hover_text("Springs as zigzags, anchors and centres of attraction as crosses");
     });
+    ui.checkbox(&mut session.display.between, "Between states")
+        .on_hover_text(
+            "Bodies on their way from state to state, through the places of their impacts at the times of \
+             these. Otherwise they jump from state to state, as they are stepped",
+        );
     ui.checkbox(&mut session.display.impacts, "Impacts")
         .on_hover_text(
-            "Points of contact with their normals, and the impulses as arrows, compared with the \
+            "What of each body touches, in violet; points of contact with their normals, and the impulses as arrows, compared with the \
              strongest in sight. They fade within half a second of simulated time",
         );
     boxes(ui, session);

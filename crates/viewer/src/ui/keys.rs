@@ -14,7 +14,7 @@ struct Shortcut {
     act: fn(&mut Ui, &mut Session, Key),
 }
 
-static SHORTCUTS: [Shortcut; 19] = [
+static SHORTCUTS: [Shortcut; 21] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
@@ -38,6 +38,12 @@ static SHORTCUTS: [Shortcut; 19] = [
         label: "PgDn",
         meaning: "five steps",
         act: |_, session, _| super::time::five_steps(session),
+    },
+    Shortcut {
+        keys: &[Key::U, Key::I],
+        label: "U I",
+        meaning: "impacts",
+        act: |_, session, key| session.go_to_impact(key == Key::I),
     },
     Shortcut {
         keys: &[Key::R],
@@ -98,6 +104,12 @@ static SHORTCUTS: [Shortcut; 19] = [
         label: "T",
         meaning: "trails",
         act: |_, session, _| session.show_trails(!session.display.trails),
+    },
+    Shortcut {
+        keys: &[Key::F12],
+        label: "F12",
+        meaning: "picture",
+        act: |ui, session, _| session.shoot_still(ui.pixels),
     },
     Shortcut {
         keys: &[Key::Delete],

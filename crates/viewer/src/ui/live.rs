@@ -2,11 +2,11 @@
 
 use egui::RichText;
 use scene::shown;
-use sim_core::Overlap;
+use sim_core::{Impact, Overlap, Shape};
 
 use super::{field, style};
 use crate::number;
-use crate::session::Session;
+use crate::session::{Session, State};
 
 /// Pairs in overlap that are named; more would cover the picture.
 const OVERLAPS: usize = 4;
@@ -26,8 +26,8 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     field::figure(
         ui,
         "Time",
-        "Simulated time",
-        format!("{:.3} s", world.time()),
+        "Simulated time of the picture. Within a step the other figures are those of its end",
+        time(session),
     );
     field::figure(
         ui,
@@ -116,6 +116,14 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     );
 }
 
+/// The time of the picture, with digits that tell instants within a step apart.
+fn time(session: &Session) -> String {
+    match session.is_between() && session.state() == State::Paused {
+        true => format!("{:.6} s, within a step", session.shown_time()),
+        false => format!("{:.3} s", session.shown_time()),
+    }
+}
+
 fn impacts(ui: &mut egui::Ui, session: &Session) {
     let world = session.world();
     field::figure(
@@ -139,6 +147,14 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
             "The last collision: when and between which bodies",
             format!("{:.3} s  {} and {}", impact.time, name(a), name(b)),
         );
+        let (first, second) = (part_name(session, impact, 0), part_name(session, impact, 1));
+        field::figure(
+            ui,
+            "  touching",
+            "What of each body touched in the last collision: a corner, an edge or a face of its \
+             mesh. It is violet in the picture",
+            format!("{first} and {second}"),
+        );
         let (approaching, parting) = impact.speeds;
         field::figure(
             ui,
@@ -152,6 +168,19 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
                 number::figure(parting)
             ),
         );
+    }
+}
+
+/// What of a body touches in an impact.
+fn part_name(session: &Session, impact: &Impact, which: usize) -> &'static str {
+    let (i, j) = impact.bodies;
+    let body = [i, j][which];
+    match (session.touching(impact)[which], session.world().shape(body)) {
+        (Some(part), _) => part.name(),
+        (None, Some(Shape::Sphere { .. })) => "ball",
+        (None, Some(Shape::HalfSpace { .. })) => "plane",
+        (None, Some(Shape::Mesh(_))) => "surface",
+        (None, None) => "point",
     }
 }
 

@@ -40,6 +40,8 @@ pub struct Ui {
     plots: plots::Plots,
     variants: variants::Choice,
     files: scene::Files,
+    /// Size of the picture, pixels.
+    pixels: [u32; 2],
 }
 
 impl Ui {
@@ -54,7 +56,7 @@ impl Ui {
         keys::handle(root.ctx(), self, session);
         bar::show(root, self, session);
         keys::show_line(root);
-        time::show(root, session);
+        time::show(root, self, session);
         if !self.panel_hidden {
             self.side_panel(root, session);
         }
@@ -63,6 +65,8 @@ impl Ui {
             session.notices().error("number", text);
         }
         let rect = viewport::show(root, session, picture);
+        let pixels = root.ctx().pixels_per_point() * rect.size();
+        self.pixels = [pixels.x, pixels.y].map(|side| side.round().max(1.0) as u32);
         banner::show(root.ctx(), rect, session);
         question::show(root.ctx(), session);
         keys::show_help(root.ctx(), &mut self.help);

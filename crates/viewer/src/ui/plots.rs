@@ -46,6 +46,10 @@ impl Plots {
                 super::export::buttons(ui, self, session);
             });
         });
+        let chosen = CHARTS.iter().zip(self.shown);
+        session.profiled = chosen
+            .into_iter()
+            .any(|(chart, shown)| shown && chart.title == "Step cost");
         self.draw(ui, session);
     }
 
@@ -195,7 +199,7 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
         Some((value, size)) if !logarithmic => plot.include_y(value - size).include_y(value + size),
         _ => plot,
     };
-    let now = session.world().time();
+    let now = session.shown_time();
     let shown = plot.show(ui, |plot| {
         for curve in &curves {
             let points = PlotPoints::from(curve.points.clone());

@@ -73,7 +73,11 @@ fn gallery(ui: &mut egui::Ui, session: &mut Session) {
 
 fn paths(ui: &mut egui::Ui, files: &mut Files, session: &mut Session) {
     ui.horizontal(|ui| {
-        field::label(ui, "File", "A scene (.toml) or a mesh");
+        field::label(
+            ui,
+            "File",
+            "A scene (.toml), a recorded run (.run) or a mesh",
+        );
         let edit = TextEdit::singleline(&mut files.path)
             .hint_text("path of a scene or mesh")
             .desired_width(ui.available_width() - 8.0);
