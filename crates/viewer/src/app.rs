@@ -14,6 +14,7 @@ use winit::window::{Window, WindowId};
 
 use crate::failure::Failure;
 use crate::gpu::{Gpu, UiFrame};
+use crate::preferences::{Preferences, Store};
 use crate::session::{
     Done, Job, Leaving, Outlook, STEP_BUDGET, Session, State, Trial, Tried, VariantJob,
     VariantsDone,
@@ -29,9 +30,18 @@ const UNSEEN_FRAME: Duration = Duration::from_millis(100);
 
 /// Opens the window on a scene and stays until it is closed.
 pub fn run(scene: Scene) -> Result<(), Failure> {
-    let session = Session::new(scene).map_err(Failure::refused)?;
+    let mut session = Session::new(scene).map_err(Failure::refused)?;
     let event_loop = event_loop()?;
+    let mut store = Store::of_the_system();
+    let preferences = store.load().unwrap_or_else(|error| {
+        session.notices().error("preferences", format!("{error:#}"));
+        None
+    });
+    let preferences =
+        preferences.unwrap_or_else(|| Preferences::first(sys_locale::get_locale().as_deref()));
     let mut app = App {
+        store,
+        preferences: Some(preferences),
         session,
         ui: Ui::default(),
         worker: None,
@@ -56,6 +66,10 @@ pub fn run(scene: Scene) -> Result<(), Failure> {
 struct Redraw(Duration);
 
 struct App {
+    /// Where preferences are kept.
+    store: Store,
+    /// Those of the last time, until the window opens.
+    preferences: Option<Preferences>,
     session: Session,
     ui: Ui,
     /// Takes the steps; none while none is under way.
@@ -254,10 +268,19 @@ impl App {
         let shown = size.width > 0 && size.height > 0 && {
             let input = open.egui.take_egui_input(&open.window);
             let context = open.egui.egui_ctx().clone();
+            if let Some(wanted) = self.preferences.take() {
+                self.ui.prefer(&context, &mut self.session, &wanted);
+            }
             let mut place = egui::Rect::ZERO;
             let output = context.run_ui(input, |root| {
                 place = self.ui.show(root, &mut self.session, open.gpu.picture_id());
             });
+            let preferred = self.ui.preferences(&context, &self.session);
+            if let Err(error) = self.store.keep(&preferred) {
+                self.session
+                    .notices()
+                    .error("preferences", format!("{error:#}"));
+            }
             open.egui
                 .handle_platform_output(&open.window, output.platform_output);
             let pixels = place.size() * output.pixels_per_point;

@@ -9,6 +9,7 @@
 //! Nothing here draws, opens windows or reads a clock: see `picture` for what is drawn, and
 //! [`Session::due`] for how time comes in and steps are taken.
 
+mod axes;
 mod ball;
 mod charts;
 mod compare;
@@ -33,6 +34,7 @@ mod sample;
 #[cfg(test)]
 mod tests;
 mod ties;
+mod tour;
 mod trails;
 mod variants;
 mod view;
@@ -43,6 +45,7 @@ use std::time::Duration;
 use scene::{Scene, SceneBody};
 use sim_core::{Collision, FixedStep, Method, Settings, World};
 
+pub use axes::AxisMarks;
 use ball::Balls;
 pub use charts::{CHARTS, Chart, Curve, on_dark};
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
@@ -60,6 +63,7 @@ use overlaps::Overlaps;
 pub use picture::{BvhView, Display};
 pub use playback::Playback;
 pub use sample::{COLUMNS, Column, Sample, csv_head, csv_line};
+pub use tour::{Attempt, BEYOND, LABS, Lab, Stop, stop, stop_count};
 use trails::Trails;
 pub use variants::{
     Halt, MOST_VARIANTS, PRESETS, Preset, Runner, Snapshot, Variant, VariantJob, Variants,
@@ -119,6 +123,8 @@ pub struct Session {
     speed: f64,
     /// Masses of bodies made immovable, kg, by name: what they get back.
     masses: std::collections::BTreeMap<String, f64>,
+    /// Names of the bodies that are left out of the picture.
+    hidden: std::collections::BTreeSet<String>,
     selection: Option<usize>,
     /// Steps are being taken on a copy of the world.
     under_way: bool,
@@ -161,6 +167,7 @@ impl Session {
             view: view::View::default(),
             speed: 1.0,
             masses: std::collections::BTreeMap::new(),
+            hidden: std::collections::BTreeSet::new(),
             selection: None,
             under_way: false,
             steps_wanted: 0,

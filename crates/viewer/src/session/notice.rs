@@ -12,6 +12,8 @@ pub struct Notice {
     pub error: bool,
     /// The message.
     pub text: String,
+    /// Whether it stays until it is dismissed.
+    stays: bool,
     /// What would set it right, if one change does.
     pub remedy: Option<Remedy>,
     /// Real time since it came.
@@ -42,10 +44,19 @@ impl Notices {
         self.push(Notice {
             about,
             error: false,
+            stays: false,
             text: shown::message(&text),
             remedy: None,
             age: Duration::ZERO,
         });
+    }
+
+    /// Tells of a success that takes time to read: until it is dismissed.
+    pub fn keep(&mut self, about: &'static str, text: String) {
+        self.info(about, text);
+        if let Some(notice) = self.0.last_mut() {
+            notice.stays = true;
+        }
     }
 
     /// Tells of something refused or failed.
@@ -53,6 +64,7 @@ impl Notices {
         self.push(Notice {
             about,
             error: true,
+            stays: true,
             text: shown::message(&text),
             remedy: None,
             age: Duration::ZERO,
@@ -87,12 +99,12 @@ impl Notices {
         for notice in &mut self.0 {
             notice.age += elapsed;
         }
-        self.0.retain(|notice| notice.error || notice.age < STAY);
+        self.0.retain(|notice| notice.stays || notice.age < STAY);
     }
 
     /// Whether one will go by itself.
     pub fn is_passing(&self) -> bool {
-        self.0.iter().any(|notice| !notice.error)
+        self.0.iter().any(|notice| !notice.stays)
     }
 
     fn push(&mut self, notice: Notice) {

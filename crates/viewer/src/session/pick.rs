@@ -12,6 +12,7 @@ impl Session {
     pub fn pick(&mut self, origin: DVec3, direction: DVec3) {
         self.world.build_bvhs();
         let hit = (0..self.world.len())
+            .filter(|&i| !self.is_hidden(i))
             .filter_map(|i| Some((self.ray(i, origin, direction)?, i)))
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let hit = hit.or_else(|| self.dot_near(origin, direction.normalize_or_zero()));

@@ -13,20 +13,25 @@ mod dock;
 mod export;
 mod field;
 mod forces;
+mod gallery;
 mod keys;
 mod live;
+mod palette;
 mod plots;
 mod question;
 mod scene;
 mod simulation;
 mod style;
 mod time;
+mod tour;
 mod variants;
 mod viewport;
 
 use egui::{CollapsingHeader, Panel, RichText, ScrollArea};
 
+use crate::preferences::Preferences;
 use crate::session::Session;
+use crate::words::{Language, say, speak};
 
 pub use style::apply as apply_style;
 
@@ -40,6 +45,11 @@ pub struct Ui {
     plots: plots::Plots,
     variants: variants::Choice,
     files: scene::Files,
+    gallery: gallery::Gallery,
+    tour: tour::Tour,
+    palette: palette::Palette,
+    language: Language,
+    light: bool,
 }
 
 impl Ui {
@@ -50,11 +60,17 @@ impl Ui {
         session: &mut Session,
         picture: egui::TextureId,
     ) -> egui::Rect {
-        self.files.poll(session);
+        speak(self.language);
+        root.ctx().set_theme(match self.light {
+            true => egui::Theme::Light,
+            false => egui::Theme::Dark,
+        });
+        self.files.poll(root.ctx(), session);
         keys::handle(root.ctx(), self, session);
         bar::show(root, self, session);
         keys::show_line(root);
         time::show(root, session);
+        tour::show(root, &mut self.tour, session);
         if !self.panel_hidden {
             self.side_panel(root, session);
         }
@@ -65,8 +81,48 @@ impl Ui {
         let rect = viewport::show(root, session, picture);
         banner::show(root.ctx(), rect, session);
         question::show(root.ctx(), session);
+        gallery::show(root.ctx(), &mut self.gallery, session);
+        palette::show(root.ctx(), self, session);
         keys::show_help(root.ctx(), &mut self.help);
         rect
+    }
+
+    /// Takes up what was preferred when the window was closed last.
+    pub fn prefer(&mut self, ctx: &egui::Context, session: &mut Session, wanted: &Preferences) {
+        self.language = wanted.language;
+        self.light = wanted.light;
+        self.panel_hidden = !wanted.panel;
+        self.live_hidden = !wanted.figures;
+        self.plots_hidden = !wanted.plots;
+        self.files.recent.clone_from(&wanted.recent);
+        session.camera.parallel = wanted.parallel;
+        let display = &mut session.display;
+        (display.grid, display.numbers) = (wanted.grid, wanted.numbers);
+        (display.names, display.wireframe) = (wanted.names, wanted.wireframe);
+        ctx.set_zoom_factor(wanted.zoom.clamp(0.5, 4.0));
+    }
+
+    /// What is preferred now.
+    pub fn preferences(&self, ctx: &egui::Context, session: &Session) -> Preferences {
+        Preferences {
+            language: self.language,
+            light: self.light,
+            zoom: ctx.zoom_factor(),
+            panel: !self.panel_hidden,
+            figures: !self.live_hidden,
+            plots: !self.plots_hidden,
+            grid: session.display.grid,
+            numbers: session.display.numbers,
+            names: session.display.names,
+            wireframe: session.display.wireframe,
+            parallel: session.camera.parallel,
+            recent: self.files.recent.clone(),
+        }
+    }
+
+    /// Speaks another language from the next frame on.
+    pub fn set_language(&mut self, language: Language) {
+        self.language = language;
     }
 
     fn side_panel(&mut self, root: &mut egui::Ui, session: &mut Session) {
@@ -93,7 +149,7 @@ impl Ui {
 }
 
 fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui)) {
-    CollapsingHeader::new(RichText::new(title).heading())
+    CollapsingHeader::new(RichText::new(say(title)).heading())
         .default_open(true)
         .show_unindented(ui, |ui| {
             ui.add_space(2.0);

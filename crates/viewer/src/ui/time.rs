@@ -5,6 +5,7 @@ use egui::{Button, Color32, Panel, Sense, Slider, Stroke};
 use super::style;
 use crate::number;
 use crate::session::{SPEEDS, Session, State};
+use crate::words::say;
 
 /// The most impacts that are marked; more would be one colour.
 const MARKS: usize = 2000;
@@ -25,15 +26,15 @@ fn buttons(ui: &mut egui::Ui, session: &mut Session) {
     let can_go_back = session.state() != State::Layout && session.playback().now() > 0;
     if ui
         .add_enabled(can_go_back, Button::new("⏴"))
-        .on_hover_text("Go one step back (left arrow or ,)")
-        .on_disabled_hover_text("No earlier state is kept")
+        .on_hover_text(say("Go one step back (left arrow or ,)"))
+        .on_disabled_hover_text(say("No earlier state is kept"))
         .clicked()
     {
         session.step_back();
     }
     if ui
         .button("⏵⏵ 5")
-        .on_hover_text("Go five steps ahead and hold there (page down)")
+        .on_hover_text(say("Go five steps ahead and hold there (page down)"))
         .clicked()
     {
         five_steps(session);
@@ -54,9 +55,9 @@ fn speed(ui: &mut egui::Ui, session: &mut Session) {
         .logarithmic(true)
         .prefix("×")
         .max_decimals(3);
-    let response = ui
-        .add(slider)
-        .on_hover_text("Simulated seconds in a real one: slow motion below 1. Double click for 1.");
+    let response = ui.add(slider).on_hover_text(say(
+        "Simulated seconds in a real one: slow motion below 1. Double click for 1.",
+    ));
     if response.double_clicked() {
         session.set_speed(1.0);
     } else if response.changed() {
@@ -77,12 +78,12 @@ fn line(ui: &mut egui::Ui, session: &mut Session) {
     painter.rect_filled(bar, 3.0, ui.visuals().extreme_bg_color);
     let now = session.world().time();
     let gone = bar.with_max_x(place(now).max(bar.left()));
-    painter.rect_filled(gone, 3.0, style::BLUE.gamma_multiply(0.5));
+    painter.rect_filled(gone, 3.0, style::BLUE.of(ui.visuals()).gamma_multiply(0.5));
     let mark = Stroke::new(1.5, Color32::from_rgb(255, 140, 50));
     for time in session.playback().impact_times().take(MARKS) {
         painter.vline(place(time), rect.shrink(3.0).y_range(), mark);
     }
-    let unseen = Stroke::new(1.5, style::RED);
+    let unseen = Stroke::new(1.5, style::RED.of(ui.visuals()));
     for time in session.playback().missed_times().take(MARKS) {
         painter.vline(place(time), rect.shrink(3.0).y_range(), unseen);
     }
@@ -102,11 +103,11 @@ fn line(ui: &mut egui::Ui, session: &mut Session) {
         session.go_to(index);
     }
     let kept = session.playback();
-    response.on_hover_text(format!(
+    response.on_hover_text(say(format!(
         "{} states kept, from {first:.3} to {last:.3} s, at most {}: the run since the start or the \
          last change. Click or drag to go there; impacts are orange, and red is where \
          bodies passed through each other between two steps.",
         number::count(kept.len() as f64),
         number::count(kept.capacity() as f64),
-    ));
+    )));
 }

@@ -6,9 +6,12 @@ use scene::shown;
 
 use super::style;
 use crate::session::Session;
+use crate::words::say;
 
 /// Turn of the camera by a drag across the whole height of the picture, radians.
 const TURN: f64 = 4.0;
+/// Names written at a time.
+const MOST_NAMES: usize = 300;
 /// Growth of the zoom by a wheel's travel of one point.
 const ZOOM: f64 = 0.003;
 
@@ -45,7 +48,8 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session, picture: TextureId)
             session.camera.zoom_at(factor, x, y, aspect);
         }
     }
-    name_selected(ui, rect, aspect, session);
+    number_axes(ui, rect, aspect, session);
+    name_bodies(ui, rect, aspect, session);
     point_out(ui, rect, aspect, session);
     offer_drop(ui, rect);
     rect
@@ -66,28 +70,78 @@ fn drag(ui: &egui::Ui, response: &egui::Response, session: &mut Session) {
     }
 }
 
-/// Writes the selected body's name above it.
-fn name_selected(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
-    let Some(body) = session.selected() else {
-        return;
-    };
-    let Some([x, y]) = session
-        .selected_top()
-        .and_then(|top| session.camera.project(top, aspect))
-    else {
-        return;
-    };
-    let at = rect.center() + 0.5 * egui::vec2(x as f32, -y as f32) * rect.size();
-    let painter = ui.painter().with_clip_rect(rect);
+/// Writes names above bodies: that of the selected one, or all that do not cover each other.
+fn name_bodies(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
+    let selected = session.selection();
+    let others =
+        (0..session.world().len()).filter(|&i| session.display.names && Some(i) != selected);
     let font = egui::TextStyle::Body.resolve(ui.style());
-    let text = painter.layout_no_wrap(shown::name(&body.name), font, style::BLUE);
-    let place = Align2::CENTER_BOTTOM.anchor_size(at - egui::vec2(0.0, 6.0), text.size());
-    painter.rect_filled(
-        place.expand2(egui::vec2(5.0, 1.0)),
-        CornerRadius::same(4),
-        Color32::from_black_alpha(150),
-    );
-    painter.galley(place.min, text, style::BLUE);
+    let painter = ui.painter().with_clip_rect(rect);
+    let mut taken: Vec<Rect> = Vec::new();
+    for body in selected.into_iter().chain(others).take(MOST_NAMES) {
+        let Some(at) = place(rect, aspect, session, session.top(body)) else {
+            continue;
+        };
+        let colour = match Some(body) == selected {
+            true => style::BLUE.over_picture(),
+            false => Color32::WHITE,
+        };
+        let name = shown::name(&session.scene().bodies[body].name);
+        let text = painter.layout_no_wrap(name, font.clone(), colour);
+        let place = Align2::CENTER_BOTTOM.anchor_size(at - egui::vec2(0.0, 6.0), text.size());
+        if !rect.intersects(place) || taken.iter().any(|other| other.intersects(place)) {
+            continue;
+        }
+        taken.push(place);
+        painter.rect_filled(
+            place.expand2(egui::vec2(5.0, 1.0)),
+            CornerRadius::same(4),
+            Color32::from_black_alpha(170),
+        );
+        painter.galley(place.min, text, colour);
+    }
+}
+
+/// Where in the window a point is seen.
+fn place(rect: Rect, aspect: f64, session: &Session, point: sim_core::DVec3) -> Option<Pos2> {
+    let [x, y] = session.camera.project(point, aspect)?;
+    Some(rect.center() + 0.5 * egui::vec2(x as f32, -y as f32) * rect.size())
+}
+
+/// Writes letters and numbers, m, on the axes.
+fn number_axes(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
+    if !session.display.grid || !session.display.numbers {
+        return;
+    }
+    let painter = ui.painter().with_clip_rect(rect);
+    let small = egui::TextStyle::Small.resolve(ui.style());
+    let letter = egui::TextStyle::Heading.resolve(ui.style());
+    let mut taken: Vec<Rect> = Vec::new();
+    let mut write = |point, text: String, font: &egui::FontId, colour: Color32| {
+        let Some(at) = place(rect, aspect, session, point) else {
+            return;
+        };
+        let text = painter.layout_no_wrap(text, font.clone(), colour);
+        let area = Align2::CENTER_TOP.anchor_size(at + egui::vec2(0.0, 3.0), text.size());
+        if taken.iter().any(|other| other.intersects(area)) {
+            return;
+        }
+        taken.push(area);
+        painter.galley(area.min, text, colour);
+    };
+    for axis in session.axis_marks() {
+        let [red, green, blue] = axis.colour.map(|part| (255.0 * part) as u8);
+        let colour = Color32::from_rgb(red, green, blue);
+        write(axis.end, axis.letter.to_owned(), &letter, colour);
+        for (point, value) in axis.marks {
+            write(
+                point,
+                crate::number::tidy(value),
+                &small,
+                Color32::from_gray(40),
+            );
+        }
+    }
 }
 
 /// Points from the border to bodies that are out of view, by their names.
@@ -135,7 +189,7 @@ fn offer_drop(ui: &egui::Ui, rect: Rect) {
     ui.painter().text(
         rect.center(),
         Align2::CENTER_CENTER,
-        "Drop a mesh to add it, or a scene (.toml) to open it",
+        say("Drop a mesh to add it, or a scene (.toml) to open it"),
         egui::TextStyle::Heading.resolve(ui.style()),
         Color32::WHITE,
     );
