@@ -21,12 +21,16 @@ use crate::session::{
 };
 use crate::stopwatch::Stopwatch;
 use crate::ui::{self, Ui};
+use crate::watch::Watch;
 use crate::worker::Worker;
 
 /// Frames follow each other no faster than this, should the display not hold them back.
 const SHORTEST_FRAME: Duration = Duration::from_millis(4);
 /// While the window takes no pictures, or a single step takes long, frames come at this pace.
 const UNSEEN_FRAME: Duration = Duration::from_millis(100);
+
+/// How long the scene's file is left alone once it was touched, so that it is written whole.
+const WRITING: Duration = Duration::from_millis(200);
 
 /// Opens the window on a scene and stays until it is closed.
 pub fn run(scene: Scene) -> Result<(), Failure> {
@@ -39,7 +43,13 @@ pub fn run(scene: Scene) -> Result<(), Failure> {
     });
     let preferences =
         preferences.unwrap_or_else(|| Preferences::first(sys_locale::get_locale().as_deref()));
+    let proxy = event_loop.create_proxy();
     let mut app = App {
+        watch: Watch::new(move || {
+            // Fails only when the window has closed.
+            let _ = proxy.send_event(Redraw(WRITING));
+        }),
+        touched: None,
         store,
         preferences: Some(preferences),
         session,
@@ -66,6 +76,10 @@ pub fn run(scene: Scene) -> Result<(), Failure> {
 struct Redraw(Duration);
 
 struct App {
+    /// Looks at the scene's file.
+    watch: Watch,
+    /// When that was touched last, if it is to be read again.
+    touched: Option<Duration>,
     /// Where preferences are kept.
     store: Store,
     /// Those of the last time, until the window opens.
@@ -248,6 +262,22 @@ impl App {
         }
     }
 
+    /// Reads the scene's file again once it has been left alone for a moment.
+    fn reread(&mut self, now: Duration) {
+        self.watch.follow(self.session.file());
+        if self.watch.take() {
+            self.touched = Some(now);
+        }
+        if let Some(touched) = self.touched {
+            if now >= touched + WRITING {
+                self.touched = None;
+                self.session.reread();
+            } else {
+                self.schedule(touched + WRITING);
+            }
+        }
+    }
+
     /// Lets physics go on, lays out the control panel and paints both.
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
         let now = self.stopwatch.read();
@@ -256,6 +286,7 @@ impl App {
         self.measure(elapsed);
         self.run_variants();
         self.look_ahead();
+        self.reread(now);
         self.session.notices().pass(elapsed);
         self.session.settle(elapsed);
         if self.session.is_closing() {

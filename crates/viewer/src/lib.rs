@@ -23,5 +23,6 @@ pub mod shot;
 pub mod soak;
 pub mod stopwatch;
 pub mod ui;
+pub mod watch;
 pub mod words;
 pub mod worker;

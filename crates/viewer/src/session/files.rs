@@ -61,6 +61,29 @@ impl Session {
         self.file = file;
     }
 
+    /// Reads the scene's file again if it has become another scene; edits that no file has are kept
+    /// instead. A file that is half written or wrong leaves everything as it is, and says what is wrong.
+    pub fn reread(&mut self) {
+        let Some(path) = self.file.clone() else {
+            return;
+        };
+        match Scene::load(&path) {
+            Ok(scene) if scene == self.scene => {}
+            Ok(_) if self.is_changed() => {
+                let text = "The file has changed. Your edits are kept: open it again to see what is in it.";
+                self.notices.error("file", text.to_owned());
+            }
+            Ok(_) => {
+                let camera = self.camera;
+                self.open(&path);
+                self.camera = camera;
+                let text = "The file has changed and was read again.";
+                self.notices.info("file", text.to_owned());
+            }
+            Err(error) => self.notices.error("file", error.to_string()),
+        }
+    }
+
     /// The file that the scene was read from or last saved to.
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref()

@@ -52,6 +52,15 @@ impl Session {
         DVec3::new(middle.x, max.y, middle.z)
     }
 
+    /// The middle of a body's box as drawn, m, where its handles are; of a half-space the point of its plane
+    /// that is nearest to all bodies.
+    pub fn middle(&self, body: usize) -> DVec3 {
+        if self.is_half_space(body) {
+            return self.foot(body, self.room().0);
+        }
+        self.shown_position(body) + self.bounds(body).centre
+    }
+
     /// A place for `body` that touches nothing: beside all others along x, at their height, or for
     /// a half-space through the origin or else just behind them all.
     pub(super) fn free_place(&self, body: &SceneBody) -> DVec3 {

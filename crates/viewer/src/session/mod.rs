@@ -30,6 +30,7 @@ mod overlaps;
 mod pick;
 mod picture;
 mod playback;
+mod pull;
 mod sample;
 #[cfg(test)]
 mod tests;
@@ -126,6 +127,8 @@ pub struct Session {
     /// Names of the bodies that are left out of the picture.
     hidden: std::collections::BTreeSet<String>,
     selection: Option<usize>,
+    /// What is pulled by a spring.
+    pull: Option<pull::Pull>,
     /// Steps are being taken on a copy of the world.
     under_way: bool,
     /// Steps asked for by hand.
@@ -169,6 +172,7 @@ impl Session {
             masses: std::collections::BTreeMap::new(),
             hidden: std::collections::BTreeSet::new(),
             selection: None,
+            pull: None,
             under_way: false,
             steps_wanted: 0,
             edition: 0,
@@ -403,6 +407,7 @@ impl Session {
     /// Takes a world freshly made from the scene.
     fn adopt(&mut self, world: World) {
         self.world = world;
+        self.pull = None;
         self.state = State::Layout;
         self.keep_up();
         self.select(self.selection);

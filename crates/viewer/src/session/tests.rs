@@ -15,6 +15,7 @@ mod missed;
 mod opening;
 mod overlaps;
 mod playback;
+mod pull;
 mod shapes;
 mod variants;
 mod view;

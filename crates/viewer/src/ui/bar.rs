@@ -21,8 +21,12 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
                     Language::English => Language::Chinese,
                     Language::Chinese => Language::English,
                 };
+                let name = match state.has_chinese {
+                    Some(true) => other.name(),
+                    _ => "Chinese",
+                };
                 if ui
-                    .button(other.name())
+                    .button(name)
                     .on_hover_text(say("The language of the window"))
                     .clicked()
                 {

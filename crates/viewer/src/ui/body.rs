@@ -5,16 +5,18 @@ use scene::{SceneShape, shown};
 use sim_core::DVec3;
 
 use super::field;
+use super::handles::Handles;
 use crate::session::{Session, State};
 use crate::words::say;
 
-pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
+pub(super) fn show(ui: &mut egui::Ui, handles: &mut Handles, session: &mut Session) {
     let (Some(i), Some(body)) = (session.selection(), session.selected()) else {
         ui.label(RichText::new(say("Click a body in the picture or in the list.")).weak());
         return;
     };
     let (shape, rotation, scale) = (body.shape.clone(), body.rotation, body.scale);
     heading(ui, session, i);
+    handles.choose(ui, session);
 
     let world = session.world();
     let (position, velocity) = (world.position(i), world.velocity(i));

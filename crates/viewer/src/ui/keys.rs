@@ -215,10 +215,14 @@ static WITH_CTRL: [WithCtrl; 10] = [
     }),
 ];
 
-static GESTURES: [(&str, &str); 6] = [
+static GESTURES: [(&str, &str); 7] = [
     ("Click", "select a body"),
     ("Drag left or right", "orbit"),
     ("Drag middle, Shift + drag", "pan"),
+    (
+        "Alt + drag a body",
+        "pull it by a spring; let go to throw it",
+    ),
     ("Wheel", "zoom to the pointer"),
     ("Drop a file", "add a mesh or open a scene"),
     ("Drag a number", "change it; click to type"),

@@ -14,6 +14,7 @@ mod export;
 mod field;
 mod forces;
 mod gallery;
+mod handles;
 mod keys;
 mod live;
 mod palette;
@@ -48,7 +49,10 @@ pub struct Ui {
     gallery: gallery::Gallery,
     tour: tour::Tour,
     palette: palette::Palette,
+    handles: handles::Handles,
     language: Language,
+    /// Whether a font has Chinese characters; not known before the first frame.
+    has_chinese: Option<bool>,
     light: bool,
 }
 
@@ -60,7 +64,7 @@ impl Ui {
         session: &mut Session,
         picture: egui::TextureId,
     ) -> egui::Rect {
-        speak(self.language);
+        self.speak(root.ctx(), session);
         root.ctx().set_theme(match self.light {
             true => egui::Theme::Light,
             false => egui::Theme::Dark,
@@ -78,7 +82,7 @@ impl Ui {
         if let Some(text) = field::take_refused(root.ctx()) {
             session.notices().error("number", text);
         }
-        let rect = viewport::show(root, session, picture);
+        let rect = viewport::show(root, &mut self.handles, session, picture);
         banner::show(root.ctx(), rect, session);
         question::show(root.ctx(), session);
         gallery::show(root.ctx(), &mut self.gallery, session);
@@ -125,6 +129,20 @@ impl Ui {
         self.language = language;
     }
 
+    /// Speaks the language chosen, or English where the system has no font for that.
+    fn speak(&mut self, ctx: &egui::Context, session: &mut Session) {
+        let has_chinese = *self.has_chinese.get_or_insert_with(|| {
+            let font = egui::FontId::proportional(13.0);
+            ctx.fonts_mut(|fonts| fonts.has_glyphs(&font, Language::Chinese.name()))
+        });
+        if self.language == Language::Chinese && !has_chinese {
+            self.language = Language::English;
+            let text = "No font of the system has Chinese characters: install one, such as fonts-noto-cjk.";
+            session.notices().error("language", text.to_owned());
+        }
+        speak(self.language);
+    }
+
     fn side_panel(&mut self, root: &mut egui::Ui, session: &mut Session) {
         Panel::right("panel")
             .default_size(328.0)
@@ -139,7 +157,9 @@ impl Ui {
                         section(ui, "Compare", |ui| {
                             variants::show(ui, &mut self.variants, session);
                         });
-                        section(ui, "Selected body", |ui| body::show(ui, session));
+                        section(ui, "Selected body", |ui| {
+                            body::show(ui, &mut self.handles, session);
+                        });
                         section(ui, "Forces", |ui| forces::show(ui, session));
                         section(ui, "Display", |ui| display::show(ui, session));
                         section(ui, "Naive against BVH", |ui| compare::show(ui, session));

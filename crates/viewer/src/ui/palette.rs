@@ -43,7 +43,7 @@ impl Command {
 }
 
 /// Everything that can be done.
-fn commands() -> Vec<Command> {
+fn commands(has_chinese: bool) -> Vec<Command> {
     let mut all: Vec<Command> = keys::commands()
         .map(|(keys, name, act)| Command {
             keys,
@@ -51,7 +51,11 @@ fn commands() -> Vec<Command> {
         })
         .collect();
     for language in Language::ALL {
-        let name = format!("Language: {}", language.name());
+        let name = match has_chinese {
+            true => language.name(),
+            false => "Chinese",
+        };
+        let name = format!("Language: {name}");
         all.push(Command::new(name, move |ui, _| ui.language = language));
     }
     for (index, preset) in PRESETS.iter().enumerate() {
@@ -85,6 +89,7 @@ pub(super) fn show(ctx: &egui::Context, state: &mut Ui, session: &mut Session) {
     if !state.palette.open {
         return;
     }
+    let has_chinese = state.has_chinese == Some(true);
     let palette = &mut state.palette;
     let mut chosen = None;
     let modal = Modal::new(Id::unique("palette")).show(ctx, |ui| {
@@ -105,7 +110,7 @@ pub(super) fn show(ctx: &egui::Context, state: &mut Ui, session: &mut Session) {
             egui::WidgetInfo::labeled(egui::Role::TextInput, true, say("Search the commands"))
         });
         edit.request_focus();
-        let found: Vec<Command> = commands()
+        let found: Vec<Command> = commands(has_chinese)
             .into_iter()
             .filter(|command| command.matches(&palette.search))
             .collect();

@@ -3,7 +3,9 @@
 use egui::{Align2, Color32, CornerRadius, PointerButton, Pos2, Rect, Sense, TextureId};
 
 use scene::shown;
+use sim_core::DVec3;
 
+use super::handles::Handles;
 use super::style;
 use crate::session::Session;
 use crate::words::say;
@@ -16,7 +18,12 @@ const MOST_NAMES: usize = 300;
 const ZOOM: f64 = 0.003;
 
 /// Shows the picture in the room that is left; returns its rectangle, in points.
-pub(super) fn show(ui: &mut egui::Ui, session: &mut Session, picture: TextureId) -> Rect {
+pub(super) fn show(
+    ui: &mut egui::Ui,
+    handles: &mut Handles,
+    session: &mut Session,
+    picture: TextureId,
+) -> Rect {
     let rect = ui.available_rect_before_wrap();
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
     let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
@@ -28,14 +35,14 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session, picture: TextureId)
     if response.clicked_by(PointerButton::Primary)
         && let Some(at) = response.interact_pointer_pos()
     {
-        let at = (at - rect.center()) / rect.size();
-        let (origin, direction) =
-            session
-                .camera
-                .ray(2.0 * f64::from(at.x), -2.0 * f64::from(at.y), aspect);
+        let (origin, direction) = ray(rect, at, aspect, session);
         session.pick(origin, direction);
     }
-    drag(ui, &response, session);
+    // Before the handles, which lie over the picture.
+    let held = pull(ui, &response, aspect, session);
+    if !held {
+        drag(ui, &response, session);
+    }
     if response.hovered() {
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let factor = (ZOOM * f64::from(scroll)).exp() * f64::from(pinch);
@@ -48,11 +55,39 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session, picture: TextureId)
             session.camera.zoom_at(factor, x, y, aspect);
         }
     }
+    handles.show(ui, rect, aspect, session);
     number_axes(ui, rect, aspect, session);
     name_bodies(ui, rect, aspect, session);
     point_out(ui, rect, aspect, session);
     offer_drop(ui, rect);
     rect
+}
+
+/// The ray through a place of the picture.
+fn ray(rect: Rect, at: Pos2, aspect: f64, session: &Session) -> (DVec3, DVec3) {
+    let at = (at - rect.center()) / rect.size();
+    let [x, y] = [2.0 * f64::from(at.x), -2.0 * f64::from(at.y)];
+    session.camera.ray(x, y, aspect)
+}
+
+/// Pulls a body where the drag began on one with Alt held. Whether a body is held.
+fn pull(ui: &egui::Ui, response: &egui::Response, aspect: f64, session: &mut Session) -> bool {
+    let place = response.interact_pointer_pos();
+    if let Some(at) = place.filter(|_| response.dragged_by(PointerButton::Primary)) {
+        let press = ui.input(|i| i.pointer.press_origin()).unwrap_or(at);
+        let alt = ui.input(|i| i.modifiers.alt);
+        if response.drag_started() && alt {
+            let (origin, direction) = ray(response.rect, press, aspect, session);
+            session.take_hold(origin, direction);
+        }
+        if session.is_pulling() {
+            let (origin, direction) = ray(response.rect, at, aspect, session);
+            session.pull(origin, direction);
+        }
+    } else {
+        session.let_go();
+    }
+    session.is_pulling()
 }
 
 fn drag(ui: &egui::Ui, response: &egui::Response, session: &mut Session) {
@@ -103,7 +138,7 @@ fn name_bodies(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
 }
 
 /// Where in the window a point is seen.
-fn place(rect: Rect, aspect: f64, session: &Session, point: sim_core::DVec3) -> Option<Pos2> {
+pub(super) fn place(rect: Rect, aspect: f64, session: &Session, point: DVec3) -> Option<Pos2> {
     let [x, y] = session.camera.project(point, aspect)?;
     Some(rect.center() + 0.5 * egui::vec2(x as f32, -y as f32) * rect.size())
 }

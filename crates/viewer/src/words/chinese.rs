@@ -14,6 +14,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("Live", "读数"),
     ("Tour", "导览"),
     ("Gallery", "场景库"),
+    ("Chinese", "中文"),
     ("The language of the window", "窗口的语言"),
     ("Dark or light panels", "深色或浅色面板"),
     ("All keys and mouse gestures (H, ? or F1)", "所有按键和鼠标操作（H、？ 或 F1）"),
@@ -236,6 +237,11 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("Handles to move the body along the axes", "沿轴移动物体的手柄"),
     ("Handles to turn the body about the axes", "绕轴转动物体的手柄"),
     ("Handles to stretch the body along its axes", "沿自身的轴拉伸物体的手柄"),
+
+    ("Move along {}", "沿 {0} 移动"),
+    ("Turn about {}", "绕 {0} 转动"),
+    ("Stretch along {}", "沿 {0} 拉伸"),
+    ("{} is immovable, so nothing pulls it.", "{0} 不动，所以拉不动它。"),
 
     // Forces.
     ("Beside the constant force of each body.", "除每个物体的恒力之外。"),
