@@ -9,12 +9,12 @@ use super::Session;
 const NUMBERS: u32 = 5;
 const SPACING: f64 = 0.11;
 
-/// The numbers of one axis and the letter at its end.
+/// The numbers of one axis and its letter.
 pub struct AxisMarks {
     /// Its name.
     pub letter: &'static str,
-    /// Where the name stands, m.
-    pub end: DVec3,
+    /// Where the name stands, m: near the origin, which is in view more often than the far end.
+    pub place: DVec3,
     /// sRGB.
     pub colour: [f32; 3],
     /// Points on the axis, m, and the coordinate of each.
@@ -32,7 +32,7 @@ impl Session {
         ];
         axes.map(|(letter, along, colour)| AxisMarks {
             letter,
-            end: f64::from(NUMBERS + 1) * step * along,
+            place: 0.5 * step * along,
             colour,
             marks: (1..=NUMBERS)
                 .map(|n| f64::from(n) * step)

@@ -17,7 +17,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             session.frame();
         }
         if ui
-            .button(say("Home"))
+            .button(say("Home view"))
             .on_hover_text(say("Look as when the scene was opened (Home)"))
             .clicked()
         {

@@ -154,7 +154,8 @@ fn card(ui: &mut egui::Ui, gallery: &mut Gallery, entry: &GalleryScene, now: boo
                     true => colour,
                     false => ui.visuals().text_color(),
                 });
-            ui.add(egui::Label::new(line).wrap().selectable(false));
+            let line = egui::Label::new(line).wrap().selectable(false);
+            ui.add(line.halign(egui::Align::LEFT));
         })
         .response
         .interact(Sense::click())

@@ -220,7 +220,7 @@ static GESTURES: [(&str, &str); 7] = [
     ("Drag left or right", "orbit"),
     ("Drag middle, Shift + drag", "pan"),
     (
-        "Alt + drag a body",
+        "Ctrl + drag a body",
         "pull it by a spring; let go to throw it",
     ),
     ("Wheel", "zoom to the pointer"),

@@ -70,13 +70,13 @@ fn ray(rect: Rect, at: Pos2, aspect: f64, session: &Session) -> (DVec3, DVec3) {
     session.camera.ray(x, y, aspect)
 }
 
-/// Pulls a body where the drag began on one with Alt held. Whether a body is held.
+/// Pulls a body where the drag began on one with Ctrl held. Whether a body is held.
 fn pull(ui: &egui::Ui, response: &egui::Response, aspect: f64, session: &mut Session) -> bool {
     let place = response.interact_pointer_pos();
     if let Some(at) = place.filter(|_| response.dragged_by(PointerButton::Primary)) {
         let press = ui.input(|i| i.pointer.press_origin()).unwrap_or(at);
-        let alt = ui.input(|i| i.modifiers.alt);
-        if response.drag_started() && alt {
+        let ctrl = ui.input(|i| i.modifiers.command);
+        if response.drag_started() && ctrl {
             let (origin, direction) = ray(response.rect, press, aspect, session);
             session.take_hold(origin, direction);
         }
@@ -167,7 +167,7 @@ fn number_axes(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
     for axis in session.axis_marks() {
         let [red, green, blue] = axis.colour.map(|part| (255.0 * part) as u8);
         let colour = Color32::from_rgb(red, green, blue);
-        write(axis.end, axis.letter.to_owned(), &letter, colour);
+        write(axis.place, axis.letter.to_owned(), &letter, colour);
         for (point, value) in axis.marks {
             write(
                 point,
