@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use etcetera::BaseStrategy;
 use serde::{Deserialize, Serialize};
 
 use crate::words::Language;
@@ -84,8 +85,9 @@ pub struct Store {
 impl Store {
     /// The file in the place that the system has for such.
     pub fn of_the_system() -> Self {
-        let folders = directories::ProjectDirs::from("", "", "cowbell");
-        Self::at(folders.map(|folders| folders.config_dir().join("preferences.json")))
+        let folders = etcetera::choose_base_strategy().ok();
+        let file = Path::new("cowbell").join("preferences.json");
+        Self::at(folders.map(|folders| folders.config_dir().join(file)))
     }
 
     /// A file at a path; without one nothing is kept.

@@ -68,8 +68,8 @@ pub static LABS: [Lab; 4] = [
                 ],
                 question: "How does the error at the end change when there are ten times as many steps?",
                 answer: "It is a tenth: the error of forward Euler is proportional to dt, for its order is \
-                         1. It takes the velocity at the beginning of each step for all of it, and falls \
-                         too late by half a step.",
+                         1. The velocity that it goes on with is that at the beginning of each step, which \
+                         lags behind by half a step on average; so it lands a whole step too late.",
             },
             Stop {
                 title: "Energy from nothing",

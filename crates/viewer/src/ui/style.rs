@@ -40,6 +40,12 @@ pub(super) const RED: Tone = Tone::new([240, 120, 110], [176, 32, 24]);
 /// The selection, like the edges drawn over it.
 pub(super) const BLUE: Tone = Tone::new([110, 168, 254], [22, 84, 184]);
 
+/// The ground of text over the picture, whatever is below it.
+pub(super) const OVER_PICTURE: Color32 = Color32::from_black_alpha(210);
+/// The ground of the numbers on the axes, which stand in the light picture, and their ink.
+pub(super) const OVER_AXES: Color32 = Color32::from_rgba_premultiplied(150, 150, 150, 150);
+pub(super) const AXIS_INK: Color32 = Color32::from_gray(30);
+
 /// Least contrast of text with what is behind it: that of the accessibility guidelines for small text.
 const CONTRAST: f32 = 4.5;
 /// Least contrast of curves and dots.
@@ -183,6 +189,24 @@ mod tests {
             }
             let told = contrast(visuals.selection.stroke.color, visuals.selection.bg_fill);
             assert!(told >= CONTRAST, "selection: {told}");
+        }
+    }
+
+    #[test]
+    fn text_over_the_picture_is_told_from_any_of_it() {
+        let over = |below: Color32, ground: Color32| below.blend(ground);
+        for below in [Color32::WHITE, Color32::BLACK, Color32::from_gray(128)] {
+            let ground = over(below, OVER_PICTURE);
+            for text in [Color32::WHITE, BLUE.over_picture()] {
+                let told = contrast(text, ground);
+                assert!(told >= CONTRAST, "{text:?} over {below:?}: {told}");
+            }
+        }
+        // What numbers of axes stand on: the sky, the ground, and the darkest bodies of the gallery.
+        for below in [0.84, 0.66, 0.35] {
+            let below = Color32::from_gray((255.0 * below) as u8);
+            let told = contrast(AXIS_INK, over(below, OVER_AXES));
+            assert!(told >= CONTRAST, "over {below:?}: {told}");
         }
     }
 

@@ -131,7 +131,7 @@ fn name_bodies(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
         painter.rect_filled(
             place.expand2(egui::vec2(5.0, 1.0)),
             CornerRadius::same(4),
-            Color32::from_black_alpha(170),
+            style::OVER_PICTURE,
         );
         painter.galley(place.min, text, colour);
     }
@@ -162,6 +162,8 @@ fn number_axes(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
             return;
         }
         taken.push(area);
+        let ground = area.expand2(egui::vec2(2.0, 0.0));
+        painter.rect_filled(ground, CornerRadius::same(3), style::OVER_AXES);
         painter.galley(area.min, text, colour);
     };
     for axis in session.axis_marks() {
@@ -169,12 +171,7 @@ fn number_axes(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
         let colour = Color32::from_rgb(red, green, blue);
         write(axis.place, axis.letter.to_owned(), &letter, colour);
         for (point, value) in axis.marks {
-            write(
-                point,
-                crate::number::tidy(value),
-                &small,
-                Color32::from_gray(40),
-            );
+            write(point, crate::number::tidy(value), &small, style::AXIS_INK);
         }
     }
 }
@@ -209,7 +206,7 @@ fn point_out(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
         }
         taken.push(place);
         let back = place.expand2(egui::vec2(4.0, 1.0));
-        painter.rect_filled(back, CornerRadius::same(4), Color32::from_black_alpha(170));
+        painter.rect_filled(back, CornerRadius::same(4), style::OVER_PICTURE);
         painter.galley(place.min, text, Color32::WHITE);
     }
 }
