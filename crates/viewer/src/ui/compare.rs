@@ -139,9 +139,11 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
     } else {
         "now".to_owned()
     };
-    let meet = if last.meet { "meet" } else { "do not meet" };
     let [first, second] = [first, second].map(|body| shown::name(&body.name));
-    let text = format!("{first} and {second} {meet}, as of {when}.");
+    let text = match last.meet {
+        true => format!("{first} and {second} meet, as of {when}."),
+        false => format!("{first} and {second} do not meet, as of {when}."),
+    };
     if last.agree {
         ui.label(RichText::new(say(text)).weak())
             .on_hover_text(say("Both ways agree. The age is simulated time."));

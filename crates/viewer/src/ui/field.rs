@@ -69,7 +69,7 @@ pub(super) fn scalar(
 pub(super) fn named(list: &egui::Response, name: &str, chosen: &str) {
     list.widget_info(|| {
         let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, list.enabled(), say(name));
-        info.current_text_value = Some(chosen.to_owned());
+        info.current_text_value = Some(say(chosen));
         info
     });
 }

@@ -110,7 +110,11 @@ fn sections(ui: &mut egui::Ui, gallery: &mut Gallery, now: &str) -> Option<&'sta
         for row in found.chunks(fit) {
             ui.columns(fit, |columns| {
                 for (ui, entry) in columns.iter_mut().zip(row) {
-                    if card(ui, gallery, entry, entry.name == now) {
+                    // Columns would spread the words over their width.
+                    let ragged = egui::Layout::top_down(egui::Align::Min);
+                    let card =
+                        ui.with_layout(ragged, |ui| card(ui, gallery, entry, entry.name == now));
+                    if card.inner {
                         chosen = Some(entry.name);
                     }
                 }
@@ -154,8 +158,7 @@ fn card(ui: &mut egui::Ui, gallery: &mut Gallery, entry: &GalleryScene, now: boo
                     true => colour,
                     false => ui.visuals().text_color(),
                 });
-            let line = egui::Label::new(line).wrap().selectable(false);
-            ui.add(line.halign(egui::Align::LEFT));
+            ui.add(egui::Label::new(line).wrap().selectable(false));
         })
         .response
         .interact(Sense::click())

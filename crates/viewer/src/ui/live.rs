@@ -167,9 +167,12 @@ fn overlaps(ui: &mut egui::Ui, session: &mut Session) {
     };
     for overlap in found.iter().take(OVERLAPS) {
         let (a, b) = overlap.bodies;
-        let bound = if overlap.is_least { "" } else { "up to " };
         let depth = number::figure(overlap.depth);
-        let text = format!("{} and {} overlap, {bound}{depth} m deep", name(a), name(b));
+        let (a, b) = (name(a), name(b));
+        let text = match overlap.is_least {
+            true => format!("{a} and {b} overlap, {depth} m deep"),
+            false => format!("{a} and {b} overlap, up to {depth} m deep"),
+        };
         ui.label(RichText::new(say(text)).color(style::AMBER.of(ui.visuals())))
             .on_hover_text(say(
                 "They began inside each other. They get no deeper, and may part.",

@@ -7,7 +7,7 @@ use scene::{MeshRef, SceneShape, shown};
 use sim_core::DVec3;
 
 use super::dialog::{Answer, Dialog, Purpose};
-use super::field;
+use super::{field, style};
 use crate::preferences::MOST_RECENT;
 use crate::session::{Leaving, Session};
 use crate::words::say;
@@ -191,7 +191,6 @@ fn bodies(ui: &mut egui::Ui, session: &mut Session) {
         .show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 for (i, body) in session.scene().bodies.iter().enumerate() {
-                    let [r, g, b] = session.colour(i).map(|part| (255.0 * part) as u8);
                     let selected = session.selection() == Some(i);
                     let mut text = egui::text::LayoutJob::default();
                     let font = egui::TextStyle::Button.resolve(ui.style());
@@ -199,7 +198,7 @@ fn bodies(ui: &mut egui::Ui, session: &mut Session) {
                         let format = egui::TextFormat::simple(font.clone(), colour);
                         text.append(what, 0.0, format);
                     };
-                    part("⏺ ", egui::Color32::from_rgb(r, g, b));
+                    part("⏺ ", style::curve(session.colour(i), ui.visuals()));
                     let colour = match (selected, session.is_hidden(i)) {
                         (true, _) => ui.visuals().selection.stroke.color,
                         (false, true) => ui.visuals().weak_text_color(),

@@ -77,7 +77,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             })
             .response
             .on_hover_text(about(now.method));
-        field::named(&list, "Integrator", &say(now.method.title));
+        field::named(&list, "Integrator", now.method.title);
     });
     if now.method.adaptive {
         tolerance(ui, session, now.tolerance);
@@ -151,8 +151,9 @@ fn tolerance(ui: &mut egui::Ui, session: &mut Session, now: f64) {
 
 fn about(method: &sim_core::Method) -> String {
     let order = say(format!("Order {}; {}", method.order, method.stability));
-    let mut lines = vec![say(method.title), order, method.source.to_owned()];
     let formula = FORMULAS.iter().find(|(name, _)| *name == method.name);
+    let mut lines = vec![say(method.title)];
     lines.extend(formula.map(|(_, formula)| say(formula)));
+    lines.extend([order, method.source.to_owned()]);
     lines.join("\n")
 }
