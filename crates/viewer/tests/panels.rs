@@ -249,17 +249,19 @@ fn names_cannot_reorder_or_act() {
 }
 
 /// What is the same in every language: names, and what scenes of the gallery call their bodies.
-const COMMON: [&str; 45] = [
+const COMMON: [&str; 46] = [
     "BVH", "RK4", "CSV", "PNG", "Hz", "Verlet", "Blanes", "Moan", "Kahan", "Li", "Radau", "IIA",
     "Dormand", "Prince", "English", "Ctrl", "Shift", "Alt", "Esc", "Del", "PgDn", "Home", "kg",
     "ms", "mm", "toml", "cow", "cube", "cube-cow", "obj", "Page", "Down", "left", "plate",
-    "bullet", "right", "light", "heavy", "sphere", "kin", "pot", "cos", "sin", "mu", "dt",
+    "bullet", "right", "light", "heavy", "sphere", "kin", "pot", "cos", "sin", "mu", "dt", "dx",
 ];
 
 /// The words of a text that are of no language but English.
 fn english(text: &str) -> Vec<&str> {
     // So egui calls parts of its own for assistive technology, in English only.
-    if ["Resize panel", "Color"].contains(&text) {
+    let of_egui = text.starts_with("Resize ") || ["Close window", "Color"].contains(&text);
+    let is_colour = text.starts_with('#');
+    if of_egui || is_colour {
         return Vec::new();
     }
     let words = text.split(|c: char| !c.is_ascii_alphabetic());

@@ -11,6 +11,7 @@ mod descent;
 mod exact;
 mod forces;
 mod history;
+mod import;
 mod missed;
 mod opening;
 mod overlaps;
