@@ -156,6 +156,9 @@ static SHORTCUTS: [Shortcut; 22] = [
     },
 ];
 
+/// Something that can be done, kept.
+pub(super) type Doing = Box<dyn Fn(&mut Ui, &mut Session)>;
+
 /// What a key does.
 type Act = fn(&mut Ui, &mut Session);
 
@@ -232,13 +235,7 @@ static GESTURES: [(&str, &str); 7] = [
 const MAGNIFY: (&str, &str) = ("Ctrl + +, -, 0", "larger, smaller, as it was");
 
 /// All that keys do: the keys, what they do, and the doing.
-pub(super) fn commands() -> impl Iterator<
-    Item = (
-        &'static str,
-        &'static str,
-        Box<dyn Fn(&mut Ui, &mut Session)>,
-    ),
-> {
+pub(super) fn commands() -> impl Iterator<Item = (&'static str, &'static str, Doing)> {
     let plain = SHORTCUTS.iter().flat_map(|shortcut| {
         // Keys that do different things, such as the sides to look from, are a command each.
         let keys = match shortcut.label {
@@ -246,8 +243,7 @@ pub(super) fn commands() -> impl Iterator<
             _ => &shortcut.keys[..1],
         };
         keys.iter().map(move |&key| {
-            let act: Box<dyn Fn(&mut Ui, &mut Session)> =
-                Box::new(move |ui, session| (shortcut.act)(ui, session, key));
+            let act: Doing = Box::new(move |ui, session| (shortcut.act)(ui, session, key));
             let name = match key {
                 Key::Num1 => "look from the front",
                 Key::Num2 => "look from the right",
@@ -260,7 +256,7 @@ pub(super) fn commands() -> impl Iterator<
         })
     });
     let held = WITH_CTRL.iter().map(|held| {
-        let act: Box<dyn Fn(&mut Ui, &mut Session)> = Box::new(held.act);
+        let act: Doing = Box::new(held.act);
         (held.label, held.meaning, act)
     });
     plain.chain(held)

@@ -20,7 +20,7 @@ struct Command {
     /// In English.
     name: String,
     keys: &'static str,
-    act: Box<dyn Fn(&mut Ui, &mut Session)>,
+    act: keys::Doing,
 }
 
 impl Command {
