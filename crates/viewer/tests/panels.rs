@@ -249,11 +249,12 @@ fn names_cannot_reorder_or_act() {
 }
 
 /// What is the same in every language: names, and what scenes of the gallery call their bodies.
-const COMMON: [&str; 46] = [
+const COMMON: [&str; 47] = [
     "BVH", "RK4", "CSV", "PNG", "Hz", "Verlet", "Blanes", "Moan", "Kahan", "Li", "Radau", "IIA",
     "Dormand", "Prince", "English", "Ctrl", "Shift", "Alt", "Esc", "Del", "PgDn", "Home", "kg",
     "ms", "mm", "toml", "cow", "cube", "cube-cow", "obj", "Page", "Down", "left", "plate",
     "bullet", "right", "light", "heavy", "sphere", "kin", "pot", "cos", "sin", "mu", "dt", "dx",
+    "inf",
 ];
 
 /// The words of a text that are of no language but English.

@@ -97,8 +97,8 @@ impl Session {
                 let name = path.file_stem().unwrap_or_default().to_string_lossy();
                 self.add(&name, SceneShape::Mesh(mesh));
                 self.frame();
-                let text = report_text(&shown::path(path), &report);
-                self.notices.keep("import", text);
+                let lines = report_lines(&shown::path(path), &report);
+                self.notices.keep("import", &lines);
             }
             Err(error) => self.notices.error("import", error.to_string()),
         }
@@ -169,7 +169,7 @@ impl Session {
 }
 
 /// What came in, a line for each thing to know.
-fn report_text(name: &str, report: &MeshReport) -> String {
+fn report_lines(name: &str, report: &MeshReport) -> Vec<String> {
     let count = |count: usize| number::count(count as f64);
     let [x, y, z] = report.extent.map(number::short);
     let mut lines = vec![
@@ -210,7 +210,7 @@ fn report_text(name: &str, report: &MeshReport) -> String {
         turned > 0,
         format!("Triangles turned over: {}.", count(turned)),
     );
-    lines.join("\n")
+    lines
 }
 
 pub(super) fn is_scene_file(path: &Path) -> bool {

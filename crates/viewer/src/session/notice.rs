@@ -51,12 +51,17 @@ impl Notices {
         });
     }
 
-    /// Tells of a success that takes time to read: until it is dismissed.
-    pub fn keep(&mut self, about: &'static str, text: String) {
-        self.info(about, text);
-        if let Some(notice) = self.0.last_mut() {
-            notice.stays = true;
-        }
+    /// Tells of a success that takes time to read, line by line: until it is dismissed.
+    pub fn keep(&mut self, about: &'static str, lines: &[String]) {
+        let lines: Vec<String> = lines.iter().map(|line| shown::message(line)).collect();
+        self.push(Notice {
+            about,
+            error: false,
+            stays: true,
+            text: lines.join("\n"),
+            remedy: None,
+            age: Duration::ZERO,
+        });
     }
 
     /// Tells of something refused or failed.

@@ -20,6 +20,7 @@ fn an_imported_mesh_is_reported_until_it_is_dismissed() {
     for part in ["cow.obj: 6,000 triangles.", "Size: ", "Closed, volume "] {
         assert!(text.contains(part), "{part} is not in {text}");
     }
+    assert!(text.lines().count() >= 3, "{text}");
     for line in text.lines() {
         assert!(Language::Chinese.translated(line).is_some(), "{line}");
     }
