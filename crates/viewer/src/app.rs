@@ -16,12 +16,14 @@ use crate::canvas::UiFrame;
 use crate::failure::Failure;
 use crate::film;
 use crate::gpu::Gpu;
+use crate::preferences::{Preferences, Store};
 use crate::session::{
     Done, Job, Leaving, Outlook, STEP_BUDGET, Session, Shooting, State, Trial, Tried, VariantJob,
     VariantsDone,
 };
 use crate::stopwatch::Stopwatch;
 use crate::ui::{self, Ui};
+use crate::watch::Watch;
 use crate::worker::Worker;
 
 /// Frames follow each other no faster than this, should the display not hold them back.
@@ -29,10 +31,28 @@ const SHORTEST_FRAME: Duration = Duration::from_millis(4);
 /// While the window takes no pictures, or a single step takes long, frames come at this pace.
 const UNSEEN_FRAME: Duration = Duration::from_millis(100);
 
+/// How long the scene's file is left alone once it was touched, so that it is written whole.
+const WRITING: Duration = Duration::from_millis(200);
+
 /// Opens the window on a session and stays until it is closed.
-pub fn run(session: Session) -> Result<(), Failure> {
+pub fn run(mut session: Session) -> Result<(), Failure> {
     let event_loop = event_loop()?;
+    let mut store = Store::of_the_system();
+    let preferences = store.load().unwrap_or_else(|error| {
+        session.notices().error("preferences", format!("{error:#}"));
+        None
+    });
+    let preferences =
+        preferences.unwrap_or_else(|| Preferences::first(sys_locale::get_locale().as_deref()));
+    let proxy = event_loop.create_proxy();
     let mut app = App {
+        watch: Watch::new(move || {
+            // Fails only when the window has closed.
+            let _ = proxy.send_event(Redraw(WRITING));
+        }),
+        touched: None,
+        store,
+        preferences: Some(preferences),
         session,
         ui: Ui::default(),
         worker: None,
@@ -61,6 +81,14 @@ type Shot = Result<Option<Vec<u8>>, String>;
 struct Redraw(Duration);
 
 struct App {
+    /// Looks at the scene's file.
+    watch: Watch,
+    /// When that was touched last, if it is to be read again.
+    touched: Option<Duration>,
+    /// Where preferences are kept.
+    store: Store,
+    /// Those of the last time, until the window opens.
+    preferences: Option<Preferences>,
     session: Session,
     ui: Ui,
     /// Takes the steps; none while none is under way.
@@ -264,6 +292,22 @@ impl App {
         }
     }
 
+    /// Reads the scene's file again once it has been left alone for a moment.
+    fn reread(&mut self, now: Duration) {
+        self.watch.follow(self.session.file());
+        if self.watch.take() {
+            self.touched = Some(now);
+        }
+        if let Some(touched) = self.touched {
+            if now >= touched + WRITING {
+                self.touched = None;
+                self.session.reread();
+            } else {
+                self.schedule(touched + WRITING);
+            }
+        }
+    }
+
     /// Lets physics go on, lays out the control panel and paints both.
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
         let now = self.stopwatch.read();
@@ -273,6 +317,7 @@ impl App {
         self.run_variants();
         self.look_ahead();
         self.film();
+        self.reread(now);
         self.session.notices().pass(elapsed);
         self.session.settle(elapsed);
         if self.session.is_closing() {
@@ -285,10 +330,19 @@ impl App {
         let shown = size.width > 0 && size.height > 0 && {
             let input = open.egui.take_egui_input(&open.window);
             let context = open.egui.egui_ctx().clone();
+            if let Some(wanted) = self.preferences.take() {
+                self.ui.prefer(&context, &mut self.session, &wanted);
+            }
             let mut place = egui::Rect::ZERO;
             let output = context.run_ui(input, |root| {
                 place = self.ui.show(root, &mut self.session, open.gpu.picture_id());
             });
+            let preferred = self.ui.preferences(&context, &self.session);
+            if let Err(error) = self.store.keep(&preferred) {
+                self.session
+                    .notices()
+                    .error("preferences", format!("{error:#}"));
+            }
             open.egui
                 .handle_platform_output(&open.window, output.platform_output);
             let pixels = place.size() * output.pixels_per_point;

@@ -65,6 +65,17 @@ pub fn ordinal(count: usize) -> String {
     format!("{count}{ending}")
 }
 
+/// A number without the digits that are rounding.
+pub fn tidy(value: f64) -> String {
+    let text = format!("{value:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" {
+        "0".to_owned()
+    } else {
+        text.to_owned()
+    }
+}
+
 /// A whole number, in groups of three digits.
 pub fn count(value: f64) -> String {
     let digits = format!("{value:.0}");

@@ -89,6 +89,51 @@ impl Session {
         self.edit_shape("scale", |body| body.scale = scale);
     }
 
+    /// Gives the selected body another name, which no other has.
+    pub fn rename_selected(&mut self, name: &str) {
+        let (Some(i), name) = (self.selection, name.trim()) else {
+            return;
+        };
+        let bodies = &self.scene.bodies;
+        let before = bodies[i].name.clone();
+        if name == before {
+            return;
+        }
+        if name.is_empty() || bodies.iter().any(|body| body.name == name) {
+            let text = match name.is_empty() {
+                true => "A body needs a name.".to_owned(),
+                false => format!("Another body is called {name}."),
+            };
+            return self.notices.error("rename", text);
+        }
+        if self.hidden.remove(&before) {
+            self.hidden.insert(name.to_owned());
+        }
+        if let Some(mass) = self.masses.remove(&before) {
+            self.masses.insert(name.to_owned(), mass);
+        }
+        name.clone_into(&mut self.scene.bodies[i].name);
+        self.notices.dismiss("rename");
+        self.edited();
+    }
+
+    /// Whether a body is left out of the picture.
+    pub fn is_hidden(&self, body: usize) -> bool {
+        let body = self.scene.bodies.get(body);
+        body.is_some_and(|body| self.hidden.contains(&body.name))
+    }
+
+    /// Leaves a body out of the picture, or shows it again; it moves and collides all the same.
+    pub fn hide(&mut self, body: usize, hidden: bool) {
+        let Some(body) = self.scene.bodies.get(body) else {
+            return;
+        };
+        match hidden {
+            true => self.hidden.insert(body.name.clone()),
+            false => self.hidden.remove(&body.name),
+        };
+    }
+
     /// Sets the selected body's colour, sRGB, each part from 0 to 1.
     pub fn set_colour(&mut self, colour: [f32; 3]) {
         if let Some(body) = self.selection.and_then(|i| self.scene.bodies.get_mut(i)) {

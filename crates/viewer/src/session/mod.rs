@@ -9,6 +9,7 @@
 //! Nothing here draws, opens windows or reads a clock: see `picture` for what is drawn, and
 //! [`Session::due`] for how time comes in and steps are taken.
 
+mod axes;
 mod ball;
 mod charts;
 mod compare;
@@ -30,6 +31,7 @@ mod overlaps;
 mod pick;
 mod picture;
 mod playback;
+mod pull;
 mod record;
 mod sample;
 mod shooting;
@@ -37,6 +39,7 @@ mod shooting;
 mod tests;
 mod ties;
 mod touching;
+mod tour;
 mod trails;
 mod variants;
 mod view;
@@ -47,6 +50,7 @@ use std::time::Duration;
 use scene::{Scene, SceneBody};
 use sim_core::{Collision, FixedStep, Method, Settings, World};
 
+pub use axes::AxisMarks;
 use ball::Balls;
 pub use charts::{CHARTS, Chart, Curve, on_dark};
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
@@ -70,6 +74,7 @@ pub use record::{
 pub use sample::{COLUMNS, Column, Sample, csv_head, csv_line};
 pub use shooting::{Reel, Shooting};
 pub use touching::Part;
+pub use tour::{Attempt, BEYOND, LABS, Lab, Stop, stop, stop_count};
 use trails::Trails;
 pub use variants::{
     Halt, MOST_VARIANTS, PRESETS, Preset, Runner, Snapshot, Variant, VariantJob, Variants,
@@ -133,7 +138,11 @@ pub struct Session {
     speed: f64,
     /// Masses of bodies made immovable, kg, by name: what they get back.
     masses: std::collections::BTreeMap<String, f64>,
+    /// Names of the bodies that are left out of the picture.
+    hidden: std::collections::BTreeSet<String>,
     selection: Option<usize>,
+    /// What is pulled by a spring.
+    pull: Option<pull::Pull>,
     /// Steps are being taken on a copy of the world.
     under_way: bool,
     /// Steps asked for by hand.
@@ -184,7 +193,9 @@ impl Session {
             view: view::View::default(),
             speed: 1.0,
             masses: std::collections::BTreeMap::new(),
+            hidden: std::collections::BTreeSet::new(),
             selection: None,
+            pull: None,
             under_way: false,
             steps_wanted: 0,
             studio: shooting::Studio::default(),
@@ -439,6 +450,7 @@ impl Session {
     /// Takes a world freshly made from the scene.
     fn adopt(&mut self, world: World) {
         self.world = world;
+        self.pull = None;
         self.state = State::Layout;
         self.keep_up();
         self.select(self.selection);

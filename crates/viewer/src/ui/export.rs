@@ -4,13 +4,14 @@ use super::plots::Plots;
 use crate::picture;
 use crate::render::offscreen;
 use crate::session::Session;
+use crate::words::say;
 
 /// Size of a picture of plots, pixels.
 const SIZE: [u32; 2] = [2000, 800];
 
 pub(super) fn buttons(ui: &mut egui::Ui, plots: &Plots, session: &mut Session) {
     if ui
-        .button("CSV")
+        .button(say("CSV"))
         .on_hover_text(
             "Write all figures of the kept states of all runs as a table, into the folder that the \
              program was started in",
@@ -21,10 +22,10 @@ pub(super) fn buttons(ui: &mut egui::Ui, plots: &Plots, session: &mut Session) {
         session.export("csv", text.as_bytes());
     }
     if ui
-        .button("PNG")
-        .on_hover_text(
+        .button(say("PNG"))
+        .on_hover_text(say(
             "Write the plots as a picture, into the folder that the program was started in",
-        )
+        ))
         .clicked()
     {
         match png(plots, session) {

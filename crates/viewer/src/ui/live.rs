@@ -7,6 +7,7 @@ use sim_core::{Impact, Overlap, Shape};
 use super::{field, style};
 use crate::number;
 use crate::session::{Session, State};
+use crate::words::say;
 
 /// Pairs in overlap that are named; more would cover the picture.
 const OVERLAPS: usize = 4;
@@ -43,7 +44,7 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     );
     field::figure(
         ui,
-        "Frame",
+        "Frame time",
         "Real time from one picture to the next while running",
         figures.frame.seconds().map_or_else(none, number::seconds),
     );
@@ -57,13 +58,13 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     field::figure(
         ui,
         "Energy",
-        "Kinetic and potential energy of all bodies together",
+        "Kinetic and potential energy of all bodies together, E = Σ ½ m v² + U",
         number::energy(kinetic + potential),
     );
     field::figure(
         ui,
         "  parts",
-        "Kinetic energy, and potential energy of the forces that have one: 0 for a constant force \
+        "Kinetic energy Σ ½ m v², and potential energy U of the forces that have one: 0 for a constant force \
          at the origin, a spring at rest, and masses infinitely far apart",
         format!(
             "{} kin.  {} pot.",
@@ -74,17 +75,17 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     let (name, meaning) = match drift.energy_is_error() {
         false if drift.driven => (
             "  change",
-            "Change of the energy since the start or the last edit, relative to the energy then, and \
+            "Change of the energy since the start or the last edit, (E - E₀)/|E₀|, and \
              in J: a driven body or a law from outside may change it, so it is no error",
         ),
         false => (
             "  change",
-            "Change of the energy since the start or the last edit, relative to the energy then, and \
+            "Change of the energy since the start or the last edit, (E - E₀)/|E₀|, and \
              in J: friction or inelastic impacts take it, so a loss is no error",
         ),
         true => (
             "  drift",
-            "Error of the energy since the start or the last edit, relative to the energy then, and in \
+            "Error of the energy since the start or the last edit, (E - E₀)/|E₀|, and in \
              J: nothing that acts here would have changed it so",
         ),
     };
@@ -93,7 +94,7 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     field::figure(
         ui,
         "Momentum",
-        "Sum of mass times velocity, kg m/s",
+        "Sum of mass times velocity, p = Σ m v, kg m/s",
         [p.x, p.y, p.z].map(number::figure).join("  ") + " kg m/s",
     );
     field::figure(
@@ -159,8 +160,8 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
         field::figure(
             ui,
             "  impulse",
-            "The impulse exchanged in the last collision, and the speeds along its normal at which \
-             the bodies approached and part",
+            "The impulse exchanged in the last collision, J = (1 + e) v / (1/m₁ + 1/m₂), and the speeds v \
+             along its normal at which the bodies approached and part",
             format!(
                 "{} N s  {} → {} m/s",
                 number::figure(impact.impulse),
@@ -195,18 +196,30 @@ fn overlaps(ui: &mut egui::Ui, session: &mut Session) {
     };
     for overlap in found.iter().take(OVERLAPS) {
         let (a, b) = overlap.bodies;
-        let bound = if overlap.is_least { "" } else { "up to " };
         let depth = number::figure(overlap.depth);
-        let text = format!("{} and {} overlap, {bound}{depth} m deep", name(a), name(b));
-        ui.label(RichText::new(text).color(style::AMBER))
-            .on_hover_text("They began inside each other. They get no deeper, and may part.");
+        let (a, b) = (name(a), name(b));
+        let text = match overlap.is_least {
+            true => format!("{a} and {b} overlap, {depth} m deep"),
+            false => format!("{a} and {b} overlap, up to {depth} m deep"),
+        };
+        ui.label(RichText::new(say(text)).color(style::AMBER.of(ui.visuals())))
+            .on_hover_text(say(
+                "They began inside each other. They get no deeper, and may part.",
+            ));
     }
     if let Some(more) = found.len().checked_sub(OVERLAPS).filter(|&more| more > 0) {
-        ui.label(RichText::new(format!("and {more} more pairs")).color(style::AMBER));
+        ui.label(
+            RichText::new(say(format!("and {more} more pairs")))
+                .color(style::AMBER.of(ui.visuals())),
+        );
     }
     let hint = "Move all that overlap out of each other, by the least that does it, heavy bodies less. \
                 In the layout that changes the set-up.";
-    if ui.button("Separate").on_hover_text(hint).clicked() {
+    if ui
+        .button(say("Separate"))
+        .on_hover_text(say(hint))
+        .clicked()
+    {
         session.separate();
     }
 }

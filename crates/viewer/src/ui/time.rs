@@ -5,6 +5,7 @@ use egui::{Button, Color32, Panel, Sense, Slider, Stroke};
 use super::{Ui, style};
 use crate::number;
 use crate::session::{SPEEDS, Session, State};
+use crate::words::say;
 
 /// The most impacts that are marked; more would be one colour.
 const MARKS: usize = 2000;
@@ -28,15 +29,15 @@ fn buttons(ui: &mut egui::Ui, session: &mut Session) {
     let can_go_back = session.state() != State::Layout && session.playback().now() > 0;
     if ui
         .add_enabled(can_go_back, Button::new("⏴"))
-        .on_hover_text("Go one step back (left arrow or ,)")
-        .on_disabled_hover_text("No earlier state is kept")
+        .on_hover_text(say("Go one step back (left arrow or ,)"))
+        .on_disabled_hover_text(say("No earlier state is kept"))
         .clicked()
     {
         session.step_back();
     }
     if ui
         .button("⏵⏵ 5")
-        .on_hover_text("Go five steps ahead and hold there (page down)")
+        .on_hover_text(say("Go five steps ahead and hold there (page down)"))
         .clicked()
     {
         five_steps(session);
@@ -57,9 +58,9 @@ fn speed(ui: &mut egui::Ui, session: &mut Session) {
         .logarithmic(true)
         .prefix("×")
         .max_decimals(3);
-    let response = ui
-        .add(slider)
-        .on_hover_text("Simulated seconds in a real one: slow motion below 1. Double click for 1.");
+    let response = ui.add(slider).on_hover_text(say(
+        "Simulated seconds in a real one: slow motion below 1. Double click for 1.",
+    ));
     if response.double_clicked() {
         session.set_speed(1.0);
     } else if response.changed() {
@@ -116,18 +117,18 @@ fn line(ui: &mut egui::Ui, session: &mut Session) {
     painter.rect_filled(bar, 3.0, ui.visuals().extreme_bg_color);
     let now = session.shown_time();
     let gone = bar.with_max_x(place(now).max(bar.left()));
-    painter.rect_filled(gone, 3.0, style::BLUE.gamma_multiply(0.5));
+    painter.rect_filled(gone, 3.0, style::BLUE.of(ui.visuals()).gamma_multiply(0.5));
     let mark = Stroke::new(1.5, Color32::from_rgb(255, 140, 50));
     for time in session.playback().impact_times().take(MARKS) {
         painter.vline(place(time), rect.shrink(3.0).y_range(), mark);
     }
-    let unseen = Stroke::new(1.5, style::RED);
+    let unseen = Stroke::new(1.5, style::RED.of(ui.visuals()));
     for time in session.playback().missed_times().take(MARKS) {
         painter.vline(place(time), rect.shrink(3.0).y_range(), unseen);
     }
     let left_record = session.divergence().map(|divergence| divergence.time);
     if let Some(time) = left_record {
-        let mark = Stroke::new(3.0, style::RED);
+        let mark = Stroke::new(3.0, style::RED.of(ui.visuals()));
         painter.vline(place(time), rect.y_range(), mark);
     }
     let hand = Stroke::new(2.0, ui.visuals().strong_text_color());
@@ -150,7 +151,7 @@ fn line(ui: &mut egui::Ui, session: &mut Session) {
         }
     }
     let kept = session.playback();
-    response.on_hover_text(format!(
+    response.on_hover_text(say(format!(
         "{} states kept, from {first:.3} to {last:.3} s, at most {}, in about {} of memory: the run since \
          the start or the last change. Drag to go there; a click on an impact (orange) goes to its \
          instant within the step (U and I go from one to the next). Red is where bodies passed \
@@ -158,5 +159,5 @@ fn line(ui: &mut egui::Ui, session: &mut Session) {
         number::count(kept.len() as f64),
         number::count(kept.capacity() as f64),
         number::bytes(kept.bytes()),
-    ));
+    )));
 }
