@@ -197,7 +197,7 @@ mod tests {
         let violet = [148, 13, 217];
         let mut film = Film::new(4);
         for step in 0..12 {
-            let mut image = RgbaImage::from_fn(160, 120, |x, y| {
+            let mut image = RgbaImage::from_fn(84, 48, |x, y| {
                 let shade = (x + y + 3 * step) % 256;
                 Rgba([shade as u8, (255 - shade) as u8, (x * 255 / 160) as u8, 255])
             });
