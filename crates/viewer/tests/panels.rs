@@ -364,12 +364,12 @@ fn the_cost_of_phases_is_measured_while_it_is_plotted() {
 }
 
 /// What is the same in every language: names, and what scenes of the gallery call their bodies.
-const COMMON: [&str; 47] = [
+const COMMON: [&str; 48] = [
     "BVH", "RK4", "CSV", "PNG", "Hz", "Verlet", "Blanes", "Moan", "Kahan", "Li", "Radau", "IIA",
     "Dormand", "Prince", "English", "Ctrl", "Shift", "Alt", "Esc", "Del", "PgDn", "Home", "kg",
     "ms", "mm", "toml", "cow", "cube", "cube-cow", "obj", "Page", "Down", "left", "plate",
     "bullet", "right", "light", "heavy", "sphere", "kin", "pot", "cos", "sin", "mu", "dt", "dx",
-    "inf",
+    "inf", "kB",
 ];
 
 /// The words of a text that are of no language but English.
@@ -442,6 +442,7 @@ const UNSEEN: &[&str] = &[
     "field",
     "compare",
     "toml",
+    "run",
     "dock",
     "figures",
     "csv",
@@ -563,6 +564,50 @@ fn every_text_in_the_sources_of_the_panels_is_in_the_table() {
         }
     }
     assert!(seen > 250, "{seen} texts");
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+#[test]
+fn every_hint_is_said_in_the_language_of_the_window() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/ui");
+    let mut unsaid = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("the panels") {
+        let path = entry.expect("a file").path();
+        let source = std::fs::read_to_string(&path).expect("its text");
+        let hints = source.split("hover_text(").skip(1).map(str::trim_start);
+        let bare = hints.filter(|hint| hint.starts_with('"'));
+        unsaid.extend(bare.map(|hint| format!("{}: {:.60}", path.display(), hint)));
+    }
+    assert!(unsaid.is_empty(), "{}", unsaid.join("\n"));
+}
+
+#[test]
+fn every_message_of_the_session_is_in_the_table() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = vec![source.join("app.rs")];
+    for folder in ["session", "session/record"] {
+        let entries = std::fs::read_dir(source.join(folder)).expect("the session");
+        files.extend(entries.map(|entry| entry.expect("a file").path()));
+    }
+    let mut seen = 0;
+    let mut missing = Vec::new();
+    for path in files {
+        // The texts of the tour are tried with the other tables.
+        if path.is_dir() || path.ends_with("tests.rs") || path.ends_with("tour.rs") {
+            continue;
+        }
+        let source = std::fs::read_to_string(&path).expect("its text");
+        for text in literals(&source) {
+            let is_message = text.contains(' ')
+                && text.ends_with('.')
+                && text.starts_with(|c: char| c.is_uppercase());
+            seen += usize::from(is_message);
+            if is_message && Language::Chinese.translated(&text).is_none() {
+                missing.push(format!("{}: {text}", path.display()));
+            }
+        }
+    }
+    assert!(seen > 25, "{seen} messages");
     assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
 

@@ -136,9 +136,11 @@ impl Session {
         match found {
             Some(time) => self.go_to_time(time),
             None => {
-                let which = if next { "later" } else { "earlier" };
-                let text = format!("No {which} impact is kept.");
-                self.notices.info("impact", text);
+                let text = match next {
+                    true => "No later impact is kept.",
+                    false => "No earlier impact is kept.",
+                };
+                self.notices.info("impact", text.to_owned());
             }
         }
     }

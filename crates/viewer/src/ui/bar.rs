@@ -149,10 +149,10 @@ fn behind(ui: &mut egui::Ui, session: &Session) -> bool {
         let time = number::seconds(figures.behind.as_secs_f64());
         let text = RichText::new(say(format!("behind real time by {time}")))
             .color(style::AMBER.of(ui.visuals()));
-        ui.add(egui::Label::new(text).truncate()).on_hover_text(
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(say(
             "Steps or pictures took longer than the time they stand for, so the rest was given \
              up. If steps are slow, lower the rate or test collisions through the BVH.",
-        );
+        ));
     }
     shown
 }

@@ -10,10 +10,10 @@ use crate::words::say;
 
 pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     ui.checkbox(&mut session.compare.on, say("Measure"))
-        .on_hover_text(
+        .on_hover_text(say(
             "Ask both ways whether the two bodies meet, now and then, on a thread of its own. \
              Off, it costs nothing.",
-        );
+        ));
     descent(ui, session);
     if !session.compare.on {
         return;
@@ -43,10 +43,10 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
         let mut shown = session.display.descent.is_some();
         if ui
             .checkbox(&mut shown, say("Show the descent"))
-            .on_hover_text(
+            .on_hover_text(say(
                 "Boxes that are compared level by level, in orange those that meet and come into \
                  question for the next level. Of the two bodies that are measured",
-            )
+            ))
             .changed()
         {
             session.display.descent = shown.then_some(0);

@@ -116,10 +116,10 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
              these. Otherwise they jump from state to state, as they are stepped",
         ));
     ui.checkbox(&mut session.display.impacts, say("Impacts"))
-        .on_hover_text(
-            "What of each body touches, in violet; points of contact with their normals, and the impulses as arrows, compared with the \
-             strongest in sight. They fade within half a second of simulated time",
-        );
+        .on_hover_text(say(
+            "What of each body touches, in violet; points of contact with their normals, and the impulses as \
+             arrows, compared with the strongest in sight. They fade within half a second of simulated time",
+        ));
     boxes(ui, session);
 }
 

@@ -12,10 +12,10 @@ const SIZE: [u32; 2] = [2000, 800];
 pub(super) fn buttons(ui: &mut egui::Ui, plots: &Plots, session: &mut Session) {
     if ui
         .button(say("CSV"))
-        .on_hover_text(
+        .on_hover_text(say(
             "Write all figures of the kept states of all runs as a table, into the folder that the \
              program was started in",
-        )
+        ))
         .clicked()
     {
         let text = session.csv();

@@ -251,7 +251,7 @@ pub(super) fn commands() -> impl Iterator<Item = (&'static str, &'static str, Do
     let plain = SHORTCUTS.iter().flat_map(|shortcut| {
         // Keys that do different things, such as the sides to look from, are a command each.
         let keys = match shortcut.label {
-            "1 2 3" | "[ ]" => shortcut.keys,
+            "1 2 3" | "[ ]" | "U I" => shortcut.keys,
             _ => &shortcut.keys[..1],
         };
         keys.iter().map(move |&key| {
@@ -260,6 +260,8 @@ pub(super) fn commands() -> impl Iterator<Item = (&'static str, &'static str, Do
                 Key::Num1 => "look from the front",
                 Key::Num2 => "look from the right",
                 Key::Num3 => "look from the top",
+                Key::U => "last impact",
+                Key::I => "next impact",
                 Key::OpenBracket => "boxes one level up",
                 Key::CloseBracket => "boxes one level down",
                 _ => shortcut.meaning,

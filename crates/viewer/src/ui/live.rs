@@ -154,7 +154,7 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
             "  touching",
             "What of each body touched in the last collision: a corner, an edge or a face of its \
              mesh. It is violet in the picture",
-            format!("{first} and {second}"),
+            format!("{} {} {}", say(first), say("and"), say(second)),
         );
         let (approaching, parting) = impact.speeds;
         field::figure(

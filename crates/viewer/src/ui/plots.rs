@@ -39,10 +39,10 @@ impl Plots {
                     .on_hover_text(say(chart.meaning));
             }
             ui.toggle_value(&mut self.precision, say("Speed against error"))
-                .on_hover_text(
+                .on_hover_text(say(
                     "Largest error so far over real time for a simulated second, a point for the \
                      run and for each variant",
-                );
+                ));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 super::export::buttons(ui, self, session);
             });

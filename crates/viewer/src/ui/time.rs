@@ -72,32 +72,32 @@ fn speed(ui: &mut egui::Ui, session: &mut Session) {
 fn keep(ui: &mut egui::Ui, state: &Ui, session: &mut Session) {
     if let Some(reel) = session.reel() {
         let [done, total] = reel.progress();
-        ui.label(format!("{done} of {total}"));
+        ui.label(format!("{done} / {total}"));
         if ui
             .button("✖")
-            .on_hover_text("Draw no more pictures")
+            .on_hover_text(say("Draw no more pictures"))
             .clicked()
         {
             reel.cancel();
         }
     } else if ui
-        .button("GIF")
-        .on_hover_text(
+        .button(say("GIF"))
+        .on_hover_text(say(
             "Draw the run that is kept, up to here, as a moving picture at the speed that is set: its last \
              12 s where it takes longer. F12 draws the picture as it is now",
-        )
+        ))
         .clicked()
     {
         session.shoot_film(state.pixels);
     }
     let steps = number::count(session.record().steps() as f64);
     if ui
-        .add_enabled(session.state() != State::Layout, Button::new("Save run"))
-        .on_hover_text(format!(
+        .add_enabled(session.state() != State::Layout, Button::new(say("Save run")))
+        .on_hover_text(say(format!(
             "Write the run since the start, {steps} steps with what was done on the way and a hash of \
              every state, into a file that opens here again, and that `cowbell replay` checks"
-        ))
-        .on_disabled_hover_text("Nothing has run yet")
+        )))
+        .on_disabled_hover_text(say("Nothing has run yet"))
         .clicked()
     {
         session.save_run();

@@ -187,7 +187,9 @@ mod tests {
 
     #[test]
     fn what_tables_offer_is_in_every_language() {
-        use crate::session::{BEYOND, CHARTS, LABS, PRESETS};
+        use crate::session::{BEYOND, CHARTS, LABS, PRESETS, Session};
+        let scene = scene::SCENES[0].scene().expect("the first scene");
+        let session = Session::new(scene).expect("a session");
         let mut texts: Vec<&str> = vec![BEYOND];
         for method in sim_core::METHODS {
             texts.extend([method.title, method.stability]);
@@ -195,9 +197,16 @@ mod tests {
         for entry in scene::SCENES {
             texts.extend([entry.title(), entry.about()]);
         }
+        let curves: Vec<_> = CHARTS
+            .iter()
+            .flat_map(|chart| session.curves(chart))
+            .collect();
         for chart in &CHARTS {
             texts.extend([chart.title, chart.meaning]);
         }
+        // Those along an axis are called by its letter.
+        let names = curves.iter().map(|curve| curve.name.as_str());
+        texts.extend(names.filter(|name| name.len() > 1));
         for preset in &PRESETS {
             texts.extend([preset.title, preset.meaning]);
         }
