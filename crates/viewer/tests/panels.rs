@@ -650,6 +650,13 @@ fn the_palette_finds_a_command_and_does_it() {
     assert!(window.state().1.display.wireframe);
     search(&mut window, "look from the top");
     assert!(window.state().1.camera.pitch > 1.5);
+    for (command, told) in [
+        ("last impact", "No earlier impact is kept."),
+        ("next impact", "No later impact is kept."),
+    ] {
+        search(&mut window, command);
+        assert!(stands(&window, told), "{command}");
+    }
     if !has_chinese(&mut window) {
         return;
     }
