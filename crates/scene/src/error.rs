@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::gallery::SCENES;
-use crate::shown;
+use crate::{MeshFileError, shown};
 
 /// Why there is no scene, or no world from it. The message names file, line, body and field as
 /// far as they are known, and the remedy.
@@ -14,7 +14,7 @@ use crate::shown;
 pub enum SceneError {
     /// Neither a gallery scene nor a scene file.
     #[error(
-        "there is no scene `{}`: give the path of a .toml file or one of {}",
+        "there is no scene `{}`: give the path of a .toml file, of a mesh, or one of {}",
         shown::name(name),
         gallery()
     )]
@@ -22,6 +22,9 @@ pub enum SceneError {
         /// What was asked for.
         name: String,
     },
+    /// The mesh file that was to be a scene of its own is refused.
+    #[error(transparent)]
+    Mesh(Box<MeshFileError>),
     /// The scene file cannot be read.
     #[error("{}: cannot read the scene file: {error}", shown::path(path))]
     Read {

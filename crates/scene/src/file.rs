@@ -1,6 +1,7 @@
 //! Files from a path that may be anything: read with a limit, and written whole or not at all.
 
 use std::ffi::OsStr;
+use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -9,15 +10,24 @@ use tempfile::Builder;
 
 /// Why a file is not read.
 #[derive(Debug)]
-pub(crate) enum Refusal {
+pub enum Refusal {
     /// The system's answer, or what the file is instead.
     Io(io::Error),
     /// It has more bytes than allowed: so many, as far as that is known.
     TooLarge(u64),
 }
 
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Refusal::Io(error) => error.fmt(f),
+            Refusal::TooLarge(bytes) => write!(f, "it is too large: it has {bytes} bytes or more"),
+        }
+    }
+}
+
 /// All bytes of a regular file of at most `most` bytes. A pipe or a device could take for ever.
-pub(crate) fn read(path: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
+pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
     // Opening a pipe waits for its writer, so the path is looked at before.
     regular(&fs::metadata(path).map_err(Refusal::Io)?, most)?;
     let file = File::open(path).map_err(Refusal::Io)?;

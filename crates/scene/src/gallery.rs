@@ -122,9 +122,18 @@ pub struct GalleryScene {
 impl GalleryScene {
     /// Its title for people, as the scene file has it.
     pub fn title(&self) -> &'static str {
-        let line = self.text.lines().find(|line| line.starts_with("title"));
-        let quoted = line.and_then(|line| line.split('"').nth(1));
-        quoted.unwrap_or(self.name)
+        self.quoted("title").unwrap_or(self.name)
+    }
+
+    /// What it shows, as the scene file has it.
+    pub fn about(&self) -> &'static str {
+        self.quoted("about").unwrap_or_default()
+    }
+
+    fn quoted(&self, field: &str) -> Option<&'static str> {
+        let mut lines = self.text.lines();
+        let line = lines.find(|line| line.starts_with(field))?;
+        line.split('"').nth(1)
     }
 
     /// The scene, from built-in meshes only: no file is opened.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use sim_core::Mesh;
 
-use crate::mesh_file::{self, MeshFileError};
+use crate::mesh_file::{self, MeshFileError, MeshReport};
 
 /// A mesh by its name in the scene, loaded: neither rotated nor scaled.
 #[derive(Clone, PartialEq)]
@@ -29,6 +29,18 @@ impl MeshRef {
     /// A mesh from a file, which becomes its name.
     pub fn load(path: &Path) -> Result<MeshRef, MeshFileError> {
         MeshRef::named(path.to_string_lossy().into_owned(), path)
+    }
+
+    /// The same, with what is to be known of what was read.
+    pub fn load_reporting(path: &Path) -> Result<(MeshRef, MeshReport), MeshFileError> {
+        let loaded = mesh_file::load(path)?;
+        let report = loaded.report();
+        let mesh = MeshRef {
+            name: path.to_string_lossy().into_owned(),
+            path: Some(path.to_owned()),
+            mesh: Arc::new(loaded.mesh),
+        };
+        Ok((mesh, report))
     }
 
     /// A mesh from a file under the name that a scene file uses for it.

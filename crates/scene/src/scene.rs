@@ -10,7 +10,7 @@ use sim_core::{Collision, Force, Method};
 use crate::file::{self, Refusal};
 use crate::gallery::SCENES;
 use crate::scene_file::{self, MeshSource};
-use crate::{MeshRef, SceneError, shown};
+use crate::{Format, MeshFileError, MeshRef, SceneError, shown};
 
 /// The largest scene file that is read, in bytes.
 const MAX_BYTES: u64 = 1 << 26;
@@ -114,7 +114,8 @@ impl SceneBody {
 }
 
 impl Scene {
-    /// A scene of the gallery by its name, or a scene file by its path, which ends in `.toml`.
+    /// A scene of the gallery by its name, a scene file by its path, which ends in `.toml`, or a mesh
+    /// file by its path: a scene of that mesh alone, of 1 kg and at rest.
     ///
     /// A gallery scene opens no file. A path need not be text.
     pub fn load(name_or_path: impl AsRef<Path>) -> Result<Scene, SceneError> {
@@ -123,6 +124,13 @@ impl Scene {
             return gallery.scene();
         }
         let extension = path.extension().unwrap_or_default();
+        match Format::of(path) {
+            Ok(_) => return Scene::of_mesh(path),
+            Err(error @ MeshFileError::Gltf { .. }) => {
+                return Err(SceneError::Mesh(Box::new(error)));
+            }
+            Err(_) => {}
+        }
         if !extension.eq_ignore_ascii_case("toml") {
             return Err(SceneError::Unknown {
                 name: path.to_string_lossy().into_owned(),
@@ -150,6 +158,16 @@ impl Scene {
             }
         })?;
         Scene::parse(&text, path)
+    }
+
+    fn of_mesh(path: &Path) -> Result<Scene, SceneError> {
+        let mesh = MeshRef::load(path).map_err(|error| SceneError::Mesh(Box::new(error)))?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let mut scene = Scene::parse("rate = 60", path)?;
+        scene.title = name.clone().into_owned();
+        let shape = SceneShape::Mesh(mesh);
+        scene.bodies.push(SceneBody::new(name.into_owned(), shape));
+        Ok(scene)
     }
 
     /// A scene from the text of a scene file.
@@ -192,6 +210,16 @@ impl Scene {
 
     /// Writes the scene to a file, whole or not at all. Meshes of other folders keep their place.
     pub fn save(&self, path: &Path) -> Result<(), SceneError> {
+        let text = self.text_at(path)?;
+        file::write(path, text.as_bytes()).map_err(|error| SceneError::Write {
+            path: path.to_owned(),
+            error,
+        })
+    }
+
+    /// The text of a scene file that gives this scene again where it is read as the file at `path`.
+    /// Meshes of other folders keep their place.
+    pub fn text_at(&self, path: &Path) -> Result<String, SceneError> {
         let refused = |error| SceneError::Write {
             path: path.to_owned(),
             error,
@@ -217,6 +245,6 @@ impl Scene {
                 *mesh = mesh.renamed(name.to_owned());
             }
         }
-        file::write(path, scene.to_toml().as_bytes()).map_err(refused)
+        Ok(scene.to_toml())
     }
 }

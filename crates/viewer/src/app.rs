@@ -5,21 +5,25 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use egui::ViewportId;
-use scene::{Scene, shown};
+use scene::shown;
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
+use crate::canvas::UiFrame;
 use crate::failure::Failure;
-use crate::gpu::{Gpu, UiFrame};
+use crate::film;
+use crate::gpu::Gpu;
+use crate::preferences::{Preferences, Store};
 use crate::session::{
-    Done, Job, Leaving, Outlook, STEP_BUDGET, Session, State, Trial, Tried, VariantJob,
+    Done, Job, Leaving, Outlook, STEP_BUDGET, Session, Shooting, State, Trial, Tried, VariantJob,
     VariantsDone,
 };
 use crate::stopwatch::Stopwatch;
 use crate::ui::{self, Ui};
+use crate::watch::Watch;
 use crate::worker::Worker;
 
 /// Frames follow each other no faster than this, should the display not hold them back.
@@ -27,16 +31,34 @@ const SHORTEST_FRAME: Duration = Duration::from_millis(4);
 /// While the window takes no pictures, or a single step takes long, frames come at this pace.
 const UNSEEN_FRAME: Duration = Duration::from_millis(100);
 
-/// Opens the window on a scene and stays until it is closed.
-pub fn run(scene: Scene) -> Result<(), Failure> {
-    let session = Session::new(scene).map_err(Failure::refused)?;
+/// How long the scene's file is left alone once it was touched, so that it is written whole.
+const WRITING: Duration = Duration::from_millis(200);
+
+/// Opens the window on a session and stays until it is closed.
+pub fn run(mut session: Session) -> Result<(), Failure> {
     let event_loop = event_loop()?;
+    let mut store = Store::of_the_system();
+    let preferences = store.load().unwrap_or_else(|error| {
+        session.notices().error("preferences", format!("{error:#}"));
+        None
+    });
+    let preferences =
+        preferences.unwrap_or_else(|| Preferences::first(sys_locale::get_locale().as_deref()));
+    let proxy = event_loop.create_proxy();
     let mut app = App {
+        watch: Watch::new(move || {
+            // Fails only when the window has closed.
+            let _ = proxy.send_event(Redraw(WRITING));
+        }),
+        touched: None,
+        store,
+        preferences: Some(preferences),
         session,
         ui: Ui::default(),
         worker: None,
         measurer: None,
         runner: None,
+        filmer: None,
         scout: None,
         stopwatch: Stopwatch::start(),
         proxy: event_loop.create_proxy(),
@@ -51,11 +73,22 @@ pub fn run(scene: Scene) -> Result<(), Failure> {
     app.failure.map_or(Ok(()), Err)
 }
 
+/// Bytes of a file of pictures, if it was not cancelled.
+type Shot = Result<Option<Vec<u8>>, String>;
+
 /// The control panel wants a frame after this time.
 #[derive(Debug)]
 struct Redraw(Duration);
 
 struct App {
+    /// Looks at the scene's file.
+    watch: Watch,
+    /// When that was touched last, if it is to be read again.
+    touched: Option<Duration>,
+    /// Where preferences are kept.
+    store: Store,
+    /// Those of the last time, until the window opens.
+    preferences: Option<Preferences>,
     session: Session,
     ui: Ui,
     /// Takes the steps; none while none is under way.
@@ -64,6 +97,8 @@ struct App {
     measurer: Option<Worker<Trial, Tried>>,
     /// Runs the variants; none while there are none.
     runner: Option<Worker<VariantJob, VariantsDone>>,
+    /// Draws pictures into files; none while there are none to draw.
+    filmer: Option<Worker<Shooting, Shot>>,
     /// Looks ahead for the opening view; none while that is settled.
     scout: Option<Worker<Outlook, Outlook>>,
     stopwatch: Stopwatch,
@@ -234,6 +269,45 @@ impl App {
         }
     }
 
+    /// Lets pictures be drawn into files, never waiting for them.
+    fn film(&mut self) {
+        if let Some(shooting) = self.session.shooting_due() {
+            let run = |shooting: Shooting, _: &Stopwatch| film::shoot(&shooting);
+            self.filmer = Worker::start("pictures", run).ok();
+            match &mut self.filmer {
+                Some(filmer) => filmer.hand_over(shooting),
+                None => self.session.accept_shooting(Ok(None)),
+            }
+        }
+        let Some(filmer) = &mut self.filmer else {
+            return;
+        };
+        if let Some(outcome) = filmer.result(Duration::ZERO) {
+            self.session.accept_shooting(outcome);
+            self.filmer = None;
+        } else if filmer.is_gone() {
+            self.filmer = None;
+            let text = "The drawing of pictures broke down. This is a fault of the program: please report it.";
+            self.session.accept_shooting(Err(text.to_owned()));
+        }
+    }
+
+    /// Reads the scene's file again once it has been left alone for a moment.
+    fn reread(&mut self, now: Duration) {
+        self.watch.follow(self.session.file());
+        if self.watch.take() {
+            self.touched = Some(now);
+        }
+        if let Some(touched) = self.touched {
+            if now >= touched + WRITING {
+                self.touched = None;
+                self.session.reread();
+            } else {
+                self.schedule(touched + WRITING);
+            }
+        }
+    }
+
     /// Lets physics go on, lays out the control panel and paints both.
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
         let now = self.stopwatch.read();
@@ -242,6 +316,8 @@ impl App {
         self.measure(elapsed);
         self.run_variants();
         self.look_ahead();
+        self.film();
+        self.reread(now);
         self.session.notices().pass(elapsed);
         self.session.settle(elapsed);
         if self.session.is_closing() {
@@ -254,10 +330,19 @@ impl App {
         let shown = size.width > 0 && size.height > 0 && {
             let input = open.egui.take_egui_input(&open.window);
             let context = open.egui.egui_ctx().clone();
+            if let Some(wanted) = self.preferences.take() {
+                self.ui.prefer(&context, &mut self.session, &wanted);
+            }
             let mut place = egui::Rect::ZERO;
             let output = context.run_ui(input, |root| {
                 place = self.ui.show(root, &mut self.session, open.gpu.picture_id());
             });
+            let preferred = self.ui.preferences(&context, &self.session);
+            if let Err(error) = self.store.keep(&preferred) {
+                self.session
+                    .notices()
+                    .error("preferences", format!("{error:#}"));
+            }
             open.egui
                 .handle_platform_output(&open.window, output.platform_output);
             let pixels = place.size() * output.pixels_per_point;
@@ -292,6 +377,7 @@ impl App {
             || self.session.awaits_steps()
             || measuring
             || self.scout.is_some()
+            || self.session.reel().is_some()
             || self.session.is_settling()
             || self.session.notices().is_passing()
         {

@@ -1,4 +1,4 @@
-//! A perspective camera that orbits a target.
+//! A camera that orbits a target, with perspective or without.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -8,10 +8,12 @@ use glam::{DMat4, DVec3, DVec4, Mat4};
 const DISTANCE: std::ops::RangeInclusive<f64> = 1e-4..=1e12;
 /// The nearest thing drawn, as a part of the distance to the target.
 const NEAR: f64 = 1e-3;
+/// How far behind the eye the last thing drawn without perspective is, in distances to the target.
+const PARALLEL_REACH: f64 = 200.0;
 /// How much larger than a framed sphere the view is.
 const FRAME_MARGIN: f64 = 1.1;
 
-/// A perspective camera that looks at a target from a distance; `y` is up.
+/// A camera that looks at a target from a distance; `y` is up.
 ///
 /// The fields are free to set; the methods keep them in their ranges and ignore what is not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +28,9 @@ pub struct Camera {
     pub pitch: f64,
     /// Field of view, radians, in `(0, pi)`: vertical, or horizontal where the picture is taller than wide.
     pub fov_y: f64,
+    /// Whether all rays are parallel, so that things are as large far away as near. What is at the target
+    /// is as large either way.
+    pub parallel: bool,
 }
 
 impl Default for Camera {
@@ -37,6 +42,7 @@ impl Default for Camera {
             yaw: 35f64.to_radians(),
             pitch: 20f64.to_radians(),
             fov_y: 40f64.to_radians(),
+            parallel: false,
         }
     }
 }
@@ -104,13 +110,16 @@ impl Camera {
         -backward
     }
 
-    /// The ray from the eye (m) through a point of the picture, and its unit direction.
+    /// The ray from the eye, or without perspective from beside it (m), through a point of the picture, and its unit direction.
     /// `x` and `y` are in `[-1, 1]` over the picture, `y` up; `aspect` is its width over its height.
     pub fn ray(&self, x: f64, y: f64, aspect: f64) -> (DVec3, DVec3) {
         let [right, up, backward] = self.axes();
         let [half_width, half_height] = self.half_extents(aspect);
-        let direction = x * half_width * right + y * half_height * up - backward;
-        (self.eye(), direction.normalize())
+        let aside = x * half_width * right + y * half_height * up;
+        match self.parallel {
+            true => (self.eye() + self.distance * aside, -backward),
+            false => (self.eye(), (aside - backward).normalize()),
+        }
     }
 
     /// Where in the picture a point is seen, in `[-1, 1]`, `y` up, beyond that outside it;
@@ -121,9 +130,10 @@ impl Camera {
         let [half_width, half_height] = self.half_extents(aspect);
         let depth = -from_eye.dot(backward);
         (depth > NEAR * self.distance).then(|| {
+            let size = if self.parallel { self.distance } else { depth };
             [
-                from_eye.dot(right) / (depth * half_width),
-                from_eye.dot(up) / (depth * half_height),
+                from_eye.dot(right) / (size * half_width),
+                from_eye.dot(up) / (size * half_height),
             ]
         })
     }
@@ -139,13 +149,30 @@ impl Camera {
             DVec4::new(right.z, up.z, backward.z, 0.0),
             DVec4::W,
         );
-        let projection = DMat4::from_cols(
-            DVec4::X / half_width,
-            DVec4::Y / half_height,
-            -DVec4::W,
-            DVec4::Z * self.near(),
-        );
+        let projection = match self.parallel {
+            false => DMat4::from_cols(
+                DVec4::X / half_width,
+                DVec4::Y / half_height,
+                -DVec4::W,
+                DVec4::Z * self.near(),
+            ),
+            true => DMat4::from_cols(
+                DVec4::X / (half_width * self.distance),
+                DVec4::Y / (half_height * self.distance),
+                DVec4::Z / (PARALLEL_REACH * self.distance),
+                DVec4::Z + DVec4::W,
+            ),
+        };
         (projection * view).as_mat4()
+    }
+
+    /// How much a part of the depth buffer's value is, compared with that in perspective, for things at the
+    /// target.
+    pub fn depth_share(&self) -> f64 {
+        match self.parallel {
+            true => 1.0 / PARALLEL_REACH,
+            false => 1.0,
+        }
     }
 
     /// The depth of the nearest thing drawn, m.
@@ -183,6 +210,7 @@ mod tests {
     fn ray_through_a_projected_point_passes_through_it() {
         let mut camera = Camera::default();
         for (step, aspect) in ASPECTS.into_iter().cycle().take(40).enumerate() {
+            camera.parallel = step % 2 == 1;
             camera.orbit(0.7, 0.3 * (step as f64).sin());
             let point = camera.target + DVec3::new(1.0, -0.4, 0.6) * (step as f64).cos();
             let [x, y] = camera.project(point, aspect).expect("in front of the eye");
@@ -194,9 +222,14 @@ mod tests {
 
     #[test]
     fn projection_agrees_with_the_matrix() {
-        for aspect in ASPECTS {
+        for (aspect, parallel) in ASPECTS
+            .map(|a| [(a, false), (a, true)])
+            .into_iter()
+            .flatten()
+        {
             let camera = Camera {
                 target: DVec3::new(1e8, 3.0, -1e8),
+                parallel,
                 ..Camera::default()
             };
             let point = camera.target + DVec3::new(0.5, 1.0, -0.7);

@@ -13,7 +13,8 @@ use scene::{Scene, shown};
 use sim_core::{Collision, FixedStep, METHODS, Method, Settings};
 
 use crate::interrupt::{Interrupt, survive_file_limits};
-use crate::{app, failure::Failure, headless, shot, soak};
+use crate::session::{Record, Session, is_run_file};
+use crate::{app, failure::Failure, film, headless, shot, soak};
 
 /// Scene of the window when none is named.
 const FIRST_SCENE: &str = "cube-cow";
@@ -53,6 +54,11 @@ Every combination of the methods, steps, collisions and tolerances is run from t
 the exact solution beside them where it is known. Errors are distances from it, energy is its change since
 the start, relative where it can be. In --csv, run names the method, the rate and how collisions are found.";
 
+/// What `replay` says.
+const REPLAY: &str = "\
+A record has the scene, what was done to it on the way, and a hash of every state. Exit code 1: the replay
+has given another state than the record; the step is told.";
+
 /// Cowbell simulates colliding triangle meshes. Without a command it opens its window.
 #[derive(Parser)]
 #[command(
@@ -65,7 +71,7 @@ the start, relative where it can be. In --csv, run names the method, the rate an
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// Scene to open: a name from the gallery or the path of a .toml file
+    /// Scene to open: a name from the gallery, or the path of a .toml file, a recorded run (.run) or a mesh
     #[arg(value_name = "NAME|PATH", default_value = FIRST_SCENE)]
     scene: PathBuf,
     #[command(flatten)]
@@ -77,7 +83,7 @@ enum Command {
     /// Run a scene without a window and print its final state
     #[command(after_help = FIGURES)]
     Run {
-        /// Name from the gallery or path of a .toml file
+        /// Name from the gallery, or path of a .toml file or a mesh
         #[arg(value_name = "NAME|PATH")]
         scene: PathBuf,
         /// Number of steps
@@ -92,13 +98,29 @@ enum Command {
         /// Print the figures of every state as a table of comma-separated values
         #[arg(long, conflicts_with = "json")]
         csv: bool,
+        /// Print the hash of the final state alone: equal ones mean equal states, to the last bit
+        #[arg(long, conflicts_with_all = ["json", "csv"])]
+        hash: bool,
+        /// Record the run, with a hash of every state, in a file for `replay`
+        #[arg(long, value_name = "FILE.run", conflicts_with_all = ["csv", "separate"])]
+        record: Option<PathBuf>,
         #[command(flatten)]
         settings: SettingArgs,
+    },
+    /// Run a recorded run again: in the window, or without one to see that every state is the same
+    #[command(after_help = REPLAY)]
+    Replay {
+        /// Recorded run: a file that `run --record` or the window has written
+        #[arg(value_name = "FILE.run")]
+        file: PathBuf,
+        /// Compare every state with the record, without a window
+        #[arg(long)]
+        verify: bool,
     },
     /// Run a scene in several ways and print what each costs and how far it is off
     #[command(after_help = COMPARISON)]
     Compare {
-        /// Name from the gallery or path of a .toml file
+        /// Name from the gallery, or path of a .toml file or a mesh
         #[arg(value_name = "NAME|PATH")]
         scene: PathBuf,
         /// Simulated time of each run, s
@@ -140,11 +162,21 @@ enum Command {
     },
     /// Draw a scene into a PNG file, without a window
     Shot {
-        /// Name from the gallery or path of a .toml file
+        /// Name from the gallery, or path of a .toml file or a mesh
         #[arg(value_name = "NAME|PATH")]
         scene: PathBuf,
         #[command(flatten)]
         shot: ShotArgs,
+        #[command(flatten)]
+        settings: SettingArgs,
+    },
+    /// Draw a scene into a moving picture (GIF or animated PNG), without a window
+    Gif {
+        /// Name from the gallery, or path of a .toml file or a mesh
+        #[arg(value_name = "NAME|PATH")]
+        scene: PathBuf,
+        #[command(flatten)]
+        film: FilmArgs,
         #[command(flatten)]
         settings: SettingArgs,
     },
@@ -210,6 +242,41 @@ pub struct ShotArgs {
     pub select: Option<String>,
 }
 
+/// What to draw as a moving picture, and where to.
+#[derive(Args)]
+pub struct FilmArgs {
+    /// File to write; its ending says how: .gif, or .png (APNG)
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Simulated time to begin at, s
+    #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = not_negative, allow_negative_numbers = true)]
+    pub from: f64,
+    /// Simulated time to show, s
+    #[arg(long, value_name = "SECONDS", default_value = "3", value_parser = positive, allow_negative_numbers = true)]
+    pub time: f64,
+    /// Simulated seconds in a second of the picture: slow motion below 1, through impacts at their time
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = positive, allow_negative_numbers = true)]
+    pub speed: f64,
+    /// Frames a second, to the nearest hundredth of a second between two
+    #[arg(long, value_name = "HZ", default_value = "25", value_parser = frame_rate, allow_negative_numbers = true)]
+    pub fps: f64,
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x400", value_parser = size)]
+    pub size: [u32; 2],
+    /// Draw the bounding boxes of one depth of the hierarchies, or of all
+    #[arg(long, value_name = "DEPTH|all", value_parser = depth)]
+    pub bvh: Option<Depth>,
+    /// Draw where bodies have been
+    #[arg(long)]
+    pub trails: bool,
+    /// How many times nearer than the opening view
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = positive, allow_negative_numbers = true)]
+    pub zoom: f64,
+    /// Select the body of this name
+    #[arg(long, value_name = "NAME")]
+    pub select: Option<String>,
+}
+
 /// Levels of a bounding volume hierarchy.
 #[derive(Clone, Copy)]
 pub enum Depth {
@@ -263,7 +330,13 @@ pub fn main() -> ExitCode {
 fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
     match cli.command {
         None => {
-            app::run(load(&cli.scene, &cli.settings)?)?;
+            let session = match is_run_file(&cli.scene) {
+                true => replaying(&cli.scene)?,
+                false => {
+                    Session::new(load(&cli.scene, &cli.settings)?).map_err(Failure::refused)?
+                }
+            };
+            app::run(session)?;
             Ok(String::new())
         }
         Some(Command::Run {
@@ -272,14 +345,34 @@ fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
             json,
             csv,
             separate,
+            hash,
+            record,
             settings,
         }) => {
             let scene = load(&scene, &settings)?;
-            match csv {
-                true => headless::run_csv(&scene, steps, interrupt),
-                false => headless::run(&scene, steps, (json, separate), interrupt),
+            if csv {
+                return headless::run_csv(&scene, steps, interrupt);
             }
+            let form = match (json, hash) {
+                (true, _) => headless::RunForm::Json,
+                (_, true) => headless::RunForm::Hash,
+                _ => headless::RunForm::Table,
+            };
+            headless::run(
+                &scene,
+                steps,
+                (form, separate),
+                record.as_deref(),
+                interrupt,
+            )
         }
+        Some(Command::Replay { file, verify }) => match verify {
+            true => headless::replay(&file, interrupt),
+            false => {
+                app::run(replaying(&file)?)?;
+                Ok(String::new())
+            }
+        },
         Some(Command::Compare {
             scene,
             time,
@@ -316,6 +409,11 @@ fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
             shot,
             settings,
         }) => shot::write(load(&scene, &settings)?, &shot),
+        Some(Command::Gif {
+            scene,
+            film,
+            settings,
+        }) => film::write(load(&scene, &settings)?, &film, interrupt),
     }
 }
 
@@ -378,6 +476,12 @@ impl From<CollisionArg> for Collision {
             CollisionArg::Continuous => Collision::Continuous,
         }
     }
+}
+
+/// A session at the start of a recorded run.
+fn replaying(file: &Path) -> Result<Session, Failure> {
+    let record = Record::read(file).map_err(Failure::refused)?;
+    Session::replaying(record).map_err(Failure::refused)
 }
 
 /// The world would speak of a dt that nobody gave.
@@ -451,6 +555,20 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("must be a number above 0".to_owned()),
+    }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        _ => Err("must be a number from 0".to_owned()),
+    }
+}
+
+fn frame_rate(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (1.0..=50.0).contains(&value) => Ok(value),
+        _ => Err("must be a number from 1 to 50".to_owned()),
     }
 }
 

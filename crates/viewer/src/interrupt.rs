@@ -47,6 +47,8 @@ pub fn survive_file_limits() {
 pub struct Progress {
     stopwatch: Option<Stopwatch>,
     total: u64,
+    /// What is counted.
+    what: &'static str,
     /// The step to look at the clock after, and how many lie between two looks.
     next: u64,
     stride: u64,
@@ -60,7 +62,13 @@ impl Progress {
 
     /// Of so many steps; silent where stderr is no terminal.
     pub fn new(total: u64) -> Progress {
+        Progress::of(total, "steps")
+    }
+
+    /// The same of something else that is counted.
+    pub fn of(total: u64, what: &'static str) -> Progress {
         Progress {
+            what,
             stopwatch: stderr().is_terminal().then(Stopwatch::start),
             total,
             next: 1,
@@ -95,8 +103,9 @@ impl Progress {
             // Nothing is lost if it cannot be told.
             let _ = write!(
                 stderr(),
-                "\r{steps} of {} steps, {percent:.1} % ",
-                self.total
+                "\r{steps} of {} {}, {percent:.1} % ",
+                self.total,
+                self.what
             );
         }
     }

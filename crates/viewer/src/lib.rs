@@ -8,18 +8,23 @@
 
 pub mod app;
 pub mod camera;
+pub mod canvas;
 pub mod cli;
 pub mod expression;
 pub mod failure;
+pub mod film;
 pub mod gpu;
 pub mod headless;
 pub mod interrupt;
 pub mod number;
 pub mod picture;
+pub mod preferences;
 pub mod render;
 pub mod session;
 pub mod shot;
 pub mod soak;
 pub mod stopwatch;
 pub mod ui;
+pub mod watch;
+pub mod words;
 pub mod worker;

@@ -65,6 +65,17 @@ pub fn ordinal(count: usize) -> String {
     format!("{count}{ending}")
 }
 
+/// A number without the digits that are rounding.
+pub fn tidy(value: f64) -> String {
+    let text = format!("{value:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" {
+        "0".to_owned()
+    } else {
+        text.to_owned()
+    }
+}
+
 /// A whole number, in groups of three digits.
 pub fn count(value: f64) -> String {
     let digits = format!("{value:.0}");
@@ -76,6 +87,17 @@ pub fn count(value: f64) -> String {
         text.push(digit);
     }
     text
+}
+
+/// Bytes, of two digits or more, in a unit that suits their number.
+pub fn bytes(count: usize) -> String {
+    let size = count as f64;
+    match size {
+        ..1e3 => format!("{count} B"),
+        ..1e6 => format!("{:.0} kB", size / 1e3),
+        ..1e9 => format!("{:.1} MB", size / 1e6),
+        _ => format!("{:.1} GB", size / 1e9),
+    }
 }
 
 /// An energy, J; not every one is finite, as where a body is at a centre of attraction.

@@ -24,6 +24,8 @@ pub struct Picture {
     pub marks: Vec<Line>,
     /// Arrows with thickness, such as velocities.
     pub arrows: Vec<Arrow>,
+    /// Whether the edges of all meshes are drawn over them.
+    pub wireframe: bool,
     /// Whether the ground grid at `y = 0` and the axes are drawn.
     pub grid: bool,
 }

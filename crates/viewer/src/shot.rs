@@ -15,29 +15,7 @@ use crate::stopwatch::Stopwatch;
 pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
     let mut session = Session::new(scene).map_err(Failure::refused)?;
     session.look_ahead();
-    if let Some(name) = &args.select {
-        let body = session.scene().bodies.iter().position(|b| b.name == *name);
-        if body.is_none() {
-            return Err(no_such_body(session.scene(), name));
-        }
-        session.select(body);
-    }
-    session.display.bvh.shown = args.bvh.is_some();
-    session.display.bvh.every_body = args.select.is_none();
-    match args.bvh {
-        Some(Depth::Level(depth)) => {
-            let levels = session.bvh_depth();
-            if depth >= levels {
-                return Err(Failure::Refused(format!(
-                    "--bvh {depth}: the hierarchies of {} have depths below {levels}",
-                    shown::name(&session.scene().name)
-                )));
-            }
-            session.display.bvh.depth = depth;
-        }
-        Some(Depth::All) => session.display.bvh.every_depth = true,
-        None => {}
-    }
+    look(&mut session, args.select.as_deref(), args.bvh)?;
     let stopwatch = Stopwatch::start();
     for _ in 0..args.step {
         session.step_once();
@@ -64,7 +42,40 @@ pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
     ))
 }
 
-fn failure(error: ShotError) -> Failure {
+/// Selects a body and shows boxes, as the arguments ask for.
+pub fn look(
+    session: &mut Session,
+    select: Option<&str>,
+    bvh: Option<Depth>,
+) -> Result<(), Failure> {
+    if let Some(name) = select {
+        let body = session.scene().bodies.iter().position(|b| b.name == name);
+        if body.is_none() {
+            return Err(no_such_body(session.scene(), name));
+        }
+        session.select(body);
+    }
+    session.display.bvh.shown = bvh.is_some();
+    session.display.bvh.every_body = select.is_none();
+    match bvh {
+        Some(Depth::Level(depth)) => {
+            let levels = session.bvh_depth();
+            if depth >= levels {
+                return Err(Failure::Refused(format!(
+                    "--bvh {depth}: the hierarchies of {} have depths below {levels}",
+                    shown::name(&session.scene().name)
+                )));
+            }
+            session.display.bvh.depth = depth;
+        }
+        Some(Depth::All) => session.display.bvh.every_depth = true,
+        None => {}
+    }
+    Ok(())
+}
+
+/// Why there is no picture, for the one who asked for it.
+pub fn failure(error: ShotError) -> Failure {
     let message = error.to_string();
     match error {
         ShotError::NoAdapter | ShotError::Device(_) => Failure::NoDisplay(message),

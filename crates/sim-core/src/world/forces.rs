@@ -105,6 +105,35 @@ impl World {
         energy
     }
 
+    /// The sum of all forces on a body where it is and as it moves now, N, but for those of contacts;
+    /// 0 on an immovable one. For one body after the other: time grows with the number of forces, and
+    /// under gravitation with that of bodies.
+    pub fn applied_force(&self, body: usize) -> DVec3 {
+        let mass = self.mass(body);
+        if mass.is_infinite() {
+            return DVec3::ZERO;
+        }
+        let on_first = |force: &Force, i, j| force.on_pair(&self.pair_motion(i, j));
+        let mut sum = mass * self.constant_acceleration(body);
+        for force in &self.forces.list {
+            sum += match force.reach() {
+                // In the constant acceleration.
+                Reach::Weight => DVec3::ZERO,
+                Reach::EachBody => force.on_body(&self.body_motion(body)),
+                Reach::Body(i) if i == body => force.on_body(&self.body_motion(body)),
+                Reach::Body(_) => DVec3::ZERO,
+                Reach::Pair([i, j]) if i == body => on_first(force, i, j),
+                Reach::Pair([i, j]) if j == body => -on_first(force, i, j),
+                Reach::Pair(_) => DVec3::ZERO,
+                Reach::EachPair => {
+                    let others = self.movable().filter(|&other| other != body);
+                    others.map(|other| on_first(force, body, other)).sum()
+                }
+            };
+        }
+        sum
+    }
+
     /// What constant forces and weight do to a body, m/s²; nothing to an immovable one.
     pub(super) fn constant_acceleration(&self, body: usize) -> DVec3 {
         if self.bodies.mass[body].is_infinite() {

@@ -3,7 +3,7 @@ use glam::DVec3;
 
 use super::{Collision, Phase, Profile, Settings, StepError, World, WorldError};
 use crate::{
-    Body, METHODS, Mesh, Shape,
+    Body, Force, METHODS, Mesh, Shape,
     test_meshes::{cube, sphere},
 };
 
@@ -507,4 +507,65 @@ fn the_number_of_threads_changes_no_bit() {
     });
     assert!(ran[0].0 > 100, "{}", ran[0].0);
     assert!(ran.iter().all(|other| *other == ran[0]));
+}
+
+#[test]
+fn the_applied_force_is_what_the_motion_shows() {
+    let mut world = World::new(Settings {
+        dt: 1e-6,
+        ..Settings::default()
+    })
+    .expect("sound settings");
+    for (n, mass) in [2.0, 3.0, f64::INFINITY].into_iter().enumerate() {
+        let n = n as f64;
+        let body = Body {
+            mass,
+            position: DVec3::new(3.0 * n, n * n, -n),
+            velocity: DVec3::new(1.0, -n, 0.5),
+            force: if mass.is_finite() {
+                DVec3::Y
+            } else {
+                DVec3::ZERO
+            },
+            ..Body::default()
+        };
+        world.add(body).expect("a sound body");
+    }
+    let spring = Force::Spring {
+        bodies: [0, 1],
+        rest_length: 1.0,
+        stiffness: 5.0,
+        damping: 0.3,
+    };
+    let forces = [
+        Force::Gravity {
+            acceleration: DVec3::new(0.0, -9.81, 0.0),
+        },
+        Force::QuadraticDrag {
+            body: None,
+            coefficient: 0.2,
+        },
+        Force::LinearDrag {
+            body: Some(1),
+            coefficient: 0.4,
+        },
+        Force::Gravitation { constant: 2.0 },
+        spring,
+    ];
+    for force in forces {
+        world.add_force(force).expect("a sound force");
+    }
+    let applied: Vec<DVec3> = (0..3).map(|i| world.applied_force(i)).collect();
+    let before: Vec<DVec3> = (0..3).map(|i| world.velocity(i)).collect();
+    world.step().expect("a step");
+    for i in 0..2 {
+        let change = (world.velocity(i) - before[i]) / world.settings().dt;
+        let shown = world.mass(i) * change;
+        assert!(
+            (applied[i] - shown).length() < 1e-3 * shown.length(),
+            "{i}: {} {shown}",
+            applied[i]
+        );
+    }
+    assert_eq!(applied[2], DVec3::ZERO);
 }

@@ -1,21 +1,23 @@
 //! Runs and checks without a window, as text or JSON. Needs neither display nor graphics adapter.
 
 mod compare;
+mod replay;
 
 pub use compare::{Form, compare};
+pub use replay::replay;
 
 use std::fmt::{Display, Write};
 use std::io::Write as _;
 use std::path::Path;
 
-use scene::{MeshReport, Scene, mesh_file, shown};
+use scene::{MeshReport, Scene, file, mesh_file, shown};
 use serde::Serialize;
 use sim_core::{DVec3, Overlap, SeparateError, StepError, World};
 
 use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
 use crate::number;
-use crate::session::{Drift, Exact, Halt, Reference, Runner, csv_head, csv_line};
+use crate::session::{Drift, Exact, Halt, Record, Reference, Runner, csv_head, csv_line};
 use crate::stopwatch::Stopwatch;
 
 /// Final state of a run. Numbers are f64 and survive the way through JSON bit for bit.
@@ -123,12 +125,25 @@ struct RepairReport {
     count: usize,
 }
 
-/// Takes `steps` steps of a scene, or as many as there are before an interrupt; the final state as
-/// JSON or as a table. If asked to `separate`, bodies in overlap are moved out of each other first.
+/// What `run` prints of the final state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunForm {
+    /// A table for people.
+    Table,
+    /// A JSON object.
+    Json,
+    /// Its hash.
+    Hash,
+}
+
+/// Takes `steps` steps of a scene, or as many as there are before an interrupt; the final state in a
+/// form. If asked to `separate`, bodies in overlap are moved out of each other first; with a path the run
+/// is recorded there.
 pub fn run(
     scene: &Scene,
     steps: u64,
-    (json, separate): (bool, bool),
+    (form, separate): (RunForm, bool),
+    record: Option<&Path>,
     interrupt: &Interrupt,
 ) -> Result<String, Failure> {
     let mut world = scene.world().map_err(Failure::refused)?;
@@ -154,6 +169,13 @@ pub fn run(
     interrupt
         .listen()
         .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    let mut recorded = match record {
+        Some(path) => {
+            replay::check_recordable(path, steps)?;
+            Some(Record::begin(scene, &world))
+        }
+        None => None,
+    };
     let mut progress = Progress::new(steps);
     let stopwatch = Stopwatch::start();
     while world.steps() < steps && !interrupt.came() {
@@ -161,6 +183,9 @@ pub fn run(
         if let Err(error) = stepped {
             progress.end();
             return Err(Failure::Run(step_error(scene, &error)));
+        }
+        if let Some(recorded) = &mut recorded {
+            recorded.push(world.steps(), world.state_hash());
         }
         progress.at(world.steps());
     }
@@ -174,12 +199,19 @@ pub fn run(
             "cowbell: interrupted after {reached} of {steps} steps"
         );
     }
+    if let Some((path, recorded)) = record.zip(recorded) {
+        let text = recorded.text_at(path).map_err(Failure::refused)?;
+        file::write(path, text.as_bytes()).map_err(|error| {
+            let path = shown::path(path);
+            Failure::Refused(format!("cannot write {path}: {error}"))
+        })?;
+    }
     let drift = reference.drift(&world);
     let report = RunReport::of(scene, &world, start, (&drift, exact.error(&world)));
-    Ok(if json {
-        to_json(&report)
-    } else {
-        report.table(scene, &drift, seconds_per_step)
+    Ok(match form {
+        RunForm::Json => to_json(&report),
+        RunForm::Hash => format!("{}\n", report.state_hash),
+        RunForm::Table => report.table(scene, &drift, seconds_per_step),
     })
 }
 
@@ -187,7 +219,8 @@ pub fn run(
 /// state as CSV.
 pub fn run_csv(scene: &Scene, steps: u64, interrupt: &Interrupt) -> Result<String, Failure> {
     let world = scene.world().map_err(Failure::refused)?;
-    let mut runner = Runner::stepping(&world, *world.settings()).map_err(Failure::refused)?;
+    let runner = Runner::stepping(&world, *world.settings()).map_err(Failure::refused)?;
+    let mut runner = runner.profiled();
     interrupt
         .listen()
         .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;

@@ -32,6 +32,8 @@ pub(super) struct Frame {
     grid_reach: f32,
     grid_x: [f32; 4],
     grid_z: [f32; 4],
+    depth_share: f32,
+    padding: [f32; 3],
 }
 
 impl Frame {
@@ -57,7 +59,12 @@ impl Frame {
         Self {
             view_projection: camera.view_projection(aspect).to_cols_array_2d(),
             right: (half_width * right).as_vec3().to_array(),
-            near: camera.near() as f32,
+            // Without perspective nothing comes near the eye.
+            near: if camera.parallel {
+                0.0
+            } else {
+                camera.near() as f32
+            },
             up: (half_height * up).as_vec3().to_array(),
             pixel: (2.0 * half_height / height) as f32,
             forward: (-backward).as_vec3().to_array(),
@@ -71,6 +78,8 @@ impl Frame {
             grid_reach: (GRID_REACH * camera.distance.max(eye.y.abs())) as f32,
             grid_x: within(eye.x),
             grid_z: within(eye.z),
+            depth_share: camera.depth_share() as f32,
+            padding: [0.0; 3],
         }
     }
 }

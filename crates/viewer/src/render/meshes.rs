@@ -57,16 +57,27 @@ pub(super) struct Which {
 pub(super) enum Look {
     Plain,
     /// With its edges, and so with the corners of triangles in order.
+    Edged,
+    /// The same, brighter and with a rim.
     Selected,
     /// Seen through.
     Ghost,
 }
 
+impl Look {
+    /// Whether the corners of triangles have to be in order.
+    fn is_edged(self) -> bool {
+        matches!(self, Look::Edged | Look::Selected)
+    }
+}
+
 impl Which {
     /// What is opaque, and so casts shadows.
-    pub(super) const OPAQUE: [Which; 4] = [
+    pub(super) const OPAQUE: [Which; 6] = [
         Which::new(true, Look::Plain),
         Which::new(false, Look::Plain),
+        Which::new(true, Look::Edged),
+        Which::new(false, Look::Edged),
         Which::new(true, Look::Selected),
         Which::new(false, Look::Selected),
     ];
@@ -106,12 +117,14 @@ impl Meshes {
         queue: &wgpu::Queue,
         models: &[Model],
         ghosts: &[Ghost],
+        wireframe: bool,
         eye: DVec3,
     ) {
         self.order.clear();
         let models = models.iter().map(|model| {
             let look = match model.selected {
                 true => Look::Selected,
+                false if wireframe => Look::Edged,
                 false => Look::Plain,
             };
             (&model.mesh, model.position, model.colour, look)
@@ -131,7 +144,7 @@ impl Meshes {
             if mesh.places.iter().all(|places| places.instances.is_empty()) {
                 self.order.push(address);
             }
-            if look == Look::Selected && mesh.apart.is_none() {
+            if look.is_edged() && mesh.apart.is_none() {
                 mesh.apart = Some(Triangles::apart(device, geometry));
             }
             mesh.places[look as usize].instances.push(Instance {
@@ -182,7 +195,7 @@ impl Meshes {
                 continue;
             }
             let apart = mesh.apart.as_ref();
-            let apart = apart.filter(|_| which.look == Look::Selected);
+            let apart = apart.filter(|_| which.look.is_edged());
             apart.unwrap_or(&mesh.shared).draw(pass, range);
         }
     }
@@ -193,14 +206,14 @@ struct DeviceMesh {
     /// Keeps the address that the mesh is known by from being used again; its geometry may go.
     _mesh: Weak<Mesh>,
     shared: Triangles,
-    /// Each corner by itself and in order, since the mesh was first selected.
+    /// Each corner by itself and in order, since the mesh was first shown with edges.
     apart: Option<Triangles>,
     /// Whether it has no inside to be seen.
     solid: bool,
     /// Half the diagonal of its bounds, m.
     radius: f32,
     /// Where it is drawn in each [`Look`].
-    places: [Places; 3],
+    places: [Places; 4],
 }
 
 #[derive(Default)]

@@ -93,7 +93,8 @@ impl Renderer {
         self.frame.write(queue, &frame);
         let eye = picture.camera.eye();
         let (models, ghosts) = (&picture.models, &picture.ghosts);
-        self.meshes.gather(device, queue, models, ghosts, eye);
+        self.meshes
+            .gather(device, queue, models, ghosts, picture.wireframe, eye);
         let axis = if picture.grid {
             axes::upright(&picture.camera)
         } else {

@@ -25,12 +25,12 @@ impl Surface {
                 label: "surface",
                 shader: &module,
                 vertex: match which.look {
-                    Look::Selected => "vs_edged",
+                    Look::Selected | Look::Edged => "vs_edged",
                     Look::Plain | Look::Ghost => "vs_plain",
                 },
                 fragment: match which.look {
                     Look::Plain => "fs_plain",
-                    Look::Selected => "fs_edged",
+                    Look::Selected | Look::Edged => "fs_edged",
                     Look::Ghost => "fs_ghost",
                 },
                 groups: &[Some(frame.layout())],

@@ -1,5 +1,7 @@
 //! The curves over time that the plots show: which figures, of which runs, in which colours.
 
+use sim_core::Phase;
+
 use super::{Sample, Session, Variant};
 
 /// Points of a curve; where there are more, the least and the greatest of neighbours stand for them.
@@ -9,6 +11,7 @@ const RUN: [f32; 3] = [0.93, 0.94, 0.96];
 const FIRST: [f32; 3] = [0.95, 0.62, 0.25];
 const SECOND: [f32; 3] = [0.40, 0.68, 0.95];
 const THIRD: [f32; 3] = [0.45, 0.80, 0.50];
+const FOURTH: [f32; 3] = [0.88, 0.56, 0.92];
 
 /// A plot over simulated time.
 pub struct Chart {
@@ -100,14 +103,37 @@ pub static CHARTS: [Chart; 5] = [
     Chart {
         title: "Step cost",
         unit: "s",
-        meaning: "Real time that each step took",
+        meaning: "Real time that each step took, and of that: motion under forces (integrate), who comes \
+                  near whom (broad phase), whether and when they meet (narrow phase), impulses and \
+                  contacts that last (response). To time the parts makes short steps a little longer",
         logarithmic: true,
         main: Part {
-            name: "cost",
+            name: "step",
             colour: RUN,
             value: |s| s.cost,
         },
-        parts: &[],
+        parts: &[
+            Part {
+                name: "integrate",
+                colour: THIRD,
+                value: |s| s.phase(Phase::Integrate),
+            },
+            Part {
+                name: "broad",
+                colour: SECOND,
+                value: |s| s.phase(Phase::Broad),
+            },
+            Part {
+                name: "narrow",
+                colour: FIRST,
+                value: |s| s.phase(Phase::Narrow),
+            },
+            Part {
+                name: "response",
+                colour: FOURTH,
+                value: |s| s.phase(Phase::Respond),
+            },
+        ],
     },
     Chart {
         title: "Contacts",

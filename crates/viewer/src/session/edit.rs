@@ -2,46 +2,46 @@
 //! A refused value leaves everything as it was and says why.
 
 use scene::{SceneBody, SceneShape};
-use sim_core::{DVec3, WorldError};
+use sim_core::DVec3;
 
-use crate::headless;
-
-use super::{Session, State};
+use super::{Input, Session, State};
 
 impl Session {
     /// Moves the selected body to `position`, m.
     pub fn set_position(&mut self, position: DVec3) {
-        self.edit("position", |session, i| {
-            session.world.set_position(i, position)?;
-            if session.display.trails {
-                session.trails.begin(&session.world);
-            }
-            Ok(move |body: &mut SceneBody| body.position = position)
-        });
+        let edited = self.edit(
+            "position",
+            |i| Input::Position(i, position),
+            |body| {
+                body.position = position;
+            },
+        );
+        if edited && self.display.trails {
+            self.trails.begin(&self.world);
+        }
     }
 
     /// Gives the selected body a velocity, m/s.
     pub fn set_velocity(&mut self, velocity: DVec3) {
-        self.edit("velocity", |session, i| {
-            session.world.set_velocity(i, velocity)?;
-            Ok(move |body: &mut SceneBody| body.velocity = velocity)
-        });
+        self.edit(
+            "velocity",
+            |i| Input::Velocity(i, velocity),
+            |body| body.velocity = velocity,
+        );
     }
 
     /// Puts the selected body under a constant force, N.
     pub fn set_force(&mut self, force: DVec3) {
-        self.edit("force", |session, i| {
-            session.world.set_force(i, force)?;
-            Ok(move |body: &mut SceneBody| body.force = force)
-        });
+        self.edit(
+            "force",
+            |i| Input::Force(i, force),
+            |body| body.force = force,
+        );
     }
 
     /// Gives the selected body a mass, kg; positive, infinite for an immovable one.
     pub fn set_mass(&mut self, mass: f64) {
-        self.edit("mass", |session, i| {
-            session.world.set_mass(i, mass)?;
-            Ok(move |body: &mut SceneBody| body.mass = mass)
-        });
+        self.edit("mass", |i| Input::Mass(i, mass), |body| body.mass = mass);
     }
 
     /// Makes the selected body immovable, or gives it back the mass it had, or 1 kg.
@@ -58,18 +58,20 @@ impl Session {
 
     /// Says which part of the approaching speed the selected body leaves an impact with, 0 to 1.
     pub fn set_restitution(&mut self, restitution: f64) {
-        self.edit("restitution", |session, i| {
-            session.world.set_restitution(i, restitution)?;
-            Ok(move |body: &mut SceneBody| body.restitution = restitution)
-        });
+        self.edit(
+            "restitution",
+            |i| Input::Restitution(i, restitution),
+            |body| body.restitution = restitution,
+        );
     }
 
     /// Gives the selected body a coefficient of friction, from 0 to infinity.
     pub fn set_friction(&mut self, friction: f64) {
-        self.edit("friction", |session, i| {
-            session.world.set_friction(i, friction)?;
-            Ok(move |body: &mut SceneBody| body.friction = friction)
-        });
+        self.edit(
+            "friction",
+            |i| Input::Friction(i, friction),
+            |body| body.friction = friction,
+        );
     }
 
     /// Gives the selected body another shape. Layout only.
@@ -85,6 +87,51 @@ impl Session {
     /// Stretches the selected body along its own axes; not 0. Layout only.
     pub fn set_scale(&mut self, scale: DVec3) {
         self.edit_shape("scale", |body| body.scale = scale);
+    }
+
+    /// Gives the selected body another name, which no other has.
+    pub fn rename_selected(&mut self, name: &str) {
+        let (Some(i), name) = (self.selection, name.trim()) else {
+            return;
+        };
+        let bodies = &self.scene.bodies;
+        let before = bodies[i].name.clone();
+        if name == before {
+            return;
+        }
+        if name.is_empty() || bodies.iter().any(|body| body.name == name) {
+            let text = match name.is_empty() {
+                true => "A body needs a name.".to_owned(),
+                false => format!("Another body is called {name}."),
+            };
+            return self.notices.error("rename", text);
+        }
+        if self.hidden.remove(&before) {
+            self.hidden.insert(name.to_owned());
+        }
+        if let Some(mass) = self.masses.remove(&before) {
+            self.masses.insert(name.to_owned(), mass);
+        }
+        name.clone_into(&mut self.scene.bodies[i].name);
+        self.notices.dismiss("rename");
+        self.edited();
+    }
+
+    /// Whether a body is left out of the picture.
+    pub fn is_hidden(&self, body: usize) -> bool {
+        let body = self.scene.bodies.get(body);
+        body.is_some_and(|body| self.hidden.contains(&body.name))
+    }
+
+    /// Leaves a body out of the picture, or shows it again; it moves and collides all the same.
+    pub fn hide(&mut self, body: usize, hidden: bool) {
+        let Some(body) = self.scene.bodies.get(body) else {
+            return;
+        };
+        match hidden {
+            true => self.hidden.insert(body.name.clone()),
+            false => self.hidden.remove(&body.name),
+        };
     }
 
     /// Sets the selected body's colour, sRGB, each part from 0 to 1.
@@ -137,14 +184,18 @@ impl Session {
     }
 
     /// Applies a change to the selected body of the world and, in the layout state, of the scene.
-    fn edit<Keep: FnOnce(&mut SceneBody)>(
+    /// Whether it was made.
+    fn edit(
         &mut self,
         field: &'static str,
-        change: impl FnOnce(&mut Self, usize) -> Result<Keep, WorldError>,
-    ) {
-        let Some(i) = self.selection else { return };
-        match change(self, i) {
-            Ok(keep) => {
+        input: impl FnOnce(usize) -> Input,
+        keep: impl FnOnce(&mut SceneBody),
+    ) -> bool {
+        let Some(i) = self.selection else {
+            return false;
+        };
+        match self.change(input(i)) {
+            Ok(_) => {
                 self.notices.dismiss(field);
                 self.disown_jobs();
                 if self.state == State::Layout {
@@ -152,10 +203,11 @@ impl Session {
                     self.edited();
                 }
                 self.begin_record();
+                true
             }
             Err(error) => {
-                let text = headless::with_names(&self.scene, &error);
-                self.notices.error(field, text);
+                self.notices.error(field, error.text(&self.scene));
+                false
             }
         }
     }

@@ -2,45 +2,110 @@
 
 use std::path::{Path, PathBuf};
 
-use scene::{MeshRef, Scene, SceneBody, SceneShape, shown};
+use scene::{MeshRef, MeshReport, Scene, SceneBody, SceneShape, shown};
 
 use super::Session;
+use super::record::is_run_file;
+use crate::number;
 
 impl Session {
     /// Opens a scene of the gallery, by name, or of a file, by path. On failure the present one
     /// stays.
     pub fn open(&mut self, name_or_path: impl AsRef<Path>) {
         let name_or_path = name_or_path.as_ref();
-        let opened = Scene::load(name_or_path).map_err(anyhow::Error::new);
-        match opened.and_then(Session::new) {
+        let opened = match is_run_file(name_or_path) {
+            true => self.open_run(name_or_path),
+            false => Scene::load(name_or_path)
+                .map_err(anyhow::Error::new)
+                .and_then(Session::new),
+        };
+        match opened {
             Ok(session) => {
-                let (mut display, edition) = (self.display, self.edition + 1);
-                let opening = self.opening.next();
-                let mut compare = std::mem::take(&mut self.compare);
-                compare.forget();
-                let variants = self.variants.edition + 1;
-                display.trails = session.display.trails;
-                *self = session;
-                self.display = display;
-                self.compare = compare;
-                self.edition = edition;
-                self.variants.edition = variants;
-                self.opening = opening;
                 let path = PathBuf::from(name_or_path);
-                self.file = path.extension().is_some().then_some(path);
+                self.give_way(session, is_scene_file(&path).then_some(path));
             }
             Err(error) => self.notices.error("open", error.to_string()),
         }
     }
 
+    /// Begins an empty scene.
+    pub(super) fn begin_scene(&mut self) {
+        let settings = sim_core::Settings::default();
+        let scene = Scene {
+            name: "untitled".to_owned(),
+            title: "New scene".to_owned(),
+            about: String::new(),
+            dt: settings.dt,
+            method: settings.method,
+            collision: settings.collision,
+            tolerance: settings.tolerance,
+            bodies: Vec::new(),
+            forces: Vec::new(),
+        };
+        match Session::new(scene) {
+            Ok(session) => self.give_way(session, None),
+            Err(error) => self.notices.error("open", error.to_string()),
+        }
+    }
+
+    /// Lets another scene take the place of this one; how to look at it stays.
+    fn give_way(&mut self, session: Session, file: Option<PathBuf>) {
+        let (mut display, edition) = (self.display, self.edition + 1);
+        let (parallel, profiled) = (self.camera.parallel, self.profiled);
+        let opening = self.opening.next();
+        let mut compare = std::mem::take(&mut self.compare);
+        compare.forget();
+        let variants = self.variants.edition + 1;
+        display.trails = session.display.trails;
+        *self = session;
+        self.display = display;
+        self.camera.parallel = parallel;
+        self.profiled = profiled;
+        self.compare = compare;
+        self.edition = edition;
+        self.variants.edition = variants;
+        self.opening = opening;
+        self.file = file;
+    }
+
+    /// Reads the scene's file again if it has become another scene; edits that no file has are kept
+    /// instead. A file that is half written or wrong leaves everything as it is, and says what is wrong.
+    pub fn reread(&mut self) {
+        let Some(path) = self.file.clone() else {
+            return;
+        };
+        match Scene::load(&path) {
+            Ok(scene) if scene == self.scene => {}
+            Ok(_) if self.is_changed() => {
+                let text = "The file has changed. Your edits are kept: open it again to see what is in it.";
+                self.notices.error("file", text.to_owned());
+            }
+            Ok(_) => {
+                let camera = self.camera;
+                self.open(&path);
+                self.camera = camera;
+                let text = "The file has changed and was read again.";
+                self.notices.info("file", text.to_owned());
+            }
+            Err(error) => self.notices.error("file", error.to_string()),
+        }
+    }
+
+    /// The file that the scene was read from or last saved to.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
     /// Adds a body of 1 kg at rest with the mesh of a file, beside all others. Returns to the
     /// layout state first.
     pub fn import(&mut self, path: &Path) {
-        match MeshRef::load(path) {
-            Ok(mesh) => {
+        match MeshRef::load_reporting(path) {
+            Ok((mesh, report)) => {
                 let name = path.file_stem().unwrap_or_default().to_string_lossy();
                 self.add(&name, SceneShape::Mesh(mesh));
                 self.frame();
+                let lines = report_lines(&shown::path(path), &report);
+                self.notices.keep("import", &lines);
             }
             Err(error) => self.notices.error("import", error.to_string()),
         }
@@ -96,8 +161,12 @@ impl Session {
     /// and this ending, which is told.
     pub fn export(&mut self, ending: &str, bytes: &[u8]) {
         let path = self.new_file(ending);
-        let whole = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
-        match scene::file::write(&path, bytes) {
+        self.export_to(&path, bytes);
+    }
+
+    pub(super) fn export_to(&mut self, path: &Path, bytes: &[u8]) {
+        let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        match scene::file::write(path, bytes) {
             Ok(()) => {
                 let text = format!("Wrote {}.", shown::path(&whole));
                 self.notices.info("export", text);
@@ -108,6 +177,51 @@ impl Session {
             }
         }
     }
+}
+
+/// What came in, a line for each thing to know.
+fn report_lines(name: &str, report: &MeshReport) -> Vec<String> {
+    let count = |count: usize| number::count(count as f64);
+    let [x, y, z] = report.extent.map(number::short);
+    let mut lines = vec![
+        format!("{name}: {} triangles.", count(report.triangles)),
+        format!("Size: {x} by {y} by {z} m."),
+    ];
+    let mut tell = |is: bool, line: String| lines.extend(is.then_some(line));
+    match report.volume {
+        Some(volume) => tell(
+            true,
+            format!("Closed, volume {} m³.", number::short(volume)),
+        ),
+        None => tell(
+            report.closed,
+            "Closed, but its sides are not all turned alike.".to_owned(),
+        ),
+    }
+    tell(!report.closed, "Open: it has borders.".to_owned());
+    tell(
+        report.components > 1,
+        format!("Pieces: {}.", count(report.components)),
+    );
+    if let Some(unit) = report.unit {
+        tell(true, format!("Unit of the file: {unit} m."));
+    }
+    if let Some(axis) = report.up_axis {
+        tell(true, format!("Up in the file: {axis}."));
+    }
+    let merged = report.welded_vertices;
+    tell(merged > 0, format!("Vertices merged: {}.", count(merged)));
+    let dropped = report.degenerate_triangles + report.duplicate_triangles;
+    tell(
+        dropped > 0,
+        format!("Triangles left out: {}.", count(dropped)),
+    );
+    let turned = report.flipped_triangles;
+    tell(
+        turned > 0,
+        format!("Triangles turned over: {}.", count(turned)),
+    );
+    lines
 }
 
 pub(super) fn is_scene_file(path: &Path) -> bool {

@@ -3,7 +3,7 @@
 use scene::{SceneBody, SceneShape};
 use sim_core::{Aabb, DVec3, Shape};
 
-use super::{Session, State};
+use super::Session;
 
 /// Largest way that the opening view makes room for, in radii of the body: a bullet would be a
 /// dot in it. Half-spaces farther away are not looked at either.
@@ -20,14 +20,6 @@ pub(super) struct Bounds {
 }
 
 impl Session {
-    /// Where body `i` is drawn, m: between the last two states while running.
-    pub(super) fn shown_position(&self, i: usize) -> DVec3 {
-        match self.state {
-            State::Running => self.world.interpolated(i, self.clock.fraction()),
-            State::Layout | State::Paused => self.world.position(i),
-        }
-    }
-
     /// Centre and radius, m, of a ball around the selected body, or around all bodies.
     pub(super) fn extent(&self) -> Option<(DVec3, f64)> {
         let (min, max) = match self.selection {
@@ -42,15 +34,23 @@ impl Session {
         Some(((min + max) / 2.0, ((max - min).length() / 2.0).max(1e-3)))
     }
 
-    /// Top of the selected body's box as drawn, m: where its name goes.
-    pub fn selected_top(&self) -> Option<DVec3> {
-        let selected = self.selection?;
-        if self.is_half_space(selected) {
-            return Some(self.foot(selected, self.room().0));
+    /// Top of a body's box as drawn, m: where its name goes.
+    pub fn top(&self, body: usize) -> DVec3 {
+        if self.is_half_space(body) {
+            return self.foot(body, self.room().0);
         }
-        let (min, max) = self.body_box(selected);
+        let (min, max) = self.body_box(body);
         let middle = (min + max) / 2.0;
-        Some(DVec3::new(middle.x, max.y, middle.z))
+        DVec3::new(middle.x, max.y, middle.z)
+    }
+
+    /// The middle of a body's box as drawn, m, where its handles are; of a half-space the point of its plane
+    /// that is nearest to all bodies.
+    pub fn middle(&self, body: usize) -> DVec3 {
+        if self.is_half_space(body) {
+            return self.foot(body, self.room().0);
+        }
+        self.shown_position(body) + self.bounds(body).centre
     }
 
     /// A place for `body` that touches nothing: beside all others along x, at their height, or for

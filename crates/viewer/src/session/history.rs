@@ -36,6 +36,15 @@ pub(super) struct History {
 pub enum Leaving {
     /// Another scene is opened.
     Open(PathBuf),
+    /// An empty scene is begun.
+    New,
+    /// A stop of the tour is set up, with one of its attempts; see [`stop`](super::stop).
+    Tour {
+        /// The number of the stop.
+        stop: usize,
+        /// The number of its attempt.
+        attempt: usize,
+    },
     /// The window is closed.
     Close,
 }
@@ -69,6 +78,11 @@ impl History {
 }
 
 impl Session {
+    /// What has been changed so far is nothing to take back or to lose.
+    pub(super) fn begin_history(&mut self) {
+        self.history = History::begin(&self.scene);
+    }
+
     /// The scene has been changed, or may have been.
     pub(super) fn edited(&mut self) {
         self.history.pending = Some(Duration::ZERO);
@@ -217,13 +231,15 @@ impl Session {
     fn go(&mut self, leaving: Leaving) {
         match leaving {
             Leaving::Open(path) => self.open(path),
+            Leaving::New => self.begin_scene(),
+            Leaving::Tour { stop, attempt } => self.set_up(stop, attempt),
             Leaving::Close => self.history.closing = true,
         }
     }
 
     /// Opens a scene or adds a mesh, by the name's ending; asks before edits are lost.
     pub fn take_in(&mut self, path: &Path) {
-        if super::files::is_scene_file(path) {
+        if super::files::is_scene_file(path) || super::record::is_run_file(path) {
             self.leave(Leaving::Open(path.to_path_buf()));
         } else {
             self.import(path);

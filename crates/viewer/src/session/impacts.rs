@@ -2,15 +2,17 @@
 
 use std::collections::VecDeque;
 
-use sim_core::{DVec3, Impact};
+use sim_core::{DVec3, Impact, World};
 
 use super::Session;
-use crate::picture::Line;
+use crate::picture::{Line, Pane};
 
 /// The most that are shown at a time.
 pub(super) const MOST: usize = 200;
 /// Simulated time in which an impact fades, s.
 const SHOWN: f64 = 0.5;
+/// Rounding of the time of the picture, in steps.
+const NOW: f64 = 1e-6;
 const ORANGE: [f32; 3] = [1.0, 0.45, 0.05];
 /// Length of a normal: in half sizes of the smaller body, and at least in distances of the camera.
 const LENGTH: f64 = 1.6;
@@ -25,8 +27,9 @@ const HEAD: f64 = 0.12;
 pub(super) struct Impacts(VecDeque<Impact>);
 
 impl Impacts {
-    /// Takes in those of some steps, and forgets what has faded by `now`, s.
-    pub(super) fn extend(&mut self, impacts: &[Impact], now: f64) {
+    /// Takes in those of some steps, and forgets what has faded where the last step of `world` began.
+    pub(super) fn extend(&mut self, impacts: &[Impact], world: &World) {
+        let now = world.time() - world.settings().dt;
         self.0.extend(impacts.iter().cloned());
         let beyond = self.0.len().saturating_sub(MOST);
         self.0.drain(..beyond);
@@ -35,16 +38,24 @@ impl Impacts {
 }
 
 impl Session {
-    /// Each point as a dot, its normal as a thin line, and on it the impulse on the second body, or on
+    /// What touches, each point as a dot, its normal as a thin line, and on it the impulse on the second body, or on
     /// the first where nothing moves that, as an arrow, as long as it is strong. The bodies do not hide them.
-    pub(super) fn add_impacts(&self, marks: &mut Vec<Line>) {
-        let impacts = &self.impacts.0;
+    pub(super) fn add_impacts(&self, panes: &mut Vec<Pane>, marks: &mut Vec<Line>) {
+        let slack = NOW * self.world.settings().dt;
+        // Those that the picture has come to.
+        let now = self.shown_time() + slack;
+        let impacts: Vec<&Impact> = self.impacts.0.iter().filter(|i| i.time <= now).collect();
+        let latest = impacts.iter().map(|impact| impact.time).fold(0.0, f64::max) - slack;
         let strongest = impacts.iter().map(|impact| impact.impulse);
         let strongest = strongest.fold(f64::MIN_POSITIVE, f64::max);
         let [_, _, backward] = self.camera.axes();
         for impact in impacts {
-            let age = (self.world.time() - impact.time) / SHOWN;
+            let age = (now - impact.time) / SHOWN;
             let fresh = (1.0 - age).clamp(0.0, 1.0).powi(2) as f32;
+            // Of the latest instant alone, or that of a crowd would be a tangle.
+            if impact.time >= latest && age < 1.0 {
+                self.add_touching(impact, 1.0 - age as f32, panes, marks);
+            }
             // Among stronger ones a weak one is small, or those of a crowd would hide it.
             let strength = impact.impulse / strongest;
             let width = 1.0 + 2.0 * strength as f32;

@@ -7,13 +7,15 @@
 
 use std::time::Duration;
 
-use sim_core::{Collision, DVec3, StepError, World};
+use sim_core::{Collision, DVec3, Profile, StepError, World};
 
+use super::instant::Passes;
 use super::playback::Moment;
 use super::{
     Exact, Impacts, MAX_RATE, MIN_RATE, Remedy, Sample, Session, State, Trails, impacts, missed,
     trails,
 };
+use crate::stopwatch::nanoseconds;
 use crate::{headless, number};
 
 /// Real time that the steps of one frame may take before the rest of them is given up: leaves
@@ -28,6 +30,8 @@ pub struct Job {
     steps: u32,
     /// Positions are to be noted after each step.
     traced: bool,
+    /// Steps are timed by phase.
+    profiled: bool,
     edition: u64,
 }
 
@@ -56,7 +60,12 @@ impl Job {
         {
             let mut impacts = Vec::new();
             let before = stopwatch();
-            error = self.world.step_reporting(&mut impacts).err();
+            let mut profile = self.profiled.then(Profile::default);
+            error = match &mut profile {
+                Some(profile) => self.world.step_profiled(&mut impacts, nanoseconds, profile),
+                None => self.world.step_reporting(&mut impacts),
+            }
+            .err();
             let cost = stopwatch().saturating_sub(before);
             if error.is_some() {
                 break;
@@ -69,7 +78,8 @@ impl Job {
             let error = self.exact.error(&self.world);
             let cost = Some(cost.as_secs_f64());
             moments.push(Moment {
-                sample: Sample::of(&self.world, error, cost, count),
+                sample: Sample::of(&self.world, error, cost, count).with_profile(profile),
+                hash: self.world.state_hash(),
                 world: self.world.clone(),
                 impacts,
                 missed,
@@ -118,6 +128,11 @@ impl Session {
             State::Paused if !self.under_way => std::mem::take(&mut self.steps_wanted),
             State::Paused | State::Layout => 0,
         };
+        let steps = match steps {
+            0 => 0,
+            // Inputs come between steps.
+            due => u64::from(due).min(self.replay_inputs()) as u32,
+        };
         (steps > 0).then(|| {
             self.under_way = true;
             // The copy, which lacks what a world keeps to save time, is only looked at.
@@ -127,6 +142,7 @@ impl Session {
                 exact: self.exact.clone(),
                 steps,
                 traced: self.display.trails,
+                profiled: self.profiled,
                 edition: self.edition,
             }
         })
@@ -149,9 +165,13 @@ impl Session {
             self.trails.extend(&done.trace);
         }
         for moment in &done.moments {
-            self.impacts.extend(&moment.impacts, self.world.time());
+            self.impacts.extend(&moment.impacts, &self.world);
         }
         self.tell_missed(&done.moments);
+        self.record_moments(&done.moments);
+        if let Some(last) = done.moments.last() {
+            self.passes = Passes::of(&self.world, &last.impacts);
+        }
         self.playback.extend(done.moments);
         match done.error {
             None if self.state == State::Running => {
@@ -200,10 +220,10 @@ impl Session {
             return;
         };
         self.world = moment.world.clone();
-        let now = self.world.time();
+        self.passes = Passes::of(&self.world, &moment.impacts);
         self.impacts = Impacts::default();
         for moment in self.playback.past() {
-            self.impacts.extend(&moment.impacts, now);
+            self.impacts.extend(&moment.impacts, &self.world);
         }
         if self.display.trails {
             self.trails = Trails::default();
@@ -236,6 +256,7 @@ impl Session {
         self.edition += 1;
         self.under_way = false;
         self.steps_wanted = 0;
+        self.instant = None;
     }
 }
 

@@ -179,7 +179,7 @@ impl Session {
         lines: &mut Vec<Line>,
         marks: &mut Vec<Line>,
     ) {
-        let now = self.world.time();
+        let (now, seen) = (self.world.time(), self.shown_time());
         let shown = SHOWN.max(SHOWN_STEPS * self.world.settings().dt);
         let late: Vec<Missed> = self
             .playback
@@ -187,6 +187,7 @@ impl Session {
             .rev()
             .take_while(|moment| now - moment.world.time() < shown)
             .flat_map(|moment| moment.missed.iter().cloned())
+            .filter(|missed| missed.time <= seen)
             .take(MOST)
             .collect();
         for missed in late {

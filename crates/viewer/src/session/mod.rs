@@ -9,6 +9,7 @@
 //! Nothing here draws, opens windows or reads a clock: see `picture` for what is drawn, and
 //! [`Session::due`] for how time comes in and steps are taken.
 
+mod axes;
 mod ball;
 mod charts;
 mod compare;
@@ -21,6 +22,7 @@ mod forces;
 mod framing;
 mod history;
 mod impacts;
+mod instant;
 mod job;
 mod missed;
 mod notice;
@@ -29,10 +31,15 @@ mod overlaps;
 mod pick;
 mod picture;
 mod playback;
+mod pull;
+mod record;
 mod sample;
+mod shooting;
 #[cfg(test)]
 mod tests;
 mod ties;
+mod touching;
+mod tour;
 mod trails;
 mod variants;
 mod view;
@@ -43,6 +50,7 @@ use std::time::Duration;
 use scene::{Scene, SceneBody};
 use sim_core::{Collision, FixedStep, Method, Settings, World};
 
+pub use axes::AxisMarks;
 use ball::Balls;
 pub use charts::{CHARTS, Chart, Curve, on_dark};
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
@@ -59,7 +67,14 @@ pub use opening::Outlook;
 use overlaps::Overlaps;
 pub use picture::{BvhView, Display};
 pub use playback::Playback;
+pub use record::{
+    Divergence, Input, InputError, MOST_STEPS as MOST_RECORDED, Record, RecordError, Replay,
+    ReplayError, Verdict, is_run_file, verify,
+};
 pub use sample::{COLUMNS, Column, Sample, csv_head, csv_line};
+pub use shooting::{Reel, Shooting};
+pub use touching::Part;
+pub use tour::{Attempt, BEYOND, LABS, Lab, Stop, stop, stop_count};
 use trails::Trails;
 pub use variants::{
     Halt, MOST_VARIANTS, PRESETS, Preset, Runner, Snapshot, Variant, VariantJob, Variants,
@@ -110,6 +125,10 @@ pub struct Session {
     opening: Opening,
     overlaps: Overlaps,
     playback: Playback,
+    /// The whole run since the start.
+    record: Record,
+    /// What it is compared with, if it is a replay.
+    replay: Option<Replay>,
     /// Where bodies would be without errors.
     exact: Exact,
     variants: Variants,
@@ -119,11 +138,20 @@ pub struct Session {
     speed: f64,
     /// Masses of bodies made immovable, kg, by name: what they get back.
     masses: std::collections::BTreeMap<String, f64>,
+    /// Names of the bodies that are left out of the picture.
+    hidden: std::collections::BTreeSet<String>,
     selection: Option<usize>,
+    /// What is pulled by a spring.
+    pull: Option<pull::Pull>,
     /// Steps are being taken on a copy of the world.
     under_way: bool,
     /// Steps asked for by hand.
     steps_wanted: u32,
+    studio: shooting::Studio,
+    /// The part of the last step that is drawn while held still, if not its end.
+    instant: Option<f64>,
+    /// Impacts that bodies pass through in the last step.
+    passes: instant::Passes,
     /// Counts what makes results of earlier jobs outdated.
     edition: u64,
     /// File that the scene was read from or last saved to.
@@ -134,6 +162,8 @@ pub struct Session {
     pub display: Display,
     /// Naive against BVH.
     pub compare: Compare,
+    /// Whether steps are timed by phase, which costs some readings of a clock in each.
+    pub profiled: bool,
 }
 
 impl Session {
@@ -145,6 +175,8 @@ impl Session {
             history: history::History::begin(&scene),
             reference: Reference::of(&world),
             exact: Exact::of(&world),
+            record: Record::begin(&scene, &world),
+            replay: None,
             scene,
             world,
             clock,
@@ -161,14 +193,20 @@ impl Session {
             view: view::View::default(),
             speed: 1.0,
             masses: std::collections::BTreeMap::new(),
+            hidden: std::collections::BTreeSet::new(),
             selection: None,
+            pull: None,
             under_way: false,
             steps_wanted: 0,
+            studio: shooting::Studio::default(),
+            instant: None,
+            passes: instant::Passes::default(),
             edition: 0,
             file: None,
             camera: Camera::default(),
             display: Display::default(),
             compare: Compare::default(),
+            profiled: false,
         };
         // Where paths are curved, they show what a method does; those of a crowd hide it.
         let few = session.world.len() <= MOST_TRAILS;
@@ -253,17 +291,21 @@ impl Session {
 
     /// Lets physics run, from the set-up or from where it was paused.
     pub fn start(&mut self) {
-        if self.state == State::Layout {
-            self.begin();
+        match self.state {
+            State::Layout => self.begin(),
+            State::Paused => self.resume_clock(),
+            State::Running => {}
         }
         self.state = State::Running;
     }
 
-    /// Holds physics still. Nothing is lost; the layout state stays as it is.
+    /// Holds physics still at the instant that is drawn. Nothing is lost; the layout state stays as it is.
     pub fn pause(&mut self) {
         if self.state == State::Running {
+            let part = self.shown_part();
             self.state = State::Paused;
             self.disown_jobs();
+            self.instant = Some(part).filter(|&part| part < 1.0 && self.playback.len() > 1);
         }
     }
 
@@ -286,6 +328,7 @@ impl Session {
             State::Paused => {}
         }
         self.state = State::Paused;
+        self.instant = None;
         self.steps_wanted += 1;
     }
 
@@ -344,24 +387,32 @@ impl Session {
             self.notices.error("settings", error.to_string());
             return;
         }
-        self.scene.dt = settings.dt;
-        self.scene.method = settings.method;
-        self.scene.collision = settings.collision;
-        self.scene.tolerance = settings.tolerance;
         self.edited();
         self.notices.dismiss("settings");
         self.figures = Figures::default();
     }
 
     fn try_settings(&mut self, settings: Settings) -> anyhow::Result<()> {
-        let clock = clock(settings.dt, self.speed)?;
-        self.world.set_settings(settings)?;
+        clock(settings.dt, self.speed)?;
+        self.change(Input::Settings(settings))
+            .map_err(|error| anyhow::anyhow!(error.text(&self.scene)))?;
         self.disown_jobs();
-        if settings.dt != self.clock.dt() {
-            self.clock = clock;
-        }
+        self.take_settings(settings);
         self.begin_record();
         Ok(())
+    }
+
+    /// Takes over how the world steps now, in the scene and in the clock.
+    fn take_settings(&mut self, settings: Settings) {
+        if settings.dt != self.clock.dt()
+            && let Ok(clock) = clock(settings.dt, self.speed)
+        {
+            self.clock = clock;
+        }
+        self.scene.dt = settings.dt;
+        self.scene.method = settings.method;
+        self.scene.collision = settings.collision;
+        self.scene.tolerance = settings.tolerance;
     }
 
     /// Turns the camera's eye on the selected body, or on everything.
@@ -379,6 +430,7 @@ impl Session {
         self.impacts = Impacts::default();
         self.overlaps = Overlaps::default();
         self.begin_record();
+        self.begin_recording();
         self.notices.dismiss("step");
         if self.display.trails {
             self.trails.begin(&self.world);
@@ -387,6 +439,8 @@ impl Session {
 
     /// Begins anew what is kept, compared and measured of the run, from the world as it is now.
     fn begin_record(&mut self) {
+        self.instant = None;
+        self.passes = instant::Passes::default();
         self.reference = Reference::of(&self.world);
         self.exact = Exact::of(&self.world);
         self.playback.begin(&self.world, &mut self.exact);
@@ -396,6 +450,7 @@ impl Session {
     /// Takes a world freshly made from the scene.
     fn adopt(&mut self, world: World) {
         self.world = world;
+        self.pull = None;
         self.state = State::Layout;
         self.keep_up();
         self.select(self.selection);

@@ -12,6 +12,8 @@ pub struct Notice {
     pub error: bool,
     /// The message.
     pub text: String,
+    /// Whether it stays until it is dismissed.
+    stays: bool,
     /// What would set it right, if one change does.
     pub remedy: Option<Remedy>,
     /// Real time since it came.
@@ -42,7 +44,21 @@ impl Notices {
         self.push(Notice {
             about,
             error: false,
+            stays: false,
             text: shown::message(&text),
+            remedy: None,
+            age: Duration::ZERO,
+        });
+    }
+
+    /// Tells of a success that takes time to read, line by line: until it is dismissed.
+    pub fn keep(&mut self, about: &'static str, lines: &[String]) {
+        let lines: Vec<String> = lines.iter().map(|line| shown::message(line)).collect();
+        self.push(Notice {
+            about,
+            error: false,
+            stays: true,
+            text: lines.join("\n"),
             remedy: None,
             age: Duration::ZERO,
         });
@@ -53,6 +69,7 @@ impl Notices {
         self.push(Notice {
             about,
             error: true,
+            stays: true,
             text: shown::message(&text),
             remedy: None,
             age: Duration::ZERO,
@@ -87,12 +104,12 @@ impl Notices {
         for notice in &mut self.0 {
             notice.age += elapsed;
         }
-        self.0.retain(|notice| notice.error || notice.age < STAY);
+        self.0.retain(|notice| notice.stays || notice.age < STAY);
     }
 
     /// Whether one will go by itself.
     pub fn is_passing(&self) -> bool {
-        self.0.iter().any(|notice| !notice.error)
+        self.0.iter().any(|notice| !notice.stays)
     }
 
     fn push(&mut self, notice: Notice) {

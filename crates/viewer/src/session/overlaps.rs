@@ -4,8 +4,7 @@ use scene::shown;
 use sim_core::{DVec3, Overlap, Shape};
 
 use super::framing::Bounds;
-use super::{Session, State};
-use crate::headless;
+use super::{Input, Session, State};
 use crate::picture::Line;
 
 /// Pairs that are measured at most, and marked.
@@ -37,10 +36,10 @@ impl Session {
 
     /// Moves bodies in overlap out of each other, in the layout state in the set-up too.
     pub fn separate(&mut self) {
-        let moved = match self.world.separate() {
+        let moved = match self.change(Input::Separate) {
             Ok(moved) => moved,
             Err(error) => {
-                let text = headless::separate_error(&self.scene, &error);
+                let text = error.text(&self.scene);
                 return self
                     .notices
                     .error("separate", format!("Nothing was moved: {text}."));

@@ -10,12 +10,18 @@ const SPECK: f64 = 0.004;
 impl Session {
     /// Selects the nearest body that a ray from `origin` along `direction` meets, or none.
     pub fn pick(&mut self, origin: DVec3, direction: DVec3) {
-        self.world.build_bvhs();
-        let hit = (0..self.world.len())
-            .filter_map(|i| Some((self.ray(i, origin, direction)?, i)))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let hit = self.hit(origin, direction);
         let hit = hit.or_else(|| self.dot_near(origin, direction.normalize_or_zero()));
         self.select(hit.map(|(_, i)| i));
+    }
+
+    /// The nearest body that a ray meets, and where, in lengths of `direction`.
+    pub(super) fn hit(&mut self, origin: DVec3, direction: DVec3) -> Option<(f64, usize)> {
+        self.world.build_bvhs();
+        (0..self.world.len())
+            .filter(|&i| !self.is_hidden(i))
+            .filter_map(|i| Some((self.ray(i, origin, direction)?, i)))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Where a ray meets a body, in lengths of `direction`. Half-spaces are everywhere behind

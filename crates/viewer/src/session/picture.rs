@@ -9,6 +9,8 @@ use crate::picture::{Arrow, Line, Model, PALETTE, Picture};
 
 /// Velocity arrows.
 const BLUE: [f32; 3] = [0.10, 0.35, 1.0];
+/// Force arrows.
+const RED: [f32; 3] = [0.85, 0.12, 0.10];
 /// Half-spaces that have no colour of their own.
 const SLATE: [f32; 3] = [0.40, 0.45, 0.52];
 
@@ -34,8 +36,18 @@ pub struct Display {
     pub all_velocities: bool,
     /// Time, s, whose travel an arrow shows: its length is `velocity * arrow_time`.
     pub arrow_time: f64,
+    /// Force arrows on all bodies rather than none.
+    pub forces: bool,
+    /// Metres that a force arrow is long for each newton.
+    pub arrow_metres: f64,
     /// The ground grid.
     pub grid: bool,
+    /// Letters and numbers on the axes, where there is a grid.
+    pub numbers: bool,
+    /// The names of all bodies rather than of the selected one.
+    pub names: bool,
+    /// The edges of all meshes.
+    pub wireframe: bool,
     /// Where bodies have been; see [`Session::show_trails`].
     pub trails: bool,
     /// Springs, anchors and centres of attraction.
@@ -44,6 +56,8 @@ pub struct Display {
     pub impacts: bool,
     /// The level of the descent through two hierarchies that is shown, if one is.
     pub descent: Option<usize>,
+    /// Bodies between the last two states while running, rather than at the last one.
+    pub between: bool,
 }
 
 impl Default for Display {
@@ -57,11 +71,17 @@ impl Default for Display {
             },
             all_velocities: false,
             arrow_time: 0.5,
+            forces: false,
+            arrow_metres: 0.1,
             grid: true,
+            numbers: true,
+            names: false,
+            wireframe: false,
             trails: false,
             ties: true,
             impacts: true,
             descent: None,
+            between: true,
         }
     }
 }
@@ -81,9 +101,13 @@ impl Session {
             lines: Vec::new(),
             marks: Vec::new(),
             arrows: Vec::new(),
+            wireframe: self.display.wireframe,
             grid: self.display.grid,
         };
-        for i in 0..self.world.len() {
+        for i in (0..self.world.len())
+            .filter(|&i| !self.is_hidden(i))
+            .collect::<Vec<_>>()
+        {
             let selected = self.selection == Some(i);
             if let Some(mesh) = self.body_mesh(i) {
                 picture.models.push(Model {
@@ -95,6 +119,9 @@ impl Session {
             }
             if selected || self.display.all_velocities {
                 picture.arrows.extend(self.velocity_arrow(i));
+            }
+            if self.display.forces {
+                picture.arrows.extend(self.force_arrow(i));
             }
             let all = self.display.bvh.every_body || self.selection.is_none();
             if self.display.bvh.shown && (selected || all) {
@@ -119,7 +146,8 @@ impl Session {
         self.add_descent(lines);
         self.add_walls(&mut picture);
         if self.display.impacts {
-            self.add_impacts(&mut picture.marks);
+            let Picture { panes, marks, .. } = &mut picture;
+            self.add_impacts(panes, marks);
         }
         self.add_overlaps(&mut picture.marks);
         picture
@@ -154,7 +182,7 @@ impl Session {
 
     /// Points, and bodies too small to be seen, as dots.
     fn add_dots(&self, lines: &mut Vec<Line>) {
-        for i in (0..self.world.len()).filter(|&i| self.is_dot(i)) {
+        for i in (0..self.world.len()).filter(|&i| self.is_dot(i) && !self.is_hidden(i)) {
             let at = self.shown_position(i);
             let [red, green, blue] = self.colour(i);
             // A line of no length is its round end.
@@ -182,10 +210,18 @@ impl Session {
             .min(deepest);
     }
 
-    /// From the surface of the body's box, so that a slow body's arrow is not hidden inside it.
     fn velocity_arrow(&self, i: usize) -> Option<Arrow> {
-        let velocity = self.world.velocity(i);
-        let direction = velocity.try_normalize()?;
+        self.arrow(i, self.shown_velocity(i) * self.display.arrow_time, BLUE)
+    }
+
+    fn force_arrow(&self, i: usize) -> Option<Arrow> {
+        let force = self.world.applied_force(i);
+        self.arrow(i, force * self.display.arrow_metres, RED)
+    }
+
+    /// From the surface of the body's box, so that a short arrow is not hidden inside it.
+    fn arrow(&self, i: usize, span: DVec3, colour: [f32; 3]) -> Option<Arrow> {
+        let direction = span.try_normalize()?;
         let Bounds { centre, half } = self.bounds(i);
         let place = match self.world.shape(i) {
             Some(Shape::HalfSpace { .. }) => self.foot(i, self.room().0),
@@ -200,8 +236,8 @@ impl Session {
         let from = place + direction * exit;
         Some(Arrow {
             from,
-            to: from + velocity * self.display.arrow_time,
-            colour: BLUE,
+            to: from + span,
+            colour,
             radius: (0.07 * half.max_element()) as f32,
         })
     }

@@ -12,12 +12,21 @@ use super::{Exact, Missed, Sample};
 const MOST_STATES: usize = 3600;
 const MOST_BODIES: usize = 200_000;
 
+/// Bytes that a state takes up, beside what grows with its bodies.
+const STATE_BYTES: usize = 4600;
+/// Bytes that each body adds to a state.
+const BODY_BYTES: usize = 350;
+/// Bytes that each contact that lasts adds to a state.
+const CONTACT_BYTES: usize = 300;
+
 /// A world after a step, the impacts of that step, and its figures.
 #[derive(Clone, Debug)]
 pub(super) struct Moment {
     pub(super) world: World,
     pub(super) impacts: Vec<Impact>,
     pub(super) sample: Sample,
+    /// Of the world, [`World::state_hash`].
+    pub(super) hash: u64,
     /// What its step has not seen.
     pub(super) missed: Vec<Missed>,
 }
@@ -36,6 +45,7 @@ impl Playback {
         self.now = 0;
         self.moments.push_back(Moment {
             sample: Sample::of(world, exact.error(world), None, 0),
+            hash: world.state_hash(),
             world: world.clone(),
             impacts: Vec::new(),
             missed: Vec::new(),
@@ -94,6 +104,16 @@ impl Playback {
         capacity(self.moments.back().map_or(0, |last| last.world.len()))
     }
 
+    /// About how many bytes the states take up. Meshes are shared with the world, and not counted.
+    pub fn bytes(&self) -> usize {
+        let state = |moment: &Moment| {
+            let impacts = moment.impacts.capacity() * size_of::<Impact>();
+            let contacts = CONTACT_BYTES * moment.sample.contacts;
+            STATE_BYTES + BODY_BYTES * moment.world.len() + contacts + impacts
+        };
+        self.moments.iter().map(state).sum()
+    }
+
     /// Index of the state looked at.
     pub fn now(&self) -> usize {
         self.now
@@ -121,10 +141,21 @@ impl Playback {
         }
     }
 
+    /// Index of the first state at a simulated time, s, or after it; of the last one if none is.
+    pub(super) fn first_from(&self, time: f64) -> usize {
+        let after = self.moments.partition_point(|m| m.world.time() < time);
+        after.min(self.moments.len().saturating_sub(1))
+    }
+
     /// Simulated times at which bodies passed through each other unseen, s.
     pub fn missed_times(&self) -> impl Iterator<Item = f64> {
         let missed = self.moments.iter().flat_map(|moment| &moment.missed);
         missed.map(|missed| missed.time)
+    }
+
+    /// Simulated times of impacts, found and missed, s.
+    pub fn contact_times(&self) -> impl Iterator<Item = f64> {
+        self.impact_times().chain(self.missed_times())
     }
 
     /// Simulated times at which something hit something, s, in order of the steps.

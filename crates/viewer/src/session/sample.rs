@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use sim_core::{DVec3, World};
+use sim_core::{DVec3, Phase, Profile, World};
 
 /// The figures of one state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +21,8 @@ pub struct Sample {
     pub error: Option<f64>,
     /// Real time that the step took, s; none of a state that no step led to.
     pub cost: Option<f64>,
+    /// Parts of it, s, in the order of [`Phase::ALL`], where they were timed.
+    pub phases: Option<[f64; Phase::ALL.len()]>,
     /// Contacts that last.
     pub contacts: usize,
     /// Impacts in the step.
@@ -38,9 +40,21 @@ impl Sample {
             momentum: world.momentum(),
             error,
             cost,
+            phases: None,
             contacts: world.contacts().count(),
             impacts,
         }
+    }
+
+    /// With what a step has taken in each phase, if that was timed, in ns.
+    pub(super) fn with_profile(self, profile: Option<Profile>) -> Self {
+        let phases = profile.map(|p| Phase::ALL.map(|phase| 1e-9 * p.spent(phase) as f64));
+        Self { phases, ..self }
+    }
+
+    /// What the step has taken in a phase, s.
+    pub fn phase(&self, phase: Phase) -> Option<f64> {
+        self.phases.map(|phases| phases[phase as usize])
     }
 }
 
@@ -53,7 +67,7 @@ pub struct Column {
 }
 
 /// Every figure, in the order of the tables.
-pub static COLUMNS: [Column; 12] = [
+pub static COLUMNS: [Column; 16] = [
     Column {
         name: "time_s",
         value: |s| Some(s.time),
@@ -93,6 +107,22 @@ pub static COLUMNS: [Column; 12] = [
     Column {
         name: "step_cost_s",
         value: |s| s.cost,
+    },
+    Column {
+        name: "integrate_s",
+        value: |s| s.phase(Phase::Integrate),
+    },
+    Column {
+        name: "broad_phase_s",
+        value: |s| s.phase(Phase::Broad),
+    },
+    Column {
+        name: "narrow_phase_s",
+        value: |s| s.phase(Phase::Narrow),
+    },
+    Column {
+        name: "response_s",
+        value: |s| s.phase(Phase::Respond),
     },
     Column {
         name: "contacts",

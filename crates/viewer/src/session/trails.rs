@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use sim_core::{DVec3, World};
 
-use super::{Session, State};
+use super::Session;
 use crate::picture::Line;
 
 /// Steps that a path goes back.
@@ -66,13 +66,14 @@ impl Session {
     /// The path of a body, to where it is drawn.
     pub(super) fn add_trail(&self, i: usize, lines: &mut Vec<Line>) {
         let points = self.trails.of(i);
-        // While running, bodies are drawn between the last two states.
-        let whole = points.len() - usize::from(self.state == State::Running).min(points.len());
+        // The last point is yet to come where bodies are drawn between two states.
+        let whole = points.len() - usize::from(self.is_between()).min(points.len());
         let [red, green, blue] = self.colour(i).map(|part| 0.8 * part);
         let end = self.shown_position(i);
         let mut from = None;
-        for (n, to) in points.take(whole).chain([end]).enumerate() {
-            let age = n as f32 / whole.max(1) as f32;
+        let passed = self.passed_places(i);
+        for (n, to) in points.take(whole).chain(passed).chain([end]).enumerate() {
+            let age = (n as f32 / whole.max(1) as f32).min(1.0);
             if let Some(from) = from.filter(|&from| from != to) {
                 lines.push(Line {
                     from,

@@ -5,6 +5,13 @@ use egui::{Area, Button, Frame, RichText, Stroke};
 use super::style;
 use crate::number;
 use crate::session::{Remedy, Session};
+use crate::words::say;
+
+/// A message line by line, since each line is a text of its own.
+fn lines(text: &str) -> String {
+    let lines: Vec<String> = text.lines().map(say).collect();
+    lines.join("\n")
+}
 
 pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session) {
     let (mut dismissed, mut agreed) = (None, None);
@@ -14,9 +21,9 @@ pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session)
         .show(ctx, |ui| {
             for notice in session.notices().iter() {
                 let colour = if notice.error {
-                    style::RED
+                    style::RED.of(ui.visuals())
                 } else {
-                    style::GREEN
+                    style::GREEN.of(ui.visuals())
                 };
                 Frame::popup(ui.style())
                     .stroke(Stroke::new(1.0, colour))
@@ -24,10 +31,10 @@ pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session)
                         ui.set_max_width((over.width() - 60.0).clamp(160.0, 560.0));
                         ui.horizontal(|ui| {
                             let close = Button::new(RichText::new("✖").color(colour)).frame(false);
-                            if ui.add(close).on_hover_text("Dismiss").clicked() {
+                            if ui.add(close).on_hover_text(say("Dismiss")).clicked() {
                                 dismissed = Some(notice.about);
                             }
-                            ui.add(egui::Label::new(&notice.text).wrap());
+                            ui.add(egui::Label::new(lines(&notice.text)).wrap());
                         });
                         let text = match notice.remedy {
                             None => return,
@@ -38,7 +45,7 @@ pub(super) fn show(ctx: &egui::Context, over: egui::Rect, session: &mut Session)
                                 "Reset, and look within the step".to_owned()
                             }
                         };
-                        if ui.button(text).clicked() {
+                        if ui.button(say(text)).clicked() {
                             agreed = notice.remedy;
                         }
                     });

@@ -6,6 +6,7 @@ use scene::shown;
 use super::{Ui, style};
 use crate::number;
 use crate::session::{Session, State};
+use crate::words::{Language, say};
 
 pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
     let frame =
@@ -16,18 +17,45 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
             ui.add_space(6.0);
             status(ui, session);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.toggle_value(&mut state.help, "Keys")
-                    .on_hover_text("All keys and mouse gestures (H)");
+                let other = match state.language {
+                    Language::English => Language::Chinese,
+                    Language::Chinese => Language::English,
+                };
+                let name = match state.has_chinese {
+                    Some(true) => other.name(),
+                    _ => "Chinese",
+                };
+                if ui
+                    .button(name)
+                    .on_hover_text(say("The language of the window"))
+                    .clicked()
+                {
+                    state.language = other;
+                }
+                let theme = if state.light { "🌙" } else { "☀" };
+                if ui
+                    .button(theme)
+                    .on_hover_text(say("Dark or light panels"))
+                    .clicked()
+                {
+                    state.light ^= true;
+                }
+                ui.toggle_value(&mut state.help, say("Keys"))
+                    .on_hover_text(say("All keys and mouse gestures (H, ? or F1)"));
                 hiding(ui, &mut state.panel_hidden, "Panel", "Side panel (P)");
                 hiding(ui, &mut state.plots_hidden, "Plots", "Curves over time (G)");
                 hiding(ui, &mut state.live_hidden, "Live", "Live figures (L)");
+                ui.toggle_value(&mut state.tour.open, say("Tour"))
+                    .on_hover_text(say("A guided tour of the four labs (Ctrl+T)"));
+                ui.toggle_value(&mut state.gallery.open, say("Gallery"))
+                    .on_hover_text(say("Scenes that come with the program (Ctrl+G)"));
                 ui.add_space(6.0);
                 if !behind(ui, session) {
                     let mark = if session.is_changed() { " *" } else { "" };
-                    let title = shown::part(&session.scene().title) + mark;
+                    let title = say(shown::part(&session.scene().title)) + mark;
                     let title = RichText::new(title);
                     ui.add(egui::Label::new(title).truncate())
-                        .on_hover_text(shown::part(&session.scene().about));
+                        .on_hover_text(say(shown::part(&session.scene().about)));
                 }
             });
         });
@@ -37,26 +65,26 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
 fn buttons(ui: &mut egui::Ui, session: &mut Session) {
     let running = session.state() == State::Running;
     let start = if running { "⏸ Pause" } else { "▶ Start" };
-    let button = Button::new(RichText::new(start).strong()).min_size(egui::vec2(78.0, 26.0));
+    let button = Button::new(RichText::new(say(start)).strong()).min_size(egui::vec2(78.0, 26.0));
     if ui
         .add(button)
-        .on_hover_text("Start or pause physics (Space)")
+        .on_hover_text(say("Start or pause physics (Space)"))
         .clicked()
     {
         session.toggle();
     }
-    let small = |text: &'static str| Button::new(text).min_size(egui::vec2(66.0, 26.0));
+    let small = |text: &'static str| Button::new(say(text)).min_size(egui::vec2(66.0, 26.0));
     if ui
         .add(small("⏩ Step"))
-        .on_hover_text("Go one step ahead and hold there (right arrow or .)")
+        .on_hover_text(say("Go one step ahead and hold there (right arrow or .)"))
         .clicked()
     {
         session.step_once();
     }
     if ui
         .add_enabled(session.state() != State::Layout, small("⟲ Reset"))
-        .on_hover_text("Put every body back as it was set up (R)")
-        .on_disabled_hover_text("Everything is as it was set up")
+        .on_hover_text(say("Put every body back as it was set up (R)"))
+        .on_disabled_hover_text(say("Everything is as it was set up"))
         .clicked()
     {
         session.reset();
@@ -64,8 +92,8 @@ fn buttons(ui: &mut egui::Ui, session: &mut Session) {
     let undo = Button::new("⮪").min_size(egui::vec2(26.0, 26.0));
     if ui
         .add_enabled(session.can_undo(), undo)
-        .on_hover_text("Take the last edit of the set-up back (Ctrl+Z)")
-        .on_disabled_hover_text("There is nothing to take back")
+        .on_hover_text(say("Take the last edit of the set-up back (Ctrl+Z)"))
+        .on_disabled_hover_text(say("There is nothing to take back"))
         .clicked()
     {
         session.undo();
@@ -73,8 +101,8 @@ fn buttons(ui: &mut egui::Ui, session: &mut Session) {
     let redo = Button::new("⮫").min_size(egui::vec2(26.0, 26.0));
     if ui
         .add_enabled(session.can_redo(), redo)
-        .on_hover_text("Do again what was taken back (Ctrl+Shift+Z or Ctrl+Y)")
-        .on_disabled_hover_text("Nothing was taken back")
+        .on_hover_text(say("Do again what was taken back (Ctrl+Shift+Z or Ctrl+Y)"))
+        .on_disabled_hover_text(say("Nothing was taken back"))
         .clicked()
     {
         session.redo();
@@ -84,7 +112,8 @@ fn buttons(ui: &mut egui::Ui, session: &mut Session) {
 /// A button that shows and hides something.
 fn hiding(ui: &mut egui::Ui, hidden: &mut bool, name: &str, meaning: &str) {
     let mut shown = !*hidden;
-    ui.toggle_value(&mut shown, name).on_hover_text(meaning);
+    ui.toggle_value(&mut shown, say(name))
+        .on_hover_text(say(meaning));
     *hidden = !shown;
 }
 
@@ -92,21 +121,24 @@ fn status(ui: &mut egui::Ui, session: &Session) {
     let (text, colour, meaning) = match session.state() {
         State::Layout => (
             "Layout",
-            style::BLUE,
+            style::BLUE.of(ui.visuals()),
             "Stopped at the set-up. Edits change the scene, and Reset returns here.",
         ),
-        State::Running => ("Running", style::GREEN, "Physics runs with the clock."),
+        State::Running => (
+            "Running",
+            style::GREEN.of(ui.visuals()),
+            "Physics runs with the clock.",
+        ),
         State::Paused => (
             "Paused",
-            style::AMBER,
+            style::AMBER.of(ui.visuals()),
             "Physics is held still. Edits last until Reset.",
         ),
     };
-    ui.label(RichText::new(text).strong().color(colour))
-        .on_hover_text(meaning);
-    let world = session.world();
-    ui.label(RichText::new(format!("{:.3} s", world.time())).monospace())
-        .on_hover_text("Simulated time");
+    ui.label(RichText::new(say(text)).strong().color(colour))
+        .on_hover_text(say(meaning));
+    ui.label(RichText::new(format!("{:.3} s", session.shown_time())).monospace())
+        .on_hover_text(say("Simulated time"));
 }
 
 /// Says by how much the simulation is behind real time, if it is.
@@ -115,11 +147,12 @@ fn behind(ui: &mut egui::Ui, session: &Session) -> bool {
     let shown = session.state() == State::Running && figures.is_behind();
     if shown {
         let time = number::seconds(figures.behind.as_secs_f64());
-        let text = RichText::new(format!("behind real time by {time}")).color(style::AMBER);
-        ui.add(egui::Label::new(text).truncate()).on_hover_text(
+        let text = RichText::new(say(format!("behind real time by {time}")))
+            .color(style::AMBER.of(ui.visuals()));
+        ui.add(egui::Label::new(text).truncate()).on_hover_text(say(
             "Steps or pictures took longer than the time they stand for, so the rest was given \
              up. If steps are slow, lower the rate or test collisions through the BVH.",
-        );
+        ));
     }
     shown
 }

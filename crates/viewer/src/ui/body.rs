@@ -5,15 +5,18 @@ use scene::{SceneShape, shown};
 use sim_core::DVec3;
 
 use super::field;
+use super::handles::Handles;
 use crate::session::{Session, State};
+use crate::words::say;
 
-pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
+pub(super) fn show(ui: &mut egui::Ui, handles: &mut Handles, session: &mut Session) {
     let (Some(i), Some(body)) = (session.selection(), session.selected()) else {
-        ui.label(RichText::new("Click a body in the picture or in the list.").weak());
+        ui.label(RichText::new(say("Click a body in the picture or in the list.")).weak());
         return;
     };
     let (shape, rotation, scale) = (body.shape.clone(), body.rotation, body.scale);
     heading(ui, session, i);
+    handles.choose(ui, session);
 
     let world = session.world();
     let (position, velocity) = (world.position(i), world.velocity(i));
@@ -44,12 +47,18 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         }
     })
     .response
-    .on_disabled_hover_text("Part of the layout: Reset first");
-    if let Some(value) = field::vector(ui, "Velocity", "m/s", "Velocity", velocity) {
+    .on_disabled_hover_text(say("Part of the layout: Reset first"));
+    if let Some(value) = field::vector(ui, "Velocity", "m/s", "Velocity v = dx/dt", velocity) {
         session.set_velocity(value);
     }
     if mass.is_finite()
-        && let Some(value) = field::vector(ui, "Force", "N", "Constant force on the body", force)
+        && let Some(value) = field::vector(
+            ui,
+            "Force",
+            "N",
+            "Constant force on the body, F = m a",
+            force,
+        )
     {
         session.set_force(value);
     }
@@ -63,24 +72,24 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.add_enabled_ui(layout, |ui| {
             if ui
-                .button("Duplicate")
-                .on_hover_text("Add a copy beside everything else")
-                .on_disabled_hover_text("Reset first: physics has begun")
+                .button(say("Duplicate"))
+                .on_hover_text(say("Add a copy beside everything else"))
+                .on_disabled_hover_text(say("Reset first: physics has begun"))
                 .clicked()
             {
                 session.duplicate_selected();
             }
             if ui
-                .button("Delete")
-                .on_hover_text("Take the body out of the scene (Delete)")
-                .on_disabled_hover_text("Reset first: physics has begun")
+                .button(say("Delete"))
+                .on_hover_text(say("Take the body out of the scene (Delete)"))
+                .on_disabled_hover_text(say("Reset first: physics has begun"))
                 .clicked()
             {
                 session.delete_selected();
             }
         });
         if !layout {
-            ui.label(RichText::new("Edits last until Reset.").weak());
+            ui.label(RichText::new(say("Edits last until Reset.")).weak());
         }
     });
 }
@@ -112,27 +121,50 @@ fn mass_and_restitution(ui: &mut egui::Ui, session: &mut Session, mass: f64, res
         let changed = ui
             .add_enabled(
                 !is_half_space,
-                egui::Checkbox::new(&mut immovable, "Immovable"),
+                egui::Checkbox::new(&mut immovable, say("Immovable")),
             )
-            .on_hover_text("Nothing moves it: it stands still or keeps its velocity")
-            .on_disabled_hover_text(
+            .on_hover_text(say(
+                "Nothing moves it: it stands still or keeps its velocity",
+            ))
+            .on_disabled_hover_text(say(
                 "Half-spaces always are: they stand still or keep their velocity",
-            )
+            ))
             .changed();
         if changed {
             session.set_immovable(immovable);
         }
     });
     ui.horizontal(|ui| {
-        let meaning = "Part of the approaching speed that is left after an impact; of the two \
-                       bodies' the lesser one counts";
+        let meaning = "Part e of the approaching speed that is left after an impact, v' = -e v along \
+                       the normal; of the two bodies' the lesser one counts";
         field::label(ui, "Restitution", meaning);
         let mut value = restitution;
         let slider = Slider::new(&mut value, 0.0..=1.0).max_decimals(3);
-        if ui.add(slider).on_hover_text(meaning).changed() {
+        if ui.add(slider).on_hover_text(say(meaning)).changed() {
             session.set_restitution(value);
         }
     });
+}
+
+/// The name as a field: Enter or leaving it takes the new one.
+fn rename(ui: &mut egui::Ui, session: &mut Session, i: usize) {
+    let now = session.scene().bodies[i].name.clone();
+    let id = ui.scope_id().with(("name", i));
+    let typed = ui.data(|data| data.get_temp::<String>(id));
+    let mut text = typed.unwrap_or_else(|| shown::name(&now));
+    let edit = egui::TextEdit::singleline(&mut text)
+        .id(id.with("field"))
+        .font(egui::TextStyle::Button)
+        .desired_width(150.0);
+    let edit = ui.add(edit).on_hover_text(say("Name of the body"));
+    if edit.lost_focus() {
+        ui.data_mut(|data| data.remove::<String>(id));
+        if text != shown::name(&now) {
+            session.rename_selected(&text);
+        }
+    } else if edit.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, text));
+    }
 }
 
 /// Colour, name and shape.
@@ -140,13 +172,25 @@ fn heading(ui: &mut egui::Ui, session: &mut Session, i: usize) {
     let mut colour = session.colour(i).map(|part| (255.0 * part).round() as u8);
     ui.horizontal(|ui| {
         if egui::color_picker::color_edit_button_srgb(ui, &mut colour)
-            .on_hover_text("Colour of the body")
+            .on_hover_text(say("Colour of the body"))
             .changed()
         {
             session.set_colour(colour.map(|part| f32::from(part) / 255.0));
         }
+        rename(ui, session, i);
+        let mut seen = !session.is_hidden(i);
+        if ui
+            .checkbox(&mut seen, say("Shown"))
+            .on_hover_text(say(
+                "Whether it is in the picture; it moves and collides all the same",
+            ))
+            .changed()
+        {
+            session.hide(i, !seen);
+        }
+    });
+    ui.horizontal(|ui| {
         let body = &session.scene().bodies[i];
-        ui.add(egui::Label::new(RichText::new(shown::name(&body.name)).strong()).truncate());
         let about = match &body.shape {
             SceneShape::Mesh(mesh) => {
                 let triangles = mesh.mesh().triangles().len();
@@ -155,6 +199,6 @@ fn heading(ui: &mut egui::Ui, session: &mut Session, i: usize) {
             SceneShape::Sphere { .. } => "sphere".to_owned(),
             SceneShape::HalfSpace { .. } => "half-space".to_owned(),
         };
-        ui.add(egui::Label::new(RichText::new(about).weak()).truncate());
+        ui.add(egui::Label::new(RichText::new(say(about)).weak()).truncate());
     });
 }

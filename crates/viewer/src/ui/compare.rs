@@ -6,13 +6,14 @@ use scene::shown;
 use super::style;
 use crate::number;
 use crate::session::{Comparison, Contest, Cost, Session};
+use crate::words::say;
 
 pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
-    ui.checkbox(&mut session.compare.on, "Measure")
-        .on_hover_text(
+    ui.checkbox(&mut session.compare.on, say("Measure"))
+        .on_hover_text(say(
             "Ask both ways whether the two bodies meet, now and then, on a thread of its own. \
              Off, it costs nothing.",
-        );
+        ));
     descent(ui, session);
     if !session.compare.on {
         return;
@@ -26,11 +27,11 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         Contest::Apart(i, j) => format!("The boxes of {} and {} are apart.", name(i), name(j)),
         Contest::Pair(i, j) => format!("The boxes of {} and {} overlap.", name(i), name(j)),
     };
-    ui.label(RichText::new(now).weak());
+    ui.label(RichText::new(say(now)).weak());
     match session.compare.last() {
         Some(last) => table(ui, session, last),
         None if session.compare.is_under_way() => {
-            ui.label(RichText::new("Measuring…").weak());
+            ui.label(RichText::new(say("Measuring…")).weak());
         }
         None => {}
     }
@@ -41,20 +42,24 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         let mut shown = session.display.descent.is_some();
         if ui
-            .checkbox(&mut shown, "Show the descent")
-            .on_hover_text(
+            .checkbox(&mut shown, say("Show the descent"))
+            .on_hover_text(say(
                 "Boxes that are compared level by level, in orange those that meet and come into \
                  question for the next level. Of the two bodies that are measured",
-            )
+            ))
             .changed()
         {
             session.display.descent = shown.then_some(0);
         }
         if shown {
-            if ui.button("◀").on_hover_text("One level up").clicked() {
+            if ui.button("◀").on_hover_text(say("One level up")).clicked() {
                 session.step_descent(-1);
             }
-            if ui.button("▶").on_hover_text("One level down (N)").clicked() {
+            if ui
+                .button("▶")
+                .on_hover_text(say("One level down (N)"))
+                .clicked()
+            {
                 session.step_descent(1);
             }
         }
@@ -73,7 +78,7 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
             number::count(level.meeting as f64)
         ),
     };
-    ui.label(RichText::new(text).weak());
+    ui.label(RichText::new(say(text)).weak());
 }
 
 fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
@@ -83,7 +88,7 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
         .spacing([12.0, 3.0])
         .show(ui, |ui| {
             for title in ["", "Naive", "BVH", "Ratio"] {
-                ui.label(RichText::new(title).strong());
+                ui.label(RichText::new(say(title)).strong());
             }
             ui.end_row();
             row(
@@ -103,7 +108,7 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
                 number::count,
             );
             row(ui, last, "Time", TIME, |cost| cost.seconds, number::seconds);
-            ui.label("Spread").on_hover_text(SPREAD);
+            ui.label(say("Spread")).on_hover_text(say(SPREAD));
             let spread = |cost: &Cost| {
                 let [least, most] = cost.spread;
                 format!(
@@ -118,9 +123,10 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
         });
     if last.naive.is_none() {
         ui.label(
-            RichText::new("These meshes are too large for the naive way.").color(style::AMBER),
+            RichText::new(say("These meshes are too large for the naive way."))
+                .color(style::AMBER.of(ui.visuals())),
         )
-        .on_hover_text("It would take many seconds for one answer.");
+        .on_hover_text(say("It would take many seconds for one answer."));
     }
     let (i, j) = last.pair;
     let bodies = &session.scene().bodies;
@@ -133,15 +139,17 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
     } else {
         "now".to_owned()
     };
-    let meet = if last.meet { "meet" } else { "do not meet" };
     let [first, second] = [first, second].map(|body| shown::name(&body.name));
-    let text = format!("{first} and {second} {meet}, as of {when}.");
+    let text = match last.meet {
+        true => format!("{first} and {second} meet, as of {when}."),
+        false => format!("{first} and {second} do not meet, as of {when}."),
+    };
     if last.agree {
-        ui.label(RichText::new(text).weak())
-            .on_hover_text("Both ways agree. The age is simulated time.");
+        ui.label(RichText::new(say(text)).weak())
+            .on_hover_text(say("Both ways agree. The age is simulated time."));
     } else {
         let text = "The two ways disagree. This is a fault of the program: please report it.";
-        ui.label(RichText::new(text).color(style::RED));
+        ui.label(RichText::new(say(text)).color(style::RED.of(ui.visuals())));
     }
 }
 
@@ -159,7 +167,7 @@ fn row(
     value: fn(&Cost) -> f64,
     text: fn(f64) -> String,
 ) {
-    ui.label(title).on_hover_text(meaning);
+    ui.label(say(title)).on_hover_text(say(meaning));
     let tree = value(&last.tree);
     let naive = last.naive.as_ref().map(value);
     let none = || "-".to_owned();

@@ -8,6 +8,7 @@ use std::time::Duration;
 use rfd::{AsyncFileDialog, FileHandle};
 
 use crate::stopwatch::Stopwatch;
+use crate::words::say;
 
 /// What a dialog asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,17 +47,17 @@ impl Dialog {
                 let endings: Vec<&str> = scene::FORMATS
                     .iter()
                     .flat_map(|format| format.extensions.iter().copied())
-                    .chain(["toml"])
+                    .chain(["toml", "run"])
                     .collect();
                 let dialog = dialog
-                    .set_title("Open a scene or add a mesh")
-                    .add_filter("Scenes and meshes", &endings);
+                    .set_title(say("Open a scene or add a mesh"))
+                    .add_filter(say("Scenes, runs and meshes"), &endings);
                 Self::wait(ctx, purpose, dialog.pick_file())
             }
             Purpose::Save => {
                 let dialog = dialog
-                    .set_title("Save the scene")
-                    .add_filter("Scenes", &["toml"]);
+                    .set_title(say("Save the scene"))
+                    .add_filter(say("Scenes"), &["toml"]);
                 Self::wait(ctx, purpose, dialog.save_file())
             }
         }

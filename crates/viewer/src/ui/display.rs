@@ -4,40 +4,73 @@ use egui::{RichText, Slider};
 
 use super::field;
 use crate::number;
-use crate::session::Session;
+use crate::session::{Session, Side};
+use crate::words::say;
 
 pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         if ui
-            .button("Frame")
-            .on_hover_text("Look at the selected body, or at everything (F)")
+            .button(say("Frame"))
+            .on_hover_text(say("Look at the selected body, or at everything (F)"))
             .clicked()
         {
             session.frame();
         }
         if ui
-            .button("Home")
-            .on_hover_text("Look as when the scene was opened (Home)")
+            .button(say("Home view"))
+            .on_hover_text(say("Look as when the scene was opened (Home)"))
             .clicked()
         {
             session.go_home();
         }
         let mut following = session.is_following();
         if ui
-            .checkbox(&mut following, "Follow")
-            .on_hover_text(
+            .checkbox(&mut following, say("Follow"))
+            .on_hover_text(say(
                 "Let the camera go along with the selected body, or with all that moves (V)",
-            )
+            ))
             .changed()
         {
             session.follow(following);
         }
-        ui.checkbox(&mut session.display.grid, "Ground grid");
+    });
+    ui.horizontal(|ui| {
+        for (name, side) in [
+            ("Front", Side::Front),
+            ("Right", Side::Right),
+            ("Top", Side::Top),
+        ] {
+            if ui
+                .button(say(name))
+                .on_hover_text(say("Look from there (1, 2, 3)"))
+                .clicked()
+            {
+                session.look_from(side);
+            }
+        }
+        ui.checkbox(&mut session.camera.parallel, say("Parallel"))
+            .on_hover_text(say(
+                "No perspective: far things are as large as near ones (O)",
+            ));
+    });
+    ui.horizontal(|ui| {
+        let display = &mut session.display;
+        ui.checkbox(&mut display.grid, say("Ground grid"));
+        ui.add_enabled_ui(display.grid, |ui| {
+            ui.checkbox(&mut display.numbers, say("Numbers"))
+                .on_hover_text(say("Letters and numbers on the axes, in m"));
+        });
+        ui.checkbox(&mut display.names, say("Names"))
+            .on_hover_text(say(
+                "The names of all bodies, not of the selected one alone (M)",
+            ));
+        ui.checkbox(&mut display.wireframe, say("Edges"))
+            .on_hover_text(say("The edges of all meshes (W)"));
     });
     ui.horizontal(|ui| {
         field::label(ui, "Velocity", "Blue arrows");
-        ui.checkbox(&mut session.display.all_velocities, "of every body")
-            .on_hover_text("Otherwise of the selected body");
+        ui.checkbox(&mut session.display.all_velocities, say("of every body"))
+            .on_hover_text(say("Otherwise of the selected body"));
     });
     ui.horizontal(|ui| {
         field::label(ui, "Arrow", "Length of a velocity arrow");
@@ -46,31 +79,56 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
                 .logarithmic(true)
                 .suffix(" s"),
         )
-        .on_hover_text("An arrow shows how far its body goes in this time");
+        .on_hover_text(say("An arrow shows how far its body goes in this time"));
+    });
+    ui.horizontal(|ui| {
+        field::label(ui, "Forces", "Red arrows");
+        ui.checkbox(&mut session.display.forces, say("shown"))
+            .on_hover_text(say(
+                "The sum of all forces on each body, without those of contacts",
+            ));
+        ui.add_enabled_ui(session.display.forces, |ui| {
+            ui.spacing_mut().slider_width = 70.0;
+            let slider = Slider::new(&mut session.display.arrow_metres, 1e-4..=10.0)
+                .logarithmic(true)
+                .suffix(" m/N");
+            ui.add(slider)
+                .on_hover_text(say("Length of an arrow for each newton"));
+        });
     });
     ui.horizontal(|ui| {
         let mut trails = session.display.trails;
         if ui
-            .checkbox(&mut trails, "Trails")
-            .on_hover_text("Where bodies have been in the last 600 steps (T)")
+            .checkbox(&mut trails, say("Trails"))
+            .on_hover_text(say("Where bodies have been in the last 600 steps (T)"))
             .changed()
         {
             session.show_trails(trails);
         }
-        ui.checkbox(&mut session.display.ties, "Springs and centres")
-            .on_hover_text("Springs as zigzags, anchors and centres of attraction as crosses");
+        ui.checkbox(&mut session.display.ties, say("Springs and centres"))
+            .on_hover_text(say(
+                "Springs as zigzags, anchors and centres of attraction as crosses",
+            ));
     });
-    ui.checkbox(&mut session.display.impacts, "Impacts")
-        .on_hover_text(
-            "Points of contact with their normals, and the impulses as arrows, compared with the \
-             strongest in sight. They fade within half a second of simulated time",
-        );
+    ui.checkbox(&mut session.display.between, say("Between states"))
+        .on_hover_text(say(
+            "Bodies on their way from state to state, through the places of their impacts at the times of \
+             these. Otherwise they jump from state to state, as they are stepped",
+        ));
+    ui.checkbox(&mut session.display.impacts, say("Impacts"))
+        .on_hover_text(say(
+            "What of each body touches, in violet; points of contact with their normals, and the impulses as \
+             arrows, compared with the strongest in sight. They fade within half a second of simulated time",
+        ));
     boxes(ui, session);
 }
 
 fn boxes(ui: &mut egui::Ui, session: &mut Session) {
-    ui.checkbox(&mut session.display.bvh.shown, "Bounding volume hierarchy")
-        .on_hover_text("Boxes around parts of a mesh, coloured by depth (B)");
+    ui.checkbox(
+        &mut session.display.bvh.shown,
+        say("Bounding volume hierarchy"),
+    )
+    .on_hover_text(say("Boxes around parts of a mesh, coloured by depth (B)"));
     if !session.display.bvh.shown {
         return;
     }
@@ -79,11 +137,11 @@ fn boxes(ui: &mut egui::Ui, session: &mut Session) {
     let view = &mut session.display.bvh;
     ui.horizontal(|ui| {
         field::label(ui, "Boxes of", "Whose hierarchy is drawn");
-        ui.selectable_value(&mut view.every_body, false, "selected body");
-        ui.selectable_value(&mut view.every_body, true, "every body");
+        ui.selectable_value(&mut view.every_body, false, say("selected body"));
+        ui.selectable_value(&mut view.every_body, true, say("every body"));
     });
     if nothing {
-        ui.label(RichText::new("No body is selected: boxes of every body.").weak());
+        ui.label(RichText::new(say("No body is selected: boxes of every body.")).weak());
     }
     ui.horizontal(|ui| {
         field::label(
@@ -95,8 +153,8 @@ fn boxes(ui: &mut egui::Ui, session: &mut Session) {
             !view.every_depth,
             Slider::new(&mut view.depth, 0..=levels.saturating_sub(1)),
         )
-        .on_hover_text("Depth of the boxes drawn");
-        ui.checkbox(&mut view.every_depth, "all");
+        .on_hover_text(say("Depth of the boxes drawn"));
+        ui.checkbox(&mut view.every_depth, say("all"));
     });
     tree(ui, session);
 }

@@ -17,7 +17,7 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
     }
     Panel::bottom("dock")
         .resizable(true)
-        .default_size((0.36 * room.y).clamp(180.0, 300.0))
+        .default_size((0.4 * room.y).clamp(180.0, 300.0))
         .min_size(120.0)
         .max_size(0.75 * room.y)
         .show(root, |ui| {

@@ -4,27 +4,28 @@ use super::plots::Plots;
 use crate::picture;
 use crate::render::offscreen;
 use crate::session::Session;
+use crate::words::say;
 
 /// Size of a picture of plots, pixels.
 const SIZE: [u32; 2] = [2000, 800];
 
 pub(super) fn buttons(ui: &mut egui::Ui, plots: &Plots, session: &mut Session) {
     if ui
-        .button("CSV")
-        .on_hover_text(
+        .button(say("CSV"))
+        .on_hover_text(say(
             "Write all figures of the kept states of all runs as a table, into the folder that the \
              program was started in",
-        )
+        ))
         .clicked()
     {
         let text = session.csv();
         session.export("csv", text.as_bytes());
     }
     if ui
-        .button("PNG")
-        .on_hover_text(
+        .button(say("PNG"))
+        .on_hover_text(say(
             "Write the plots as a picture, into the folder that the program was started in",
-        )
+        ))
         .clicked()
     {
         match png(plots, session) {

@@ -4,6 +4,7 @@ use egui::{DragValue, RichText};
 use sim_core::DVec3;
 
 use crate::expression;
+use crate::words::say;
 
 /// Width of the labels, so that values line up, in points.
 const LABEL: f32 = 76.0;
@@ -16,8 +17,8 @@ pub(super) fn label(ui: &mut egui::Ui, text: &str, meaning: &str) {
         egui::Layout::left_to_right(egui::Align::Center),
         |ui| {
             ui.set_min_width(LABEL);
-            ui.add(egui::Label::new(text).truncate())
-                .on_hover_text(meaning);
+            ui.add(egui::Label::new(say(text)).truncate())
+                .on_hover_text(say(meaning));
         },
     );
 }
@@ -37,7 +38,7 @@ pub(super) fn vector(
         let width = (ui.available_width() - 8.0) / 3.0;
         for (axis, part) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
             changed |= number(ui, part, width)
-                .on_hover_text(format!("{axis}: {meaning}\nDrag, or click to type."))
+                .on_hover_text(format!("{axis}: {}", typed(meaning)))
                 .changed();
         }
     });
@@ -58,7 +59,7 @@ pub(super) fn scalar(
         ui.spacing_mut().item_spacing.x = 4.0;
         let width = (ui.available_width() - 8.0) / 3.0;
         changed = number(ui, &mut value, width)
-            .on_hover_text(format!("{meaning}\nDrag, or click to type."))
+            .on_hover_text(typed(meaning))
             .changed();
     });
     changed.then_some(value)
@@ -67,8 +68,8 @@ pub(super) fn scalar(
 /// Tells assistive technology what a list to choose from is about, and what is chosen.
 pub(super) fn named(list: &egui::Response, name: &str, chosen: &str) {
     list.widget_info(|| {
-        let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, list.enabled(), name);
-        info.current_text_value = Some(chosen.to_owned());
+        let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, list.enabled(), say(name));
+        info.current_text_value = Some(say(chosen));
         info
     });
 }
@@ -77,8 +78,9 @@ pub(super) fn named(list: &egui::Response, name: &str, chosen: &str) {
 pub(super) fn figure(ui: &mut egui::Ui, name: &str, meaning: &str, value: impl Into<String>) {
     ui.horizontal(|ui| {
         label(ui, name, meaning);
+        let value = say(value.into());
         ui.add(egui::Label::new(RichText::new(value).monospace()).truncate())
-            .on_hover_text(meaning);
+            .on_hover_text(say(meaning));
     });
 }
 
@@ -134,11 +136,16 @@ fn shown(value: f64, decimals: usize) -> String {
     }
 }
 
+/// What a field means, and how it is changed.
+fn typed(meaning: &str) -> String {
+    format!("{}\n{}", say(meaning), say("Drag, or click to type."))
+}
+
 fn titled(name: &str, unit: &str) -> String {
     if unit.is_empty() {
-        name.to_owned()
+        say(name)
     } else {
-        format!("{name}, {unit}")
+        format!("{}, {unit}", say(name))
     }
 }
 

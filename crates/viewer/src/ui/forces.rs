@@ -6,6 +6,7 @@ use sim_core::{DVec3, Force};
 
 use super::field;
 use crate::session::{Session, State};
+use crate::words::say;
 
 pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     let stopped = session.state() != State::Running;
@@ -15,7 +16,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         State::Running => "Pause to change them.",
         State::Paused => "Edits last until Reset.",
     };
-    ui.label(RichText::new(about).weak());
+    ui.label(RichText::new(say(about)).weak());
     ui.add_enabled_ui(stopped, |ui| {
         list(ui, session);
         add(ui, session);
@@ -33,10 +34,10 @@ fn list(ui: &mut egui::Ui, session: &mut Session) {
         ui.push_id(i, |ui| {
             let mut removed = false;
             ui.horizontal(|ui| {
-                ui.label(RichText::new(title(&force)).strong())
-                    .on_hover_text(law(&force));
+                ui.label(RichText::new(say(title(&force))).strong())
+                    .on_hover_text(say(law(&force)));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    removed = ui.button("Remove").clicked();
+                    removed = ui.button(say("Remove")).clicked();
                 });
             });
             if removed {
@@ -162,12 +163,12 @@ fn choose(
     ui.horizontal(|ui| {
         field::label(ui, title, "The body that the force acts on");
         let list = ComboBox::from_id_salt(title)
-            .selected_text(body.map_or(all.unwrap_or("?"), name))
+            .selected_text(body.map_or_else(|| say(all.unwrap_or("?")), |i| name(i).to_owned()))
             .width(ui.available_width() - 8.0)
             .height(340.0)
             .show_ui(ui, |ui| {
                 if let Some(all) = all {
-                    ui.selectable_value(body, None, all);
+                    ui.selectable_value(body, None, say(all));
                 }
                 for i in 0..names.len() {
                     ui.selectable_value(body, Some(i), name(i));
@@ -229,13 +230,13 @@ fn add(ui: &mut egui::Ui, session: &mut Session) {
             "A new force, for the selected body where it needs one",
         );
         let list = ComboBox::from_id_salt("add force")
-            .selected_text("a force…")
+            .selected_text(say("a force…"))
             .width(ui.available_width() - 8.0)
             .height(340.0)
             .show_ui(ui, |ui| {
                 for force in offers {
-                    let offer = ui.selectable_label(false, title(&force));
-                    if offer.on_hover_text(law(&force)).clicked() {
+                    let offer = ui.selectable_label(false, say(title(&force)));
+                    if offer.on_hover_text(say(law(&force))).clicked() {
                         chosen = Some(force);
                     }
                 }
@@ -263,11 +264,13 @@ fn title(force: &Force) -> &'static str {
 
 fn law(force: &Force) -> &'static str {
     match force {
-        Force::Gravity { .. } => "Weight: every body falls with the same acceleration",
+        Force::Gravity { .. } => "Weight, F = m g: every body falls with the same acceleration",
         Force::LinearDrag { .. } => "F = -c v",
         Force::QuadraticDrag { .. } => "F = -c |v| v",
         Force::Anchor { .. } => "F = -k (1 - L/|d|) d - c v, with d from the point to the body",
-        Force::Spring { .. } => "k times the stretch plus c times its rate, along the line",
+        Force::Spring { .. } => {
+            "F = k (|d| - L) + c d|d|/dt along the line d: the stretch and its rate"
+        }
         Force::Attraction { .. } => "F = -m G M / r², to the point",
         Force::Gravitation { .. } => "F = G m m / r² between every two bodies",
         Force::Body { .. } | Force::Pair { .. } => "A law from outside",

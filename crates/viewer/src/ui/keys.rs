@@ -4,7 +4,8 @@ use egui::text::{LayoutJob, TextFormat};
 use egui::{Key, Modifiers, Panel, RichText, TextStyle};
 
 use super::Ui;
-use crate::session::{Session, Side};
+use crate::session::{Leaving, Session, Side};
+use crate::words::say;
 
 /// A key and what it does.
 struct Shortcut {
@@ -14,7 +15,7 @@ struct Shortcut {
     act: fn(&mut Ui, &mut Session, Key),
 }
 
-static SHORTCUTS: [Shortcut; 19] = [
+static SHORTCUTS: [Shortcut; 24] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
@@ -38,6 +39,12 @@ static SHORTCUTS: [Shortcut; 19] = [
         label: "PgDn",
         meaning: "five steps",
         act: |_, session, _| super::time::five_steps(session),
+    },
+    Shortcut {
+        keys: &[Key::U, Key::I],
+        label: "U I",
+        meaning: "impacts",
+        act: |_, session, key| session.go_to_impact(key == Key::I),
     },
     Shortcut {
         keys: &[Key::R],
@@ -64,6 +71,12 @@ static SHORTCUTS: [Shortcut; 19] = [
         act: |_, session, _| session.go_home(),
     },
     Shortcut {
+        keys: &[Key::O],
+        label: "O",
+        meaning: "parallel view",
+        act: |_, session, _| session.camera.parallel ^= true,
+    },
+    Shortcut {
         keys: &[Key::Num1, Key::Num2, Key::Num3],
         label: "1 2 3",
         meaning: "sides",
@@ -74,6 +87,18 @@ static SHORTCUTS: [Shortcut; 19] = [
                 _ => Side::Top,
             });
         },
+    },
+    Shortcut {
+        keys: &[Key::W],
+        label: "W",
+        meaning: "wireframe",
+        act: |_, session, _| session.display.wireframe ^= true,
+    },
+    Shortcut {
+        keys: &[Key::M],
+        label: "M",
+        meaning: "names",
+        act: |_, session, _| session.display.names ^= true,
     },
     Shortcut {
         keys: &[Key::B],
@@ -98,6 +123,12 @@ static SHORTCUTS: [Shortcut; 19] = [
         label: "T",
         meaning: "trails",
         act: |_, session, _| session.show_trails(!session.display.trails),
+    },
+    Shortcut {
+        keys: &[Key::F12],
+        label: "F12",
+        meaning: "picture",
+        act: |ui, session, _| session.shoot_still(ui.pixels),
     },
     Shortcut {
         keys: &[Key::Delete],
@@ -130,52 +161,132 @@ static SHORTCUTS: [Shortcut; 19] = [
         act: |ui, _, _| ui.plots_hidden ^= true,
     },
     Shortcut {
-        keys: &[Key::H],
-        label: "H",
+        keys: &[Key::H, Key::Questionmark, Key::F1],
+        label: "H ? F1",
         meaning: "all keys",
         act: |ui, _, _| ui.help ^= true,
     },
 ];
 
-/// What a key does.
-type Act = fn(&mut Session);
+/// Something that can be done, kept.
+pub(super) type Doing = Box<dyn Fn(&mut Ui, &mut Session)>;
 
-/// What is done with the control or command key held.
-const WITH_CTRL: [(Modifiers, Key, Act); 4] = [
+/// What a key does.
+type Act = fn(&mut Ui, &mut Session);
+
+/// A key that is held together with Ctrl, or with the command key on a Mac.
+struct WithCtrl {
+    modifiers: Modifiers,
+    key: Key,
+    label: &'static str,
+    meaning: &'static str,
+    act: Act,
+}
+
+impl WithCtrl {
+    const fn new(key: Key, label: &'static str, meaning: &'static str, act: Act) -> Self {
+        Self {
+            modifiers: Modifiers::COMMAND,
+            key,
+            label,
+            meaning,
+            act,
+        }
+    }
+}
+
+static WITH_CTRL: [WithCtrl; 10] = [
     // With Shift first, since without it does not look at Shift.
-    (
-        Modifiers::COMMAND.plus(Modifiers::SHIFT),
-        Key::Z,
-        Session::redo,
-    ),
-    (Modifiers::COMMAND, Key::Z, Session::undo),
-    (Modifiers::COMMAND, Key::Y, Session::redo),
-    (Modifiers::COMMAND, Key::S, Session::save_own),
+    WithCtrl {
+        modifiers: Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        ..WithCtrl::new(Key::Z, "Ctrl + Shift + Z", "do again", |_, session| {
+            session.redo();
+        })
+    },
+    WithCtrl::new(Key::Z, "Ctrl + Z", "take an edit back", |_, session| {
+        session.undo();
+    }),
+    WithCtrl::new(Key::Y, "Ctrl + Y", "do it again", |_, session| {
+        session.redo()
+    }),
+    WithCtrl::new(Key::S, "Ctrl + S", "save the scene", |_, session| {
+        session.save_own();
+    }),
+    WithCtrl::new(Key::N, "Ctrl + N", "new scene", |_, session| {
+        session.leave(Leaving::New);
+    }),
+    WithCtrl::new(Key::O, "Ctrl + O", "open a file", |ui, _| ui.files.ask()),
+    WithCtrl::new(Key::D, "Ctrl + D", "duplicate the body", |_, session| {
+        session.duplicate_selected();
+    }),
+    WithCtrl::new(Key::P, "Ctrl + P", "find a command", |ui, _| {
+        ui.palette.open = true;
+    }),
+    WithCtrl::new(Key::G, "Ctrl + G", "gallery of scenes", |ui, _| {
+        ui.gallery.open ^= true;
+    }),
+    WithCtrl::new(Key::T, "Ctrl + T", "guided tour", |ui, _| {
+        ui.tour.open ^= true
+    }),
 ];
 
-static GESTURES: [(&str, &str); 9] = [
-    ("Ctrl + Z", "take an edit back"),
-    ("Ctrl + Shift + Z, Ctrl + Y", "do it again"),
-    ("Ctrl + S", "save the scene"),
+static GESTURES: [(&str, &str); 7] = [
     ("Click", "select a body"),
     ("Drag left or right", "orbit"),
     ("Drag middle, Shift + drag", "pan"),
-    ("Wheel", "zoom"),
+    (
+        "Ctrl + drag a body",
+        "pull it by a spring; let go to throw it",
+    ),
+    ("Wheel", "zoom to the pointer"),
     ("Drop a file", "add a mesh or open a scene"),
     ("Drag a number", "change it; click to type"),
 ];
+
+/// Magnifies the window: obeyed by egui.
+const MAGNIFY: (&str, &str) = ("Ctrl + +, -, 0", "larger, smaller, as it was");
+
+/// All that keys do: the keys, what they do, and the doing.
+pub(super) fn commands() -> impl Iterator<Item = (&'static str, &'static str, Doing)> {
+    let plain = SHORTCUTS.iter().flat_map(|shortcut| {
+        // Keys that do different things, such as the sides to look from, are a command each.
+        let keys = match shortcut.label {
+            "1 2 3" | "[ ]" | "U I" => shortcut.keys,
+            _ => &shortcut.keys[..1],
+        };
+        keys.iter().map(move |&key| {
+            let act: Doing = Box::new(move |ui, session| (shortcut.act)(ui, session, key));
+            let name = match key {
+                Key::Num1 => "look from the front",
+                Key::Num2 => "look from the right",
+                Key::Num3 => "look from the top",
+                Key::U => "last impact",
+                Key::I => "next impact",
+                Key::OpenBracket => "boxes one level up",
+                Key::CloseBracket => "boxes one level down",
+                _ => shortcut.meaning,
+            };
+            (shortcut.label, name, act)
+        })
+    });
+    let held = WITH_CTRL.iter().map(|held| {
+        let act: Doing = Box::new(held.act);
+        (held.label, held.meaning, act)
+    });
+    plain.chain(held)
+}
 
 /// Obeys the keys pressed, unless they are typed into a field.
 pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session) {
     if ctx.egui_wants_keyboard_input() {
         return;
     }
-    if session.leaving().is_some() {
+    if session.leaving().is_some() || state.palette.open {
         return;
     }
-    for (modifiers, key, act) in WITH_CTRL {
-        if ctx.input_mut(|input| input.consume_key(modifiers, key)) {
-            act(session);
+    for held in &WITH_CTRL {
+        if ctx.input_mut(|input| input.consume_key(held.modifiers, held.key)) {
+            (held.act)(state, session);
         }
     }
     for shortcut in &SHORTCUTS {
@@ -211,32 +322,39 @@ fn line(ui: &egui::Ui, shortcut: &Shortcut) -> LayoutJob {
     let font = TextStyle::Small.resolve(ui.style());
     let mut text = LayoutJob::default();
     for (part, colour) in [
-        (shortcut.label, ui.visuals().strong_text_color()),
-        (" ", ui.visuals().text_color()),
-        (shortcut.meaning, ui.visuals().weak_text_color()),
+        (say(shortcut.label), ui.visuals().strong_text_color()),
+        (" ".to_owned(), ui.visuals().text_color()),
+        (say(shortcut.meaning), ui.visuals().weak_text_color()),
     ] {
-        text.append(part, 0.0, TextFormat::simple(font.clone(), colour));
+        text.append(&part, 0.0, TextFormat::simple(font.clone(), colour));
     }
     text
 }
 
 /// The window that lists everything.
 pub(super) fn show_help(ctx: &egui::Context, open: &mut bool) {
-    egui::Window::new("Keys and mouse")
+    egui::Window::new(say("Keys and mouse"))
+        .id(egui::Id::unique("all keys"))
         .open(open)
         .collapsible(false)
         .resizable(false)
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(ctx.content_rect().center())
         .show(ctx, |ui| {
+            let plain = SHORTCUTS.iter().map(|s| (s.label, s.meaning));
+            let held = WITH_CTRL.iter().map(|held| (held.label, held.meaning));
+            let all: Vec<_> = plain.chain(held).chain([MAGNIFY]).chain(GESTURES).collect();
+            // Two beside each other, since they are many.
+            let (left, right) = all.split_at(all.len().div_ceil(2));
             egui::Grid::new("keys")
-                .num_columns(2)
-                .spacing([24.0, 4.0])
+                .num_columns(4)
+                .spacing([18.0, 4.0])
                 .show(ui, |ui| {
-                    let keys = SHORTCUTS.iter().map(|s| (s.label, s.meaning));
-                    for (what, meaning) in keys.chain(GESTURES) {
-                        ui.label(RichText::new(what).strong());
-                        ui.label(meaning);
+                    for (row, pair) in left.iter().enumerate() {
+                        for (what, meaning) in [Some(pair), right.get(row)].into_iter().flatten() {
+                            ui.label(RichText::new(say(what)).strong());
+                            ui.label(say(meaning));
+                        }
                         ui.end_row();
                     }
                 });

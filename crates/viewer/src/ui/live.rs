@@ -2,11 +2,12 @@
 
 use egui::RichText;
 use scene::shown;
-use sim_core::Overlap;
+use sim_core::{Impact, Overlap, Shape};
 
 use super::{field, style};
 use crate::number;
-use crate::session::Session;
+use crate::session::{Session, State};
+use crate::words::say;
 
 /// Pairs in overlap that are named; more would cover the picture.
 const OVERLAPS: usize = 4;
@@ -26,8 +27,8 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     field::figure(
         ui,
         "Time",
-        "Simulated time",
-        format!("{:.3} s", world.time()),
+        "Simulated time of the picture. Within a step the other figures are those of its end",
+        time(session),
     );
     field::figure(
         ui,
@@ -43,7 +44,7 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     );
     field::figure(
         ui,
-        "Frame",
+        "Frame time",
         "Real time from one picture to the next while running",
         figures.frame.seconds().map_or_else(none, number::seconds),
     );
@@ -57,13 +58,13 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     field::figure(
         ui,
         "Energy",
-        "Kinetic and potential energy of all bodies together",
+        "Kinetic and potential energy of all bodies together, E = Σ ½ m v² + U",
         number::energy(kinetic + potential),
     );
     field::figure(
         ui,
         "  parts",
-        "Kinetic energy, and potential energy of the forces that have one: 0 for a constant force \
+        "Kinetic energy Σ ½ m v², and potential energy U of the forces that have one: 0 for a constant force \
          at the origin, a spring at rest, and masses infinitely far apart",
         format!(
             "{} kin.  {} pot.",
@@ -74,17 +75,17 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     let (name, meaning) = match drift.energy_is_error() {
         false if drift.driven => (
             "  change",
-            "Change of the energy since the start or the last edit, relative to the energy then, and \
+            "Change of the energy since the start or the last edit, (E - E₀)/|E₀|, and \
              in J: a driven body or a law from outside may change it, so it is no error",
         ),
         false => (
             "  change",
-            "Change of the energy since the start or the last edit, relative to the energy then, and \
+            "Change of the energy since the start or the last edit, (E - E₀)/|E₀|, and \
              in J: friction or inelastic impacts take it, so a loss is no error",
         ),
         true => (
             "  drift",
-            "Error of the energy since the start or the last edit, relative to the energy then, and in \
+            "Error of the energy since the start or the last edit, (E - E₀)/|E₀|, and in \
              J: nothing that acts here would have changed it so",
         ),
     };
@@ -93,7 +94,7 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     field::figure(
         ui,
         "Momentum",
-        "Sum of mass times velocity, kg m/s",
+        "Sum of mass times velocity, p = Σ m v, kg m/s",
         [p.x, p.y, p.z].map(number::figure).join("  ") + " kg m/s",
     );
     field::figure(
@@ -114,6 +115,14 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
             .path_error()
             .map_or_else(none, |away| format!("{} m", number::figure(away))),
     );
+}
+
+/// The time of the picture, with digits that tell instants within a step apart.
+fn time(session: &Session) -> String {
+    match session.is_between() && session.state() == State::Paused {
+        true => format!("{:.6} s, within a step", session.shown_time()),
+        false => format!("{:.3} s", session.shown_time()),
+    }
 }
 
 fn impacts(ui: &mut egui::Ui, session: &Session) {
@@ -139,12 +148,20 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
             "The last collision: when and between which bodies",
             format!("{:.3} s  {} and {}", impact.time, name(a), name(b)),
         );
+        let (first, second) = (part_name(session, impact, 0), part_name(session, impact, 1));
+        field::figure(
+            ui,
+            "  touching",
+            "What of each body touched in the last collision: a corner, an edge or a face of its \
+             mesh. It is violet in the picture",
+            format!("{} {} {}", say(first), say("and"), say(second)),
+        );
         let (approaching, parting) = impact.speeds;
         field::figure(
             ui,
             "  impulse",
-            "The impulse exchanged in the last collision, and the speeds along its normal at which \
-             the bodies approached and part",
+            "The impulse exchanged in the last collision, J = (1 + e) v / (1/m₁ + 1/m₂), and the speeds v \
+             along its normal at which the bodies approached and part",
             format!(
                 "{} N s  {} → {} m/s",
                 number::figure(impact.impulse),
@@ -152,6 +169,19 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
                 number::figure(parting)
             ),
         );
+    }
+}
+
+/// What of a body touches in an impact.
+fn part_name(session: &Session, impact: &Impact, which: usize) -> &'static str {
+    let (i, j) = impact.bodies;
+    let body = [i, j][which];
+    match (session.touching(impact)[which], session.world().shape(body)) {
+        (Some(part), _) => part.name(),
+        (None, Some(Shape::Sphere { .. })) => "ball",
+        (None, Some(Shape::HalfSpace { .. })) => "plane",
+        (None, Some(Shape::Mesh(_))) => "surface",
+        (None, None) => "point",
     }
 }
 
@@ -166,18 +196,30 @@ fn overlaps(ui: &mut egui::Ui, session: &mut Session) {
     };
     for overlap in found.iter().take(OVERLAPS) {
         let (a, b) = overlap.bodies;
-        let bound = if overlap.is_least { "" } else { "up to " };
         let depth = number::figure(overlap.depth);
-        let text = format!("{} and {} overlap, {bound}{depth} m deep", name(a), name(b));
-        ui.label(RichText::new(text).color(style::AMBER))
-            .on_hover_text("They began inside each other. They get no deeper, and may part.");
+        let (a, b) = (name(a), name(b));
+        let text = match overlap.is_least {
+            true => format!("{a} and {b} overlap, {depth} m deep"),
+            false => format!("{a} and {b} overlap, up to {depth} m deep"),
+        };
+        ui.label(RichText::new(say(text)).color(style::AMBER.of(ui.visuals())))
+            .on_hover_text(say(
+                "They began inside each other. They get no deeper, and may part.",
+            ));
     }
     if let Some(more) = found.len().checked_sub(OVERLAPS).filter(|&more| more > 0) {
-        ui.label(RichText::new(format!("and {more} more pairs")).color(style::AMBER));
+        ui.label(
+            RichText::new(say(format!("and {more} more pairs")))
+                .color(style::AMBER.of(ui.visuals())),
+        );
     }
     let hint = "Move all that overlap out of each other, by the least that does it, heavy bodies less. \
                 In the layout that changes the set-up.";
-    if ui.button("Separate").on_hover_text(hint).clicked() {
+    if ui
+        .button(say("Separate"))
+        .on_hover_text(say(hint))
+        .clicked()
+    {
         session.separate();
     }
 }

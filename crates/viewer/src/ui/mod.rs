@@ -13,20 +13,26 @@ mod dock;
 mod export;
 mod field;
 mod forces;
+mod gallery;
+mod handles;
 mod keys;
 mod live;
+mod palette;
 mod plots;
 mod question;
 mod scene;
 mod simulation;
 mod style;
 mod time;
+mod tour;
 mod variants;
 mod viewport;
 
 use egui::{CollapsingHeader, Panel, RichText, ScrollArea};
 
+use crate::preferences::Preferences;
 use crate::session::Session;
+use crate::words::{Language, say, speak};
 
 pub use style::apply as apply_style;
 
@@ -40,6 +46,16 @@ pub struct Ui {
     plots: plots::Plots,
     variants: variants::Choice,
     files: scene::Files,
+    /// Size of the picture, pixels.
+    pixels: [u32; 2],
+    gallery: gallery::Gallery,
+    tour: tour::Tour,
+    palette: palette::Palette,
+    handles: handles::Handles,
+    language: Language,
+    /// Whether a font has Chinese characters; not known before the first frame.
+    has_chinese: Option<bool>,
+    light: bool,
 }
 
 impl Ui {
@@ -50,11 +66,17 @@ impl Ui {
         session: &mut Session,
         picture: egui::TextureId,
     ) -> egui::Rect {
-        self.files.poll(session);
+        self.speak(root.ctx(), session);
+        root.ctx().set_theme(match self.light {
+            true => egui::Theme::Light,
+            false => egui::Theme::Dark,
+        });
+        self.files.poll(root.ctx(), session);
         keys::handle(root.ctx(), self, session);
         bar::show(root, self, session);
         keys::show_line(root);
-        time::show(root, session);
+        time::show(root, self, session);
+        tour::show(root, &mut self.tour, session);
         if !self.panel_hidden {
             self.side_panel(root, session);
         }
@@ -62,11 +84,67 @@ impl Ui {
         if let Some(text) = field::take_refused(root.ctx()) {
             session.notices().error("number", text);
         }
-        let rect = viewport::show(root, session, picture);
+        let rect = viewport::show(root, &mut self.handles, session, picture);
+        let pixels = root.ctx().pixels_per_point() * rect.size();
+        self.pixels = [pixels.x, pixels.y].map(|side| side.round().max(1.0) as u32);
         banner::show(root.ctx(), rect, session);
         question::show(root.ctx(), session);
+        gallery::show(root.ctx(), &mut self.gallery, session);
+        palette::show(root.ctx(), self, session);
         keys::show_help(root.ctx(), &mut self.help);
         rect
+    }
+
+    /// Takes up what was preferred when the window was closed last.
+    pub fn prefer(&mut self, ctx: &egui::Context, session: &mut Session, wanted: &Preferences) {
+        self.language = wanted.language;
+        self.light = wanted.light;
+        self.panel_hidden = !wanted.panel;
+        self.live_hidden = !wanted.figures;
+        self.plots_hidden = !wanted.plots;
+        self.files.recent.clone_from(&wanted.recent);
+        session.camera.parallel = wanted.parallel;
+        let display = &mut session.display;
+        (display.grid, display.numbers) = (wanted.grid, wanted.numbers);
+        (display.names, display.wireframe) = (wanted.names, wanted.wireframe);
+        ctx.set_zoom_factor(wanted.zoom.clamp(0.5, 4.0));
+    }
+
+    /// What is preferred now.
+    pub fn preferences(&self, ctx: &egui::Context, session: &Session) -> Preferences {
+        Preferences {
+            language: self.language,
+            light: self.light,
+            zoom: ctx.zoom_factor(),
+            panel: !self.panel_hidden,
+            figures: !self.live_hidden,
+            plots: !self.plots_hidden,
+            grid: session.display.grid,
+            numbers: session.display.numbers,
+            names: session.display.names,
+            wireframe: session.display.wireframe,
+            parallel: session.camera.parallel,
+            recent: self.files.recent.clone(),
+        }
+    }
+
+    /// Speaks another language from the next frame on.
+    pub fn set_language(&mut self, language: Language) {
+        self.language = language;
+    }
+
+    /// Speaks the language chosen, or English where the system has no font for that.
+    fn speak(&mut self, ctx: &egui::Context, session: &mut Session) {
+        let has_chinese = *self.has_chinese.get_or_insert_with(|| {
+            let font = egui::FontId::proportional(13.0);
+            ctx.fonts_mut(|fonts| fonts.has_glyphs(&font, Language::Chinese.name()))
+        });
+        if self.language == Language::Chinese && !has_chinese {
+            self.language = Language::English;
+            let text = "No font of the system has Chinese characters: install one, such as fonts-noto-cjk.";
+            session.notices().error("language", text.to_owned());
+        }
+        speak(self.language);
     }
 
     fn side_panel(&mut self, root: &mut egui::Ui, session: &mut Session) {
@@ -83,7 +161,9 @@ impl Ui {
                         section(ui, "Compare", |ui| {
                             variants::show(ui, &mut self.variants, session);
                         });
-                        section(ui, "Selected body", |ui| body::show(ui, session));
+                        section(ui, "Selected body", |ui| {
+                            body::show(ui, &mut self.handles, session);
+                        });
                         section(ui, "Forces", |ui| forces::show(ui, session));
                         section(ui, "Display", |ui| display::show(ui, session));
                         section(ui, "Naive against BVH", |ui| compare::show(ui, session));
@@ -93,7 +173,7 @@ impl Ui {
 }
 
 fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui)) {
-    CollapsingHeader::new(RichText::new(title).heading())
+    CollapsingHeader::new(RichText::new(say(title)).heading())
         .default_open(true)
         .show_unindented(ui, |ui| {
             ui.add_space(2.0);

@@ -6,8 +6,9 @@ use egui_plot::{
 };
 
 use super::style;
-use crate::number;
+use crate::number::{self, tidy};
 use crate::session::{CHARTS, Chart, Curve, Session, State};
+use crate::words::say;
 
 /// Which plots are shown.
 pub(super) struct Plots {
@@ -34,18 +35,22 @@ impl Plots {
     pub(super) fn show(&mut self, ui: &mut egui::Ui, session: &mut Session) {
         ui.horizontal_wrapped(|ui| {
             for (chart, shown) in CHARTS.iter().zip(&mut self.shown) {
-                ui.toggle_value(shown, chart.title)
-                    .on_hover_text(chart.meaning);
+                ui.toggle_value(shown, say(chart.title))
+                    .on_hover_text(say(chart.meaning));
             }
-            ui.toggle_value(&mut self.precision, "Speed against error")
-                .on_hover_text(
+            ui.toggle_value(&mut self.precision, say("Speed against error"))
+                .on_hover_text(say(
                     "Largest error so far over real time for a simulated second, a point for the \
                      run and for each variant",
-                );
+                ));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 super::export::buttons(ui, self, session);
             });
         });
+        let chosen = CHARTS.iter().zip(self.shown);
+        session.profiled = chosen
+            .into_iter()
+            .any(|(chart, shown)| shown && chart.title == "Step cost");
         self.draw(ui, session);
     }
 
@@ -60,7 +65,7 @@ impl Plots {
         let fit = ((room.x / LEAST_WIDTH) as usize).max(1);
         let count = (chosen.len() + usize::from(self.precision)).min(fit);
         if count == 0 {
-            ui.label(RichText::new("Choose a plot above.").weak());
+            ui.label(RichText::new(say("Choose a plot above.")).weak());
             return;
         }
         if !session.variants().is_empty() {
@@ -81,21 +86,16 @@ impl Plots {
     }
 }
 
-fn colour([red, green, blue]: [f32; 3]) -> Color32 {
-    let [red, green, blue] = [red, green, blue].map(|part| (255.0 * part).round() as u8);
-    Color32::from_rgb(red, green, blue)
-}
-
 /// What a plot shows, in which unit, and the names of its curves in their colours.
 fn heading(ui: &mut egui::Ui, title: &str, unit: &str, meaning: &str, curves: &[Curve]) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(8.0, 0.0);
         let title = match unit {
-            "" => title.to_owned(),
-            unit => format!("{title}, {unit}"),
+            "" => say(title),
+            unit => format!("{}, {unit}", say(title)),
         };
         ui.label(RichText::new(title).strong())
-            .on_hover_text(meaning);
+            .on_hover_text(say(meaning));
         names(ui, curves);
     });
 }
@@ -111,9 +111,9 @@ fn legend(ui: &mut egui::Ui, curves: &[Curve]) {
 fn names(ui: &mut egui::Ui, curves: &[Curve]) {
     for curve in curves {
         ui.label(
-            RichText::new(&curve.name)
+            RichText::new(say(&curve.name))
                 .small()
-                .color(colour(curve.colour)),
+                .color(style::word(curve.colour, ui.visuals())),
         );
     }
 }
@@ -155,7 +155,7 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
             _ if chart.title == "Path error" => "The exact path is not known here.",
             _ => "Nothing yet.",
         };
-        ui.label(RichText::new(why).weak());
+        ui.label(RichText::new(say(why)).weak());
         return;
     }
     let group = egui::Id::unique("time of the plots");
@@ -195,16 +195,18 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
         Some((value, size)) if !logarithmic => plot.include_y(value - size).include_y(value + size),
         _ => plot,
     };
-    let now = session.world().time();
+    let now = session.shown_time();
+    let visuals = ui.visuals().clone();
     let shown = plot.show(ui, |plot| {
         for curve in &curves {
             let points = PlotPoints::from(curve.points.clone());
-            let line = Line::new(curve.name.clone(), points).color(colour(curve.colour));
+            let line =
+                Line::new(say(&curve.name), points).color(style::curve(curve.colour, &visuals));
             plot.line(line.width(1.8));
         }
         plot.vline(
             VLine::new("", now)
-                .color(style::BLUE)
+                .color(style::BLUE.of(&visuals))
                 .width(1.2)
                 .style(LineStyle::Solid)
                 .allow_hover(false),
@@ -228,16 +230,17 @@ fn precision(ui: &mut egui::Ui, session: &Session, height: f32) {
     let height = height - (ui.cursor().top() - top);
     if runs.is_empty() {
         let text = "Needs a run whose exact path is known.";
-        ui.label(RichText::new(text).weak());
+        ui.label(RichText::new(say(text)).weak());
         return;
     }
+    let visuals = ui.visuals().clone();
     plot("precision", height, true)
         .custom_x_axes(vec![
             AxisHints::new_x()
-                .label("s per simulated second")
+                .label(say("s per simulated second"))
                 .formatter(|mark, range| axis_text(mark, range, true)),
         ])
-        .custom_y_axes(vec![y_axis(true).label("largest error, m")])
+        .custom_y_axes(vec![y_axis(true).label(say("largest error, m"))])
         .x_grid_spacer(powers)
         .set_margin_fraction(egui::vec2(0.15, 0.15))
         .label_formatter(|hover| match hover {
@@ -245,18 +248,18 @@ fn precision(ui: &mut egui::Ui, session: &Session, height: f32) {
                 plot_name,
                 position,
                 ..
-            } => Some(format!(
+            } => Some(say(format!(
                 "{plot_name}\nerror {} m\n{} for a second",
                 number::figure(10_f64.powf(position.y)),
                 number::seconds(10_f64.powf(position.x))
-            )),
+            ))),
             HoverPosition::Elsewhere { .. } => None,
         })
         .show(ui, |plot| {
             for run in &runs {
                 let points = PlotPoints::from(run.points.clone());
-                let points = Points::new(run.name.clone(), points).radius(5.0);
-                plot.points(points.color(colour(run.colour)));
+                let points = Points::new(say(&run.name), points).radius(5.0);
+                plot.points(points.color(style::curve(run.colour, &visuals)));
             }
         });
 }
@@ -323,16 +326,5 @@ fn axis_text(mark: GridMark, range: &std::ops::RangeInclusive<f64>, logarithmic:
         tidy(mark.value)
     } else {
         format!("{:.1e}", mark.value)
-    }
-}
-
-/// A number without the digits that are rounding.
-fn tidy(value: f64) -> String {
-    let text = format!("{value:.6}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".to_owned()
-    } else {
-        text.to_owned()
     }
 }

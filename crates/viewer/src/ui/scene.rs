@@ -1,25 +1,52 @@
 //! Scenes and their bodies: the gallery, files, and the list to select from.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use egui::{ComboBox, RichText, TextEdit};
 use scene::{MeshRef, SceneShape, shown};
 use sim_core::DVec3;
 
 use super::dialog::{Answer, Dialog, Purpose};
-use super::field;
+use super::{field, style};
+use crate::preferences::MOST_RECENT;
 use crate::session::{Leaving, Session};
+use crate::words::say;
 
 /// The path typed, and the dialog opened instead.
 #[derive(Default)]
 pub(super) struct Files {
     path: String,
     dialog: Option<Dialog>,
+    /// A dialog is to be opened.
+    asked: bool,
+    /// Files that were opened or saved, the latest first.
+    pub(super) recent: Vec<PathBuf>,
 }
 
 impl Files {
-    /// Takes the answer of a dialog, once there is one.
-    pub(super) fn poll(&mut self, session: &mut Session) {
+    /// Asks for a file to open, in the next frame.
+    pub(super) fn ask(&mut self) {
+        self.asked = true;
+    }
+
+    /// Remembers the scene's file as the latest one.
+    fn remember(&mut self, session: &Session) {
+        let Some(file) = session.file() else { return };
+        let file = std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf());
+        if self.recent.first() != Some(&file) {
+            self.recent.retain(|other| *other != file);
+            self.recent.insert(0, file);
+            self.recent.truncate(MOST_RECENT);
+        }
+    }
+
+    /// Opens the dialog that was asked for, takes the answer of one once there is one, and remembers
+    /// which files were open.
+    pub(super) fn poll(&mut self, ctx: &egui::Context, session: &mut Session) {
+        if std::mem::take(&mut self.asked) && self.dialog.is_none() {
+            self.dialog = Dialog::open(ctx, Purpose::Read);
+        }
+        self.remember(session);
         match Dialog::answer(&mut self.dialog) {
             None | Some(Answer::Cancelled) => {}
             Some(Answer::Chosen(Purpose::Read, path)) => session.take_in(&path),
@@ -34,48 +61,56 @@ impl Files {
 }
 
 pub(super) fn show(ui: &mut egui::Ui, files: &mut Files, session: &mut Session) {
-    gallery(ui, session);
+    about(ui, files, session);
     paths(ui, files, session);
     ui.add_space(4.0);
     bodies(ui, session);
 }
 
-fn gallery(ui: &mut egui::Ui, session: &mut Session) {
+fn about(ui: &mut egui::Ui, files: &mut Files, session: &mut Session) {
     ui.horizontal(|ui| {
-        field::label(ui, "Gallery", "Scenes that come with the program");
+        if ui
+            .button(say("New"))
+            .on_hover_text(say("Begin an empty scene (Ctrl+N)"))
+            .clicked()
+        {
+            session.leave(Leaving::New);
+        }
         let mut chosen = None;
-        let list = ComboBox::from_id_salt("gallery")
-            .selected_text(shown::name(&session.scene().name))
+        let list = ComboBox::from_id_salt("recent")
+            .selected_text(say("Recent files"))
             .width(ui.available_width() - 8.0)
             .height(340.0)
             .show_ui(ui, |ui| {
-                for entry in scene::SCENES {
-                    let current = entry.name == session.scene().name;
-                    let title = entry.title();
-                    if ui
-                        .selectable_label(current, format!("{}: {title}", entry.name))
-                        .clicked()
-                    {
-                        chosen = Some(entry.name);
+                for path in &files.recent {
+                    if ui.selectable_label(false, shown::path(path)).clicked() {
+                        chosen = Some(path.clone());
                     }
+                }
+                if files.recent.is_empty() {
+                    ui.label(RichText::new(say("No file was opened yet.")).weak());
                 }
             })
             .response;
-        field::named(&list, "Gallery", &shown::name(&session.scene().name));
-        if let Some(name) = chosen {
-            session.leave(Leaving::Open(name.into()));
+        field::named(&list, "Recent files", "");
+        if let Some(path) = chosen {
+            session.take_in(&path);
         }
     });
     if !session.scene().about.is_empty() {
-        ui.label(shown::part(&session.scene().about));
+        ui.label(say(shown::part(&session.scene().about)));
     }
 }
 
 fn paths(ui: &mut egui::Ui, files: &mut Files, session: &mut Session) {
     ui.horizontal(|ui| {
-        field::label(ui, "File", "A scene (.toml) or a mesh");
+        field::label(
+            ui,
+            "File",
+            "A scene (.toml), a recorded run (.run) or a mesh",
+        );
         let edit = TextEdit::singleline(&mut files.path)
-            .hint_text("path of a scene or mesh")
+            .hint_text(say("path of a scene or mesh"))
             .desired_width(ui.available_width() - 8.0);
         let entered = ui.add(edit).lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if entered && !files.path.trim().is_empty() {
@@ -86,26 +121,28 @@ fn paths(ui: &mut egui::Ui, files: &mut Files, session: &mut Session) {
         let typed = !files.path.trim().is_empty();
         let path = Path::new(files.path.trim());
         if ui
-            .add_enabled(typed, egui::Button::new("Open"))
-            .on_hover_text("Open the scene at this path, or add the mesh there as a body")
-            .on_disabled_hover_text("Type a path first, or choose a file")
+            .add_enabled(typed, egui::Button::new(say("Open")))
+            .on_hover_text(say(
+                "Open the scene at this path, or add the mesh there as a body",
+            ))
+            .on_disabled_hover_text(say("Type a path first, or choose a file"))
             .clicked()
         {
             session.take_in(path);
         }
         if ui
-            .add_enabled(typed, egui::Button::new("Save"))
-            .on_hover_text("Write the scene as set up to this path (.toml)")
-            .on_disabled_hover_text("Type a path first, or choose a file")
+            .add_enabled(typed, egui::Button::new(say("Save")))
+            .on_hover_text(say("Write the scene as set up to this path (.toml)"))
+            .on_disabled_hover_text(say("Type a path first, or choose a file"))
             .clicked()
         {
             session.save(path, false);
         }
         let mut ask = |ui: &mut egui::Ui, text: &str, meaning: &str, purpose| {
             if ui
-                .add_enabled(files.dialog.is_none(), egui::Button::new(text))
-                .on_hover_text(meaning)
-                .on_disabled_hover_text("A file dialog is open")
+                .add_enabled(files.dialog.is_none(), egui::Button::new(say(text)))
+                .on_hover_text(say(meaning))
+                .on_disabled_hover_text(say("A file dialog is open"))
                 .clicked()
             {
                 files.dialog = Dialog::open(ui.ctx(), purpose);
@@ -128,18 +165,24 @@ fn paths(ui: &mut egui::Ui, files: &mut Files, session: &mut Session) {
 
 fn bodies(ui: &mut egui::Ui, session: &mut Session) {
     if session.scene().bodies.is_empty() {
-        ui.label(RichText::new("No bodies. Add a mesh by its path or by dropping it here.").weak());
+        ui.label(
+            RichText::new(say(
+                "No bodies. Add a mesh by its path or by dropping it here.",
+            ))
+            .weak(),
+        );
     }
     ui.horizontal(|ui| {
         field::label(ui, "Add", "A body beside all others; returns to the layout");
         let shapes = [
             ("cube", MeshRef::builtin("cube.obj").map(SceneShape::Mesh)),
+            ("cow", MeshRef::builtin("cow.obj").map(SceneShape::Mesh)),
             ("sphere", Some(SceneShape::Sphere { radius: 0.5 })),
             ("floor", Some(SceneShape::HalfSpace { normal: DVec3::Y })),
         ];
         for (name, shape) in shapes {
             if let Some(shape) = shape
-                && ui.button(name).clicked()
+                && ui.button(say(name)).clicked()
             {
                 session.add(name, shape);
             }
@@ -152,7 +195,6 @@ fn bodies(ui: &mut egui::Ui, session: &mut Session) {
         .show(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 for (i, body) in session.scene().bodies.iter().enumerate() {
-                    let [r, g, b] = session.colour(i).map(|part| (255.0 * part) as u8);
                     let selected = session.selection() == Some(i);
                     let mut text = egui::text::LayoutJob::default();
                     let font = egui::TextStyle::Button.resolve(ui.style());
@@ -160,8 +202,13 @@ fn bodies(ui: &mut egui::Ui, session: &mut Session) {
                         let format = egui::TextFormat::simple(font.clone(), colour);
                         text.append(what, 0.0, format);
                     };
-                    part("⏺ ", egui::Color32::from_rgb(r, g, b));
-                    part(&shown::name(&body.name), ui.visuals().strong_text_color());
+                    part("⏺ ", style::curve(session.colour(i), ui.visuals()));
+                    let colour = match (selected, session.is_hidden(i)) {
+                        (true, _) => ui.visuals().selection.stroke.color,
+                        (false, true) => ui.visuals().weak_text_color(),
+                        (false, false) => ui.visuals().strong_text_color(),
+                    };
+                    part(&shown::name(&body.name), colour);
                     if ui.selectable_label(selected, text).clicked() {
                         chosen = Some((!selected).then_some(i));
                     }

@@ -6,6 +6,51 @@ use sim_core::{Collision, METHODS, Settings};
 use super::field;
 use crate::number;
 use crate::session::{MAX_RATE, MIN_RATE, Session};
+use crate::words::say;
+
+/// What each method does in a step: positions x, velocities v, accelerations a.
+const FORMULAS: [(&str, &str); METHODS.len()] = [
+    ("forward-euler", "x₁ = x₀ + v₀ dt,  v₁ = v₀ + a(x₀, v₀) dt"),
+    ("backward-euler", "x₁ = x₀ + v₁ dt,  v₁ = v₀ + a(x₁, v₁) dt"),
+    (
+        "symplectic-euler",
+        "v₁ = v₀ + a(x₀, v₀) dt,  x₁ = x₀ + v₁ dt",
+    ),
+    (
+        "rk4",
+        "y₁ = y₀ + (k₁ + 2 k₂ + 2 k₃ + k₄) dt/6,  with y = (x, v) and slopes k at the start, twice in the \
+         middle and at the end",
+    ),
+    (
+        "velocity-verlet",
+        "x₁ = x₀ + v₀ dt + a₀ dt²/2,  v₁ = v₀ + (a₀ + a₁) dt/2",
+    ),
+    (
+        "implicit-midpoint",
+        "x₁ = x₀ + v dt,  v₁ = v₀ + a(x, v) dt,  with x = (x₀ + x₁)/2 and v = (v₀ + v₁)/2",
+    ),
+    (
+        "symplectic-4",
+        "fourth order by six kicks and drifts with tuned shares of dt",
+    ),
+    (
+        "symplectic-8",
+        "eighth order by seventeen kicks and drifts with tuned shares of dt",
+    ),
+    (
+        "radau5",
+        "three stages at Radau's points, solved together, the last one at the end of the step",
+    ),
+    (
+        "dopri5",
+        "explicit Runge-Kutta of order 5; the difference to order 4 is the error that the step is chosen by",
+    ),
+    (
+        "dop853",
+        "explicit Runge-Kutta of order 8; differences to orders 5 and 3 are the error that the step is \
+         chosen by",
+    ),
+];
 
 pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     let now = *session.world().settings();
@@ -16,7 +61,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             "How velocities and positions go from step to step",
         );
         let list = ComboBox::from_id_salt("integrator")
-            .selected_text(now.method.title)
+            .selected_text(say(now.method.title))
             .width(ui.available_width() - 8.0)
             .height(340.0)
             .show_ui(ui, |ui| {
@@ -48,10 +93,10 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             .step_by(1.0);
         if ui
             .add(slider)
-            .on_hover_text(format!(
+            .on_hover_text(say(format!(
                 "One step is {}. From {MIN_RATE} to {MAX_RATE} Hz; click the number to type.",
                 number::seconds(now.dt)
-            ))
+            )))
             .changed()
         {
             session.set_rate(rate);
@@ -77,8 +122,8 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             ),
         ] {
             if ui
-                .selectable_label(now.collision == how, name)
-                .on_hover_text(meaning)
+                .selectable_label(now.collision == how, say(name))
+                .on_hover_text(say(meaning))
                 .clicked()
             {
                 session.set_collision(how);
@@ -98,15 +143,17 @@ fn tolerance(ui: &mut egui::Ui, session: &mut Session, now: f64) {
             .clamping(egui::SliderClamping::Edits)
             .custom_formatter(|value, _| format!("{value:.1e}"))
             .custom_parser(|text| text.trim().parse().ok());
-        if ui.add(slider).on_hover_text(meaning).changed() {
+        if ui.add(slider).on_hover_text(say(meaning)).changed() {
             session.set_tolerance(value);
         }
     });
 }
 
 fn about(method: &sim_core::Method) -> String {
-    format!(
-        "{}\nOrder {}; {}\n{}",
-        method.title, method.order, method.stability, method.source
-    )
+    let order = say(format!("Order {}; {}", method.order, method.stability));
+    let formula = FORMULAS.iter().find(|(name, _)| *name == method.name);
+    let mut lines = vec![say(method.title)];
+    lines.extend(formula.map(|(_, formula)| say(formula)));
+    lines.extend([order, method.source.to_owned()]);
+    lines.join("\n")
 }

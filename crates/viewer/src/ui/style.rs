@@ -1,22 +1,63 @@
-//! Colours, sizes and distances of the control panel.
+//! Colours, sizes and distances of the control panel, dark and light.
 
-use egui::{Color32, CornerRadius, FontId, TextStyle, Vec2};
+use egui::{Color32, CornerRadius, FontId, TextStyle, Theme, Vec2, Visuals};
+
+/// A colour that says something, in the tones that are legible in either theme.
+#[derive(Clone, Copy)]
+pub(super) struct Tone {
+    dark: Color32,
+    light: Color32,
+}
+
+impl Tone {
+    const fn new(dark: [u8; 3], light: [u8; 3]) -> Self {
+        Self {
+            dark: Color32::from_rgb(dark[0], dark[1], dark[2]),
+            light: Color32::from_rgb(light[0], light[1], light[2]),
+        }
+    }
+
+    /// The tone over the picture, where text stands on a dark ground in both themes.
+    pub(super) const fn over_picture(self) -> Color32 {
+        self.dark
+    }
+
+    /// The tone for a theme.
+    pub(super) fn of(self, visuals: &Visuals) -> Color32 {
+        match visuals.dark_mode {
+            true => self.dark,
+            false => self.light,
+        }
+    }
+}
 
 /// Things that run, and the way to make them run.
-pub(super) const GREEN: Color32 = Color32::from_rgb(116, 196, 138);
+pub(super) const GREEN: Tone = Tone::new([116, 196, 138], [20, 104, 52]);
 /// Things that are held still or late.
-pub(super) const AMBER: Color32 = Color32::from_rgb(232, 180, 92);
+pub(super) const AMBER: Tone = Tone::new([232, 180, 92], [126, 78, 0]);
 /// Things refused or failed.
-pub(super) const RED: Color32 = Color32::from_rgb(240, 120, 110);
+pub(super) const RED: Tone = Tone::new([240, 120, 110], [176, 32, 24]);
 /// The selection, like the edges drawn over it.
-pub(super) const BLUE: Color32 = Color32::from_rgb(110, 168, 254);
+pub(super) const BLUE: Tone = Tone::new([110, 168, 254], [22, 84, 184]);
 
-/// Sets the style of a new egui context: dark, quiet, with room around things, and with the system's
-/// fonts for writing that egui's own fonts lack.
+/// The ground of text over the picture, whatever is below it.
+pub(super) const OVER_PICTURE: Color32 = Color32::from_black_alpha(210);
+/// The ground of the numbers on the axes, which stand in the light picture, and their ink.
+pub(super) const OVER_AXES: Color32 = Color32::from_rgba_premultiplied(150, 150, 150, 150);
+pub(super) const AXIS_INK: Color32 = Color32::from_gray(30);
+
+/// Least contrast of text with what is behind it: that of the accessibility guidelines for small text.
+const CONTRAST: f32 = 4.5;
+/// Least contrast of curves and dots.
+const CURVE_CONTRAST: f32 = 3.0;
+
+/// Sets the style of a new egui context: quiet, with room around things, and with the system's fonts for
+/// writing that egui's own fonts lack.
 pub fn apply(ctx: &egui::Context) {
-    let fonts = egui_system_font_provider::SystemFontProvider::new();
+    // Han characters look as in China rather than as in Japan.
+    let fonts = egui_system_font_provider::SystemFontProvider::new().with_locale(Some("zh-Hans"));
     ctx.add_font_provider(std::sync::Arc::new(fonts));
-    ctx.set_theme(egui::Theme::Dark);
+    ctx.set_theme(Theme::Dark);
     ctx.all_styles_mut(|style| {
         style.text_styles = [
             (TextStyle::Heading, FontId::proportional(14.5)),
@@ -33,22 +74,153 @@ pub fn apply(ctx: &egui::Context) {
         spacing.slider_width = 130.0;
         spacing.tooltip_width = 320.0;
         spacing.scroll = egui::style::ScrollStyle::thin();
-        let visuals = &mut style.visuals;
-        visuals.panel_fill = Color32::from_rgb(29, 31, 35);
-        visuals.window_fill = Color32::from_rgb(36, 38, 43);
-        visuals.extreme_bg_color = Color32::from_rgb(20, 21, 24);
-        visuals.selection.bg_fill = Color32::from_rgb(48, 84, 140);
-        visuals.widgets.noninteractive.fg_stroke.color = Color32::from_rgb(196, 200, 206);
-        visuals.widgets.inactive.fg_stroke.color = Color32::from_rgb(216, 219, 224);
-        visuals.widgets.inactive.weak_bg_fill = Color32::from_rgb(50, 53, 60);
-        visuals.widgets.inactive.bg_fill = Color32::from_rgb(58, 62, 70);
+        let widgets = &mut style.visuals.widgets;
         for widget in [
-            &mut visuals.widgets.inactive,
-            &mut visuals.widgets.hovered,
-            &mut visuals.widgets.active,
-            &mut visuals.widgets.open,
+            &mut widgets.inactive,
+            &mut widgets.hovered,
+            &mut widgets.active,
+            &mut widgets.open,
         ] {
             widget.corner_radius = CornerRadius::same(4);
         }
     });
+    ctx.style_mut_of(Theme::Dark, |style| dark(&mut style.visuals));
+    ctx.style_mut_of(Theme::Light, |style| light(&mut style.visuals));
+}
+
+fn dark(visuals: &mut Visuals) {
+    visuals.panel_fill = Color32::from_rgb(29, 31, 35);
+    visuals.window_fill = Color32::from_rgb(36, 38, 43);
+    visuals.extreme_bg_color = Color32::from_rgb(20, 21, 24);
+    visuals.selection.bg_fill = Color32::from_rgb(48, 84, 140);
+    visuals.weak_text_color = Some(Color32::from_rgb(150, 155, 163));
+    visuals.widgets.noninteractive.fg_stroke.color = Color32::from_rgb(196, 200, 206);
+    visuals.widgets.inactive.fg_stroke.color = Color32::from_rgb(216, 219, 224);
+    visuals.widgets.inactive.weak_bg_fill = Color32::from_rgb(50, 53, 60);
+    visuals.widgets.inactive.bg_fill = Color32::from_rgb(58, 62, 70);
+}
+
+fn light(visuals: &mut Visuals) {
+    visuals.panel_fill = Color32::from_rgb(243, 244, 246);
+    visuals.window_fill = Color32::from_rgb(250, 250, 251);
+    visuals.extreme_bg_color = Color32::WHITE;
+    visuals.selection.bg_fill = Color32::from_rgb(176, 206, 250);
+    visuals.selection.stroke.color = Color32::from_rgb(10, 40, 96);
+    visuals.weak_text_color = Some(Color32::from_rgb(92, 97, 105));
+    visuals.widgets.noninteractive.fg_stroke.color = Color32::from_rgb(48, 52, 58);
+    visuals.widgets.inactive.fg_stroke.color = Color32::from_rgb(34, 37, 42);
+    visuals.widgets.inactive.weak_bg_fill = Color32::from_rgb(224, 227, 232);
+    visuals.widgets.inactive.bg_fill = Color32::from_rgb(206, 210, 217);
+}
+
+/// A colour of the picture for a curve, dot or word on the background of plots, made darker or lighter
+/// until it is seen there.
+pub(super) fn curve(colour: [f32; 3], visuals: &Visuals) -> Color32 {
+    apart(colour, visuals.extreme_bg_color, CURVE_CONTRAST)
+}
+
+/// The same for words on a panel.
+pub(super) fn word(colour: [f32; 3], visuals: &Visuals) -> Color32 {
+    apart(colour, visuals.panel_fill, CONTRAST)
+}
+
+fn apart([red, green, blue]: [f32; 3], from: Color32, least: f32) -> Color32 {
+    let byte = |part: f32| (255.0 * part).round() as u8;
+    let colour = Color32::from_rgb(byte(red), byte(green), byte(blue));
+    let end = match luminance(from) < 0.18 {
+        true => Color32::WHITE,
+        false => Color32::BLACK,
+    };
+    let steps = (0..=20).map(|part| colour.lerp_to_gamma(end, part as f32 / 20.0));
+    let mut seen = steps.filter(|&colour| contrast(colour, from) >= least);
+    seen.next().unwrap_or(end)
+}
+
+/// How two colours are told apart, from 1 to 21, as WCAG 2 has it.
+fn contrast(a: Color32, b: Color32) -> f32 {
+    let (a, b) = (luminance(a), luminance(b));
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
+fn luminance(colour: Color32) -> f32 {
+    let [red, green, blue, _] = egui::Rgba::from(colour).to_array();
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn themes() -> [Visuals; 2] {
+        let context = egui::Context::default();
+        apply(&context);
+        [Theme::Dark, Theme::Light].map(|theme| context.style_of(theme).visuals.clone())
+    }
+
+    #[test]
+    fn all_text_is_told_from_what_is_behind_it() {
+        for visuals in themes() {
+            let plain = [
+                visuals.text_color(),
+                visuals.strong_text_color(),
+                visuals.weak_text_color(),
+                GREEN.of(&visuals),
+                AMBER.of(&visuals),
+                RED.of(&visuals),
+                BLUE.of(&visuals),
+            ];
+            for text in plain {
+                for behind in [visuals.panel_fill, visuals.window_fill] {
+                    let told = contrast(text, behind);
+                    assert!(told >= CONTRAST, "{text:?} on {behind:?}: {told}");
+                }
+            }
+            let widgets = &visuals.widgets;
+            for widget in [
+                &widgets.inactive,
+                &widgets.hovered,
+                &widgets.active,
+                &widgets.open,
+            ] {
+                for behind in [widget.weak_bg_fill, widget.bg_fill] {
+                    let told = contrast(widget.text_color(), behind);
+                    assert!(told >= CONTRAST, "{widget:?}: {told}");
+                }
+            }
+            let told = contrast(visuals.selection.stroke.color, visuals.selection.bg_fill);
+            assert!(told >= CONTRAST, "selection: {told}");
+        }
+    }
+
+    #[test]
+    fn text_over_the_picture_is_told_from_any_of_it() {
+        let over = |below: Color32, ground: Color32| below.blend(ground);
+        for below in [Color32::WHITE, Color32::BLACK, Color32::from_gray(128)] {
+            let ground = over(below, OVER_PICTURE);
+            for text in [Color32::WHITE, BLUE.over_picture()] {
+                let told = contrast(text, ground);
+                assert!(told >= CONTRAST, "{text:?} over {below:?}: {told}");
+            }
+        }
+        // What numbers of axes stand on: the sky, the ground, and the darkest bodies of the gallery.
+        for below in [0.84, 0.66, 0.35] {
+            let below = Color32::from_gray((255.0 * below) as u8);
+            let told = contrast(AXIS_INK, over(below, OVER_AXES));
+            assert!(told >= CONTRAST, "over {below:?}: {told}");
+        }
+    }
+
+    #[test]
+    fn every_colour_of_a_body_is_seen_in_plots_and_lists() {
+        let colours = crate::picture::PALETTE;
+        let extremes = [[0.0; 3], [1.0; 3], [0.93, 0.94, 0.96], [1.0, 1.0, 0.0]];
+        for visuals in themes() {
+            for colour in colours.into_iter().chain(extremes) {
+                let told = contrast(curve(colour, &visuals), visuals.extreme_bg_color);
+                assert!(told >= CURVE_CONTRAST, "{colour:?}: {told}");
+                let told = contrast(word(colour, &visuals), visuals.panel_fill);
+                assert!(told >= CONTRAST, "{colour:?}: {told}");
+            }
+        }
+    }
 }

@@ -5,7 +5,8 @@ use sim_core::{Collision, METHODS, Settings};
 
 use super::field;
 use crate::number;
-use crate::session::{MAX_RATE, MIN_RATE, PRESETS, Session, on_dark};
+use crate::session::{MAX_RATE, MIN_RATE, PRESETS, Session};
+use crate::words::say;
 
 /// The variant that is to be added next.
 #[derive(Default)]
@@ -14,12 +15,12 @@ pub(super) struct Choice(Option<Settings>);
 pub(super) fn show(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
     let own = *session.world().settings();
     let list = ComboBox::from_id_salt("presets")
-        .selected_text("Compare…")
+        .selected_text(say("Compare…"))
         .width(ui.available_width() - 8.0)
         .show_ui(ui, |ui| {
             for preset in &PRESETS {
-                let offer = ui.selectable_label(false, preset.title);
-                if offer.on_hover_text(preset.meaning).clicked() {
+                let offer = ui.selectable_label(false, say(preset.title));
+                if offer.on_hover_text(say(preset.meaning)).clicked() {
                     session.compare_with((preset.settings)(&own));
                 }
             }
@@ -30,7 +31,7 @@ pub(super) fn show(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session
     if session.variants().is_empty() {
         let text = "Variants run beside the scene, as ghosts in the picture and as curves in the \
                     plots, with the exact solution where it is known.";
-        ui.label(RichText::new(text).weak());
+        ui.label(RichText::new(say(text)).weak());
     } else {
         table(ui, session);
     }
@@ -44,12 +45,12 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let list = ComboBox::from_id_salt("variant method")
-            .selected_text(settings.method.title)
+            .selected_text(say(settings.method.title))
             .width(118.0)
             .height(340.0)
             .show_ui(ui, |ui| {
                 for method in METHODS {
-                    ui.selectable_value(&mut settings.method, method, method.title);
+                    ui.selectable_value(&mut settings.method, method, say(method.title));
                 }
             })
             .response;
@@ -64,17 +65,17 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
             .suffix(" Hz");
         if ui
             .add(field)
-            .on_hover_text("Steps per simulated second of the variant")
+            .on_hover_text(say("Steps per simulated second of the variant"))
             .changed()
         {
             settings.dt = 1.0 / rate;
         }
         let list = ComboBox::from_id_salt("variant collision")
-            .selected_text(collision_name(settings.collision))
+            .selected_text(say(collision_name(settings.collision)))
             .width(62.0)
             .show_ui(ui, |ui| {
                 for how in [Collision::Continuous, Collision::Bvh, Collision::Naive] {
-                    ui.selectable_value(&mut settings.collision, how, collision_name(how));
+                    ui.selectable_value(&mut settings.collision, how, say(collision_name(how)));
                 }
             })
             .response;
@@ -84,8 +85,8 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
             collision_name(settings.collision),
         );
         if ui
-            .button("Add")
-            .on_hover_text("Run the scene in this way too")
+            .button(say("Add"))
+            .on_hover_text(say("Run the scene in this way too"))
             .clicked()
         {
             let mut all = session.compared();
@@ -130,15 +131,15 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
                     "Real time for a simulated second, and for a step on hovering",
                 ),
             ] {
-                ui.label(RichText::new(title).small().strong())
-                    .on_hover_text(meaning);
+                ui.label(RichText::new(say(title)).small().strong())
+                    .on_hover_text(say(meaning));
             }
             ui.end_row();
             let dt = session.world().settings().dt;
             let cost = session.figures().cost.seconds();
             run_name(
                 ui,
-                RichText::new(format!("⏺ {own}")).strong(),
+                RichText::new(format!("⏺ {}", say(&own))).strong(),
                 "The run itself",
             );
             figure(ui, metres(session.path_error()), String::new());
@@ -158,14 +159,13 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
             );
             ui.end_row();
             for (n, (variant, name)) in session.variants().iter().zip(&names).enumerate() {
-                let [red, green, blue] = on_dark(variant.colour).map(|part| (255.0 * part) as u8);
-                let text = RichText::new(format!("⏺ {name}"));
-                let text = text.color(egui::Color32::from_rgb(red, green, blue));
+                let text = RichText::new(format!("⏺ {}", say(name)));
+                let text = text.color(super::style::word(variant.colour, ui.visuals()));
                 run_name(ui, text, name);
                 if let Some(why) = &variant.failure {
                     let text = format!("stopped at {:.3} s", variant.time());
-                    ui.label(RichText::new(text).color(super::style::AMBER))
-                        .on_hover_text(why);
+                    ui.label(RichText::new(say(text)).color(super::style::AMBER.of(ui.visuals())))
+                        .on_hover_text(say(why));
                     ui.label("");
                     ui.label("");
                 } else {
@@ -189,7 +189,7 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
                 if variant.settings.is_some()
                     && ui
                         .add(egui::Button::new("✖").small().frame(false))
-                        .on_hover_text(format!("Compare no longer with {name}"))
+                        .on_hover_text(say(format!("Compare no longer with {name}")))
                         .clicked()
                 {
                     removed = Some(n);
@@ -203,8 +203,8 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
         session.compare_with(all);
     }
     if ui
-        .button("Compare nothing")
-        .on_hover_text("Forget all variants")
+        .button(say("Compare nothing"))
+        .on_hover_text(say("Forget all variants"))
         .clicked()
     {
         session.compare_with([]);
@@ -218,13 +218,13 @@ fn run_name(ui: &mut egui::Ui, name: RichText, more: &str) {
     ui.allocate_ui_with_layout(size, left, |ui| {
         ui.set_min_width(size.x);
         ui.add(egui::Label::new(name).truncate())
-            .on_hover_text(more);
+            .on_hover_text(say(more));
     });
 }
 
 fn figure(ui: &mut egui::Ui, text: String, more: String) {
     let label = ui.label(RichText::new(text).monospace());
     if !more.is_empty() {
-        label.on_hover_text(more);
+        label.on_hover_text(say(more));
     }
 }

@@ -3,17 +3,27 @@
 use egui::{Align2, Color32, CornerRadius, PointerButton, Pos2, Rect, Sense, TextureId};
 
 use scene::shown;
+use sim_core::DVec3;
 
+use super::handles::Handles;
 use super::style;
 use crate::session::Session;
+use crate::words::say;
 
 /// Turn of the camera by a drag across the whole height of the picture, radians.
 const TURN: f64 = 4.0;
+/// Names written at a time.
+const MOST_NAMES: usize = 300;
 /// Growth of the zoom by a wheel's travel of one point.
 const ZOOM: f64 = 0.003;
 
 /// Shows the picture in the room that is left; returns its rectangle, in points.
-pub(super) fn show(ui: &mut egui::Ui, session: &mut Session, picture: TextureId) -> Rect {
+pub(super) fn show(
+    ui: &mut egui::Ui,
+    handles: &mut Handles,
+    session: &mut Session,
+    picture: TextureId,
+) -> Rect {
     let rect = ui.available_rect_before_wrap();
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
     let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
@@ -25,14 +35,14 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session, picture: TextureId)
     if response.clicked_by(PointerButton::Primary)
         && let Some(at) = response.interact_pointer_pos()
     {
-        let at = (at - rect.center()) / rect.size();
-        let (origin, direction) =
-            session
-                .camera
-                .ray(2.0 * f64::from(at.x), -2.0 * f64::from(at.y), aspect);
+        let (origin, direction) = ray(rect, at, aspect, session);
         session.pick(origin, direction);
     }
-    drag(ui, &response, session);
+    // Before the handles, which lie over the picture.
+    let held = pull(ui, &response, aspect, session);
+    if !held {
+        drag(ui, &response, session);
+    }
     if response.hovered() {
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let factor = (ZOOM * f64::from(scroll)).exp() * f64::from(pinch);
@@ -45,10 +55,39 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session, picture: TextureId)
             session.camera.zoom_at(factor, x, y, aspect);
         }
     }
-    name_selected(ui, rect, aspect, session);
+    handles.show(ui, rect, aspect, session);
+    number_axes(ui, rect, aspect, session);
+    name_bodies(ui, rect, aspect, session);
     point_out(ui, rect, aspect, session);
     offer_drop(ui, rect);
     rect
+}
+
+/// The ray through a place of the picture.
+fn ray(rect: Rect, at: Pos2, aspect: f64, session: &Session) -> (DVec3, DVec3) {
+    let at = (at - rect.center()) / rect.size();
+    let [x, y] = [2.0 * f64::from(at.x), -2.0 * f64::from(at.y)];
+    session.camera.ray(x, y, aspect)
+}
+
+/// Pulls a body where the drag began on one with Ctrl held. Whether a body is held.
+fn pull(ui: &egui::Ui, response: &egui::Response, aspect: f64, session: &mut Session) -> bool {
+    let place = response.interact_pointer_pos();
+    if let Some(at) = place.filter(|_| response.dragged_by(PointerButton::Primary)) {
+        let press = ui.input(|i| i.pointer.press_origin()).unwrap_or(at);
+        let ctrl = ui.input(|i| i.modifiers.command);
+        if response.drag_started() && ctrl {
+            let (origin, direction) = ray(response.rect, press, aspect, session);
+            session.take_hold(origin, direction);
+        }
+        if session.is_pulling() {
+            let (origin, direction) = ray(response.rect, at, aspect, session);
+            session.pull(origin, direction);
+        }
+    } else {
+        session.let_go();
+    }
+    session.is_pulling()
 }
 
 fn drag(ui: &egui::Ui, response: &egui::Response, session: &mut Session) {
@@ -66,28 +105,75 @@ fn drag(ui: &egui::Ui, response: &egui::Response, session: &mut Session) {
     }
 }
 
-/// Writes the selected body's name above it.
-fn name_selected(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
-    let Some(body) = session.selected() else {
-        return;
-    };
-    let Some([x, y]) = session
-        .selected_top()
-        .and_then(|top| session.camera.project(top, aspect))
-    else {
-        return;
-    };
-    let at = rect.center() + 0.5 * egui::vec2(x as f32, -y as f32) * rect.size();
-    let painter = ui.painter().with_clip_rect(rect);
+/// Writes names above bodies: that of the selected one, or all that do not cover each other.
+fn name_bodies(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
+    let selected = session.selection();
+    let others =
+        (0..session.world().len()).filter(|&i| session.display.names && Some(i) != selected);
     let font = egui::TextStyle::Body.resolve(ui.style());
-    let text = painter.layout_no_wrap(shown::name(&body.name), font, style::BLUE);
-    let place = Align2::CENTER_BOTTOM.anchor_size(at - egui::vec2(0.0, 6.0), text.size());
-    painter.rect_filled(
-        place.expand2(egui::vec2(5.0, 1.0)),
-        CornerRadius::same(4),
-        Color32::from_black_alpha(150),
-    );
-    painter.galley(place.min, text, style::BLUE);
+    let painter = ui.painter().with_clip_rect(rect);
+    let mut taken: Vec<Rect> = Vec::new();
+    for body in selected.into_iter().chain(others).take(MOST_NAMES) {
+        let Some(at) = place(rect, aspect, session, session.top(body)) else {
+            continue;
+        };
+        let colour = match Some(body) == selected {
+            true => style::BLUE.over_picture(),
+            false => Color32::WHITE,
+        };
+        let name = shown::name(&session.scene().bodies[body].name);
+        let text = painter.layout_no_wrap(name, font.clone(), colour);
+        let place = Align2::CENTER_BOTTOM.anchor_size(at - egui::vec2(0.0, 6.0), text.size());
+        if !rect.intersects(place) || taken.iter().any(|other| other.intersects(place)) {
+            continue;
+        }
+        taken.push(place);
+        painter.rect_filled(
+            place.expand2(egui::vec2(5.0, 1.0)),
+            CornerRadius::same(4),
+            style::OVER_PICTURE,
+        );
+        painter.galley(place.min, text, colour);
+    }
+}
+
+/// Where in the window a point is seen.
+pub(super) fn place(rect: Rect, aspect: f64, session: &Session, point: DVec3) -> Option<Pos2> {
+    let [x, y] = session.camera.project(point, aspect)?;
+    Some(rect.center() + 0.5 * egui::vec2(x as f32, -y as f32) * rect.size())
+}
+
+/// Writes letters and numbers, m, on the axes.
+fn number_axes(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
+    if !session.display.grid || !session.display.numbers {
+        return;
+    }
+    let painter = ui.painter().with_clip_rect(rect);
+    let small = egui::TextStyle::Small.resolve(ui.style());
+    let letter = egui::TextStyle::Heading.resolve(ui.style());
+    let mut taken: Vec<Rect> = Vec::new();
+    let mut write = |point, text: String, font: &egui::FontId, colour: Color32| {
+        let Some(at) = place(rect, aspect, session, point) else {
+            return;
+        };
+        let text = painter.layout_no_wrap(text, font.clone(), colour);
+        let area = Align2::CENTER_TOP.anchor_size(at + egui::vec2(0.0, 3.0), text.size());
+        if taken.iter().any(|other| other.intersects(area)) {
+            return;
+        }
+        taken.push(area);
+        let ground = area.expand2(egui::vec2(2.0, 0.0));
+        painter.rect_filled(ground, CornerRadius::same(3), style::OVER_AXES);
+        painter.galley(area.min, text, colour);
+    };
+    for axis in session.axis_marks() {
+        let [red, green, blue] = axis.colour.map(|part| (255.0 * part) as u8);
+        let colour = Color32::from_rgb(red, green, blue);
+        write(axis.place, axis.letter.to_owned(), &letter, colour);
+        for (point, value) in axis.marks {
+            write(point, crate::number::tidy(value), &small, style::AXIS_INK);
+        }
+    }
 }
 
 /// Points from the border to bodies that are out of view, by their names.
@@ -120,7 +206,7 @@ fn point_out(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
         }
         taken.push(place);
         let back = place.expand2(egui::vec2(4.0, 1.0));
-        painter.rect_filled(back, CornerRadius::same(4), Color32::from_black_alpha(170));
+        painter.rect_filled(back, CornerRadius::same(4), style::OVER_PICTURE);
         painter.galley(place.min, text, Color32::WHITE);
     }
 }
@@ -135,7 +221,7 @@ fn offer_drop(ui: &egui::Ui, rect: Rect) {
     ui.painter().text(
         rect.center(),
         Align2::CENTER_CENTER,
-        "Drop a mesh to add it, or a scene (.toml) to open it",
+        say("Drop a mesh to add it, or a scene (.toml) to open it"),
         egui::TextStyle::Heading.resolve(ui.style()),
         Color32::WHITE,
     );

@@ -23,6 +23,8 @@ struct Frame {
     // The eye's place within a cell of 1, 10, 100 and 1000 spacings, in cells.
     grid_x: vec4f,
     grid_z: vec4f,
+    // How much a part of the depth is at the target, compared with perspective.
+    depth_share: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

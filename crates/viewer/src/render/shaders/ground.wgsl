@@ -13,7 +13,7 @@ fn vs_main(@builtin(vertex_index) index: u32) -> Varying {
     out.from_eye = corner * frame.grid_reach;
     out.clip = frame.view_projection * vec4f(out.from_eye.x, -frame.eye_height, out.from_eye.y, 1.0);
     // A face lying on the ground hides it.
-    out.clip.z *= 0.9995;
+    out.clip.z *= 1.0 - 0.0005 * frame.depth_share;
     return out;
 }
 

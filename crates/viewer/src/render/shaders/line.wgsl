@@ -47,7 +47,7 @@ fn vs_main(
     // A little nearer than it is, not to sink into the surface it lies on; the ends go on at its slope.
     let beyond = min(reach / max(length, 1e-3), 0.5);
     let ends = vec2f(a.z / a.w, b.z / b.w);
-    let depth = mix(ends.x, ends.y, select(-beyond, 1.0 + beyond, last)) * (1.0 + 3.0 * frame.pixel);
+    let depth = mix(ends.x, ends.y, select(-beyond, 1.0 + beyond, last)) * (1.0 + 3.0 * frame.pixel * frame.depth_share);
     // Dividing here makes everything below vary evenly over the screen.
     out.clip = vec4f(corner / frame.half_size, min(depth, 1.0), 1.0);
     out.place = vec2f(select(0.0, length, last) + shift, side);

@@ -42,13 +42,13 @@ fn vs_edged(corner: Corner, instance: Instance, @builtin(vertex_index) index: u3
 
 // The same moved aside by some pixels and a little back, so that only a rim is seen beside the body.
 const RIM = 2.0;
-const BACK = 0.95;
+const BACK = 0.05;
 const RIM_COLOUR = vec3f(0.02, 0.14, 0.9);
 
 fn beside(corner: Corner, instance: Instance, side: vec2f) -> Varying {
     var out = placed(corner, instance, vec3f(1.0));
     let shift = RIM * side / frame.half_size * out.clip.w;
-    out.clip = vec4f(out.clip.xy + shift, out.clip.z * BACK, out.clip.w);
+    out.clip = vec4f(out.clip.xy + shift, out.clip.z * (1.0 - BACK * frame.depth_share), out.clip.w);
     return out;
 }
 

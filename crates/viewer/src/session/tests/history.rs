@@ -120,3 +120,35 @@ fn edits_are_not_lost_without_a_question() {
     assert!(!session.is_changed(), "back at what was saved");
     std::fs::remove_dir_all(&folder).expect("the folder is still there");
 }
+
+#[test]
+fn a_file_that_has_changed_is_read_again_but_not_over_edits() {
+    let folder = std::env::temp_dir().join(format!("cowbell-reread-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join("cubes.toml");
+    let text = "title = \"t\"\nrate = 60\n[[body]]\nname = \"a\"\nmesh = \"cube.obj\"\n";
+    std::fs::write(&path, text).expect("written");
+    let mut session = session();
+    session.open(&path);
+    session.reread();
+    assert_eq!(session.notices().iter().count(), 0, "nothing has changed");
+    std::fs::write(&path, text.replace("60", "50")).expect("written");
+    session.reread();
+    assert_eq!(session.scene().dt, 1.0 / 50.0);
+    assert!(!session.is_changed());
+    std::fs::write(&path, "rate = ").expect("written");
+    session.reread();
+    assert_eq!(
+        session.scene().dt,
+        1.0 / 50.0,
+        "a wrong file changes nothing"
+    );
+    assert!(session.notices().iter().any(|notice| notice.error));
+    session.select(Some(0));
+    session.set_mass(2.0);
+    std::fs::write(&path, text).expect("written");
+    session.reread();
+    assert_eq!(session.world().mass(0), 2.0, "edits are kept");
+    assert!(session.notices().iter().any(|notice| notice.error));
+    std::fs::remove_dir_all(folder).expect("removed");
+}

@@ -45,6 +45,8 @@ fn a_pass_between_two_steps_is_told_and_drawn_for_every_shape() {
                 .find(|notice| notice.about == "missed");
             let remedy = notice.and_then(|notice| notice.remedy);
             assert_eq!(remedy, Some(Remedy::Collision(Collision::Continuous)));
+            session.go_to_impact(false);
+            assert!((session.shown_time() - exact).abs() < 1e-9);
             session.go_to(1);
             let picture = session.picture();
             assert_eq!(picture.ghosts.len(), 3, "before, at, and after");

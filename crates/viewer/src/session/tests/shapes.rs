@@ -59,7 +59,7 @@ fn half_spaces_do_not_blow_up_the_view() {
         session.camera.distance < 20.0,
         "the part of it that is drawn"
     );
-    let top = session.selected_top().expect("a place for its name");
+    let top = session.top(session.selection().expect("selected"));
     assert!(top.length() < 10.0, "{top}");
     session.duplicate_selected();
     assert_eq!(session.world().len(), 4);

@@ -15,7 +15,7 @@ fn the_camera_goes_along_and_comes_home() {
     }
     session.pause();
     session.picture();
-    let went = session.world().position(0) - DVec3::new(-3.0, 0.0, 0.0);
+    let went = session.shown_position(0) - DVec3::new(-3.0, 0.0, 0.0);
     assert!(went.x > 0.5);
     assert!((session.camera.target - home.target - went).length() < 1e-9);
     session.go_home();

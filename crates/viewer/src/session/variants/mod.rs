@@ -17,7 +17,7 @@ pub use runner::{Halt, Runner, Snapshot};
 
 use super::figures::Drift;
 use super::playback;
-use super::{STEP_BUDGET, Session, State};
+use super::{STEP_BUDGET, Session};
 use crate::headless;
 use crate::picture::{Ghost, Line};
 
@@ -411,15 +411,6 @@ impl Session {
                     }
                 }
             }
-        }
-    }
-
-    /// The simulated time of the picture, s: between the last two states while running.
-    pub(super) fn shown_time(&self) -> f64 {
-        let dt = self.world.settings().dt;
-        match self.state {
-            State::Running => self.world.time() - (1.0 - self.clock.fraction()) * dt,
-            State::Layout | State::Paused => self.world.time(),
         }
     }
 }

@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
-use sim_core::{DVec3, Settings, StepError, World, WorldError};
+use sim_core::{DVec3, Profile, Settings, StepError, World, WorldError};
 
 use crate::session::exact::Exact;
 use crate::session::figures::{Drift, Reference};
 use crate::session::sample::Sample;
+use crate::stopwatch::nanoseconds;
 
 /// The exact solution is noted at least this often in a simulated second, so that it looks smooth.
 const EXACT_RATE: f64 = 60.0;
@@ -26,6 +27,7 @@ pub struct Runner {
     exact: Exact,
     course: Course,
     reference: Reference,
+    profiled: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -59,7 +61,16 @@ impl Runner {
             reference: Reference::of(&own),
             world: own,
             course: Course::Steps,
+            profiled: false,
         })
+    }
+
+    /// Times steps by phase, too.
+    pub fn profiled(self) -> Self {
+        Self {
+            profiled: true,
+            ..self
+        }
     }
 
     /// The exact solution from the present state of `world`, if it is known for every body.
@@ -77,6 +88,7 @@ impl Runner {
                 noted: 0,
                 apart: dt / (dt * EXACT_RATE).ceil(),
             },
+            profiled: false,
         })
     }
 
@@ -130,11 +142,16 @@ impl Runner {
         else {
             let mut impacts = Vec::new();
             let before = stopwatch();
-            self.world
-                .step_reporting(&mut impacts)
-                .map_err(Halt::Step)?;
+            let mut profile = self.profiled.then(Profile::default);
+            match &mut profile {
+                Some(profile) => self.world.step_profiled(&mut impacts, nanoseconds, profile),
+                None => self.world.step_reporting(&mut impacts),
+            }
+            .map_err(Halt::Step)?;
             let cost = stopwatch().saturating_sub(before).as_secs_f64();
-            return Ok(self.snapshot(Some(cost), impacts.len() as u64));
+            let mut snapshot = self.snapshot(Some(cost), impacts.len() as u64);
+            snapshot.sample = snapshot.sample.with_profile(profile);
+            return Ok(snapshot);
         };
         let time = start + (noted + 1) as f64 * apart;
         self.exact.watch(time, apart);

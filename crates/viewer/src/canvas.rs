@@ -1,0 +1,301 @@
+//! What draws a frame of the window onto any texture: the picture, and the control panel around it.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+
+use egui_wgpu::wgpu;
+
+use crate::picture::Picture;
+use crate::render::Renderer;
+
+/// Format of the picture's texture, the only one that egui shows.
+const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// A device with the two renderers, and the picture's texture.
+pub struct Canvas {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    ui: egui_wgpu::Renderer,
+    scene: Renderer,
+    picture_view: wgpu::TextureView,
+    picture_size: [u32; 2],
+    picture_id: egui::TextureId,
+    troubles: Arc<Troubles>,
+}
+
+/// What the driver reports at any time, from any thread.
+#[derive(Default)]
+struct Troubles {
+    lost: AtomicBool,
+    error: Mutex<Option<String>>,
+}
+
+/// One frame of the control panel, ready to be painted.
+pub struct UiFrame {
+    /// Triangles of the control panel.
+    pub primitives: Vec<egui::ClippedPrimitive>,
+    /// Textures to change before and to free after painting.
+    pub textures: egui::TexturesDelta,
+    /// Physical pixels per point.
+    pub pixels_per_point: f32,
+}
+
+impl Canvas {
+    /// One that paints on textures of a format, with a number of samples for the picture.
+    pub fn new(
+        (device, queue): (wgpu::Device, wgpu::Queue),
+        format: wgpu::TextureFormat,
+        samples: u32,
+    ) -> Self {
+        let troubles = Arc::new(Troubles::default());
+        troubles.listen(&device);
+        let mut ui = egui_wgpu::Renderer::new(&device, format, Default::default());
+        let scene = Renderer::new(&device, PICTURE, samples);
+        let picture_view = picture_texture(&device, [1, 1]);
+        let picture_id =
+            ui.register_native_texture(&device, &picture_view, wgpu::FilterMode::Linear);
+        Self {
+            device,
+            queue,
+            ui,
+            scene,
+            picture_view,
+            picture_size: [1, 1],
+            picture_id,
+            troubles,
+        }
+    }
+
+    /// The device.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// The device's queue.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
+    }
+
+    /// The texture that holds the picture.
+    pub fn picture_id(&self) -> egui::TextureId {
+        self.picture_id
+    }
+
+    /// Whether the device is gone, so that everything must be made anew.
+    pub fn is_lost(&self) -> bool {
+        self.troubles.lost.load(Ordering::Relaxed)
+    }
+
+    /// What went wrong since this was last asked.
+    pub fn take_error(&self) -> Option<String> {
+        self.troubles.error.lock().ok()?.take()
+    }
+
+    /// Takes in textures of the control panel. egui sends each once, so that none may be left out even
+    /// if nothing can be shown.
+    pub fn take_textures(&mut self, frame: &mut UiFrame) {
+        for (id, deltas) in frame.textures.set.drain() {
+            for delta in &deltas {
+                self.ui.update_texture(&self.device, &self.queue, id, delta);
+            }
+        }
+    }
+
+    /// Frees textures that the frame was the last to show.
+    pub fn free_textures(&mut self, frame: &mut UiFrame) {
+        for id in frame.textures.free.drain() {
+            self.ui.free_texture(&id);
+        }
+    }
+
+    /// Hands over the writes of textures, which would pile up where nothing is painted.
+    pub fn flush(&self) {
+        self.queue.submit([]);
+    }
+
+    /// Paints a picture of `size` pixels and the control panel over it on a texture of `whole` pixels.
+    pub fn paint(
+        &mut self,
+        view: &wgpu::TextureView,
+        whole: [u32; 2],
+        (picture, size): (&Picture, [u32; 2]),
+        frame: &UiFrame,
+    ) {
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        self.fit_picture(size);
+        self.scene.draw(
+            &self.device,
+            &self.queue,
+            &mut encoder,
+            &self.picture_view,
+            self.picture_size,
+            picture,
+        );
+        let screen = egui_wgpu::ScreenDescriptor {
+            size_in_pixels: whole,
+            pixels_per_point: frame.pixels_per_point,
+        };
+        let mut commands = self.ui.update_buffers(
+            &self.device,
+            &self.queue,
+            &mut encoder,
+            &frame.primitives,
+            &screen,
+        );
+        let mut pass = encoder
+            .begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("control panel"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                    depth_slice: None,
+                })],
+                ..Default::default()
+            })
+            .forget_lifetime();
+        self.ui.render(&mut pass, &frame.primitives, &screen);
+        drop(pass);
+        commands.push(encoder.finish());
+        self.queue.submit(commands);
+    }
+
+    /// The nearest size that a texture can have.
+    pub fn fitting(&self, size: [u32; 2]) -> [u32; 2] {
+        let most = self.device.limits().max_texture_dimension_2d;
+        size.map(|side| side.clamp(1, most))
+    }
+
+    /// Fits the picture's texture to its place in the window.
+    fn fit_picture(&mut self, size: [u32; 2]) {
+        let size = self.fitting(size);
+        if size == self.picture_size {
+            return;
+        }
+        self.picture_view = picture_texture(&self.device, size);
+        self.picture_size = size;
+        self.ui.update_egui_texture_from_wgpu_texture(
+            &self.device,
+            &self.picture_view,
+            wgpu::FilterMode::Linear,
+            self.picture_id,
+        );
+    }
+}
+
+impl Troubles {
+    fn listen(self: &Arc<Self>, device: &wgpu::Device) {
+        let troubles = self.clone();
+        device.set_device_lost_callback(move |_, _| troubles.lost.store(true, Ordering::Relaxed));
+        let troubles = self.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            if let Ok(mut slot) = troubles.error.lock() {
+                *slot = Some(error.to_string());
+            }
+        }));
+    }
+}
+
+fn picture_texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    device
+        .create_texture(&wgpu::TextureDescriptor {
+            label: Some("picture"),
+            size: wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: PICTURE,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        })
+        .create_view(&Default::default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::{self, offscreen};
+
+    const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+    /// A canvas without a window, if there is an adapter.
+    fn canvas() -> Option<Canvas> {
+        let Some(adapter) = offscreen::adapter() else {
+            assert!(std::env::var_os("CI").is_none(), "no graphics adapter");
+            println!("skipped: no graphics adapter");
+            return None;
+        };
+        let made = pollster::block_on(adapter.request_device(&render::device_descriptor(&adapter)));
+        let samples = render::supported_samples(&adapter);
+        Some(Canvas::new(made.expect("a device"), FORMAT, samples))
+    }
+
+    fn target(canvas: &Canvas, [width, height]: [u32; 2]) -> wgpu::TextureView {
+        let texture = canvas.device().create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        texture.create_view(&Default::default())
+    }
+
+    fn frame() -> UiFrame {
+        UiFrame {
+            primitives: Vec::new(),
+            textures: egui::TexturesDelta::default(),
+            pixels_per_point: 1.0,
+        }
+    }
+
+    #[test]
+    fn a_place_of_no_size_and_one_beyond_the_device_are_painted() {
+        let Some(mut canvas) = canvas() else { return };
+        let view = target(&canvas, [64, 48]);
+        let picture = Picture {
+            grid: true,
+            ..Picture::default()
+        };
+        for size in [[0, 0], [0, 48], [64, 48], [1, 1], [u32::MAX, 1], [0, 0]] {
+            canvas.paint(&view, [64, 48], (&picture, size), &frame());
+            assert_eq!(canvas.take_error(), None, "{size:?}");
+        }
+        assert!(!canvas.is_lost());
+    }
+
+    #[test]
+    fn a_lost_device_is_noticed_and_painting_on_does_no_harm() {
+        let Some(mut canvas) = canvas() else { return };
+        let view = target(&canvas, [64, 48]);
+        canvas.paint(&view, [64, 48], (&Picture::default(), [64, 48]), &frame());
+        assert!(!canvas.is_lost());
+        canvas.device().destroy();
+        // It tells when all that it had to do is done.
+        let _ = canvas.device().poll(wgpu::PollType::wait_indefinitely());
+        assert!(canvas.is_lost());
+        canvas.paint(&view, [64, 48], (&Picture::default(), [32, 32]), &frame());
+        canvas.flush();
+        // Another one takes its place.
+        let Some(mut canvas) = self::canvas() else {
+            return;
+        };
+        let view = target(&canvas, [64, 48]);
+        canvas.paint(&view, [64, 48], (&Picture::default(), [64, 48]), &frame());
+        assert_eq!((canvas.is_lost(), canvas.take_error()), (false, None));
+    }
+}

@@ -1,0 +1,88 @@
+//! `cowbell gif`: a scene as a moving picture, without a window.
+
+use std::time::Duration;
+
+use scene::{Scene, file, shown};
+
+use super::{Film, Form, MOST_FRAMES, TICKS};
+use crate::cli::FilmArgs;
+use crate::failure::Failure;
+use crate::interrupt::{Interrupt, Progress};
+use crate::render::offscreen::Offscreen;
+use crate::session::Session;
+use crate::shot;
+use crate::stopwatch::Stopwatch;
+
+/// Runs a scene, draws its frames and writes the file, as far as it comes before an interrupt; says what was
+/// written.
+pub fn write(scene: Scene, args: &FilmArgs, interrupt: &Interrupt) -> Result<String, Failure> {
+    let form = Form::of(&args.output).ok_or_else(|| {
+        let path = shown::path(&args.output);
+        Failure::Refused(format!("-o {path}: must end in .gif or .png"))
+    })?;
+    // A GIF counts time in hundredths of a second.
+    let delay = (TICKS / args.fps).round().max(2.0);
+    let apart = args.speed * delay / TICKS;
+    let frames = (args.time / apart).floor() as usize + 1;
+    if frames > MOST_FRAMES {
+        return Err(Failure::Refused(format!(
+            "{frames} frames are too many, {MOST_FRAMES} the most: shorten --time, or raise --speed"
+        )));
+    }
+    let mut session = Session::new(scene).map_err(Failure::refused)?;
+    session.look_ahead();
+    shot::look(&mut session, args.select.as_deref(), args.bvh)?;
+    if args.trails {
+        session.show_trails(true);
+    }
+    session.camera.zoom(args.zoom);
+    let mut studio = Offscreen::new().map_err(shot::failure)?;
+    let mut film = Film::new(delay as u16);
+    interrupt
+        .listen()
+        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    let mut progress = Progress::of(frames as u64, "frames");
+    for n in 0..frames {
+        if interrupt.came() && !film.is_empty() {
+            break;
+        }
+        if let Err(failure) = run_to(&mut session, args.from + n as f64 * apart) {
+            progress.end();
+            return Err(failure);
+        }
+        let image = studio.shot(&session.picture(), args.size);
+        film.push(image.map_err(shot::failure)?);
+        progress.at(n as u64 + 1);
+    }
+    progress.end();
+    let bytes = film.bytes(form).map_err(Failure::Run)?;
+    let path = shown::path(&args.output);
+    file::write(&args.output, &bytes)
+        .map_err(|error| Failure::Refused(format!("cannot write {path}: {error}")))?;
+    let [width, height] = args.size;
+    Ok(format!(
+        "{path}: {} frames of {width} by {height} pixels, {} bytes\n",
+        film.len(),
+        bytes.len()
+    ))
+}
+
+/// Takes the steps up to a simulated time, s, and shows that instant.
+fn run_to(session: &mut Session, time: f64) -> Result<(), Failure> {
+    let stopwatch = Stopwatch::start();
+    while session.world().time() < time {
+        session.step_once();
+        if let Some(job) = session.due(Duration::ZERO) {
+            session.accept(job.run(|| stopwatch.read()));
+        }
+        if let Some(notice) = session
+            .notices()
+            .iter()
+            .find(|notice| notice.about == "step")
+        {
+            return Err(Failure::Run(notice.text.clone()));
+        }
+    }
+    session.go_to_time(time);
+    Ok(())
+}

@@ -1,0 +1,59 @@
+//! `cowbell run --record` and `cowbell replay --verify`: runs that must give the same states again.
+
+use std::path::Path;
+
+use scene::shown;
+
+use super::step_error;
+use crate::failure::Failure;
+use crate::interrupt::{Interrupt, Progress};
+use crate::session::{MOST_RECORDED, Record, ReplayError, is_run_file, verify};
+
+/// Whether so many steps can be recorded in a file.
+pub(super) fn check_recordable(path: &Path, steps: u64) -> Result<(), Failure> {
+    if !is_run_file(path) {
+        let path = shown::path(path);
+        let what = format!("--record {path}: must end in .run");
+        return Err(Failure::Refused(what));
+    }
+    if steps > MOST_RECORDED as u64 {
+        return Err(Failure::Refused(format!(
+            "--record: {steps} steps are too many, {MOST_RECORDED} the most"
+        )));
+    }
+    Ok(())
+}
+
+/// Runs a recorded run again and compares every state; a failure where one differs.
+pub fn replay(file: &Path, interrupt: &Interrupt) -> Result<String, Failure> {
+    let record = Record::read(file).map_err(Failure::refused)?;
+    let (scene, recorded) = (record.scene.clone(), record.steps());
+    let name = shown::path(file);
+    interrupt
+        .listen()
+        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    let mut progress = Progress::new(recorded);
+    let verdict = verify(record, |steps| {
+        progress.at(steps);
+        !interrupt.came()
+    });
+    progress.end();
+    let verdict = verdict.map_err(|error| match error {
+        ReplayError::Scene(error) => Failure::refused(error),
+        ReplayError::Step(error) => Failure::Run(step_error(&scene, &error)),
+        ReplayError::Input(step, error) => {
+            let why = error.text(&scene);
+            Failure::Run(format!(
+                "{name}: the input after step {step} is refused: {why}"
+            ))
+        }
+    })?;
+    if let Some(divergence) = verdict.divergence {
+        return Err(Failure::Run(format!("{name}: it {divergence}")));
+    }
+    let (steps, inputs) = (verdict.steps, verdict.inputs);
+    let hash = verdict.world.state_hash();
+    Ok(format!(
+        "{name}: {steps} of {recorded} steps and {inputs} inputs, every state the same; state hash {hash:016x}\n"
+    ))
+}

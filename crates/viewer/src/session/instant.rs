@@ -1,0 +1,158 @@
+//! The instant that is drawn: between two states bodies go straight, and where they have impacts in the
+//! step, through the places of these at their times.
+
+use sim_core::{Collision, DVec3, Impact, World};
+
+use super::{Session, State, clock};
+
+/// A state counts as reached this part of a step before it.
+const SAME: f64 = 1e-9;
+
+/// Where bodies have impacts within the step that led to the state looked at, in the order of bodies and
+/// times.
+#[derive(Debug, Default)]
+pub(super) struct Passes(Vec<Pass>);
+
+/// A body at an impact.
+#[derive(Clone, Copy, Debug)]
+struct Pass {
+    body: usize,
+    /// Part of the step.
+    part: f64,
+    place: DVec3,
+}
+
+impl Passes {
+    /// Those of the last step of `world`. In the discrete modes bodies go back from where they touch, so
+    /// nobody passes there.
+    pub(super) fn of(world: &World, impacts: &[Impact]) -> Self {
+        let settings = world.settings();
+        if settings.collision != Collision::Continuous {
+            return Self::default();
+        }
+        let begin = world.time() - settings.dt;
+        let both = |impact: &Impact| {
+            let part = ((impact.time - begin) / settings.dt).clamp(0.0, 1.0);
+            let ((i, j), (a, b)) = (impact.bodies, impact.positions);
+            [(i, a), (j, b)].map(|(body, place)| Pass { body, part, place })
+        };
+        let mut all: Vec<Pass> = impacts.iter().flat_map(both).collect();
+        all.sort_by(|a, b| a.body.cmp(&b.body).then(a.part.total_cmp(&b.part)));
+        Self(all)
+    }
+
+    fn of_body(&self, body: usize) -> &[Pass] {
+        let begin = self.0.partition_point(|pass| pass.body < body);
+        let end = self.0.partition_point(|pass| pass.body <= body);
+        &self.0[begin..end]
+    }
+}
+
+impl Session {
+    /// The part of the last step that bodies are drawn at; 1 is the state itself.
+    pub(super) fn shown_part(&self) -> f64 {
+        match self.state {
+            State::Running if self.display.between => self.clock.fraction(),
+            State::Paused => self.instant.unwrap_or(1.0),
+            State::Running | State::Layout => 1.0,
+        }
+    }
+
+    /// The simulated time of the picture, s.
+    pub fn shown_time(&self) -> f64 {
+        self.world.time() - (1.0 - self.shown_part()) * self.world.settings().dt
+    }
+
+    /// Whether bodies are drawn between two states.
+    pub fn is_between(&self) -> bool {
+        self.shown_part() < 1.0
+    }
+
+    /// Where body `i` is drawn, m.
+    pub(super) fn shown_position(&self, i: usize) -> DVec3 {
+        match self.shown_part() {
+            1.0 => self.world.position(i),
+            part => {
+                let [(from, a), (to, b)] = self.legs(i, part);
+                a.lerp(b, ((part - from) / (to - from)).clamp(0.0, 1.0))
+            }
+        }
+    }
+
+    /// How fast body `i` moves in the picture, m/s: within a step with impacts on the way between them.
+    pub(super) fn shown_velocity(&self, i: usize) -> DVec3 {
+        let part = self.shown_part();
+        if part == 1.0 || self.passes.of_body(i).is_empty() {
+            return self.world.velocity(i);
+        }
+        let [(from, a), (to, b)] = self.legs(i, part);
+        (b - a) / ((to - from) * self.world.settings().dt)
+    }
+
+    /// Where a body has passed in this step, up to the instant that is drawn, m.
+    pub(super) fn passed_places(&self, i: usize) -> impl Iterator<Item = DVec3> {
+        let part = self.shown_part();
+        let passes = self.passes.of_body(i).iter();
+        let passed = passes.filter(move |pass| part < 1.0 && pass.part < part);
+        passed.map(|pass| pass.place)
+    }
+
+    /// The part of the step and the place, m, that a body comes from at a part of the step, and those
+    /// that it goes to.
+    fn legs(&self, i: usize, part: f64) -> [(f64, DVec3); 2] {
+        let passes = self.passes.of_body(i).iter();
+        let mut from = (0.0, self.world.previous_position(i));
+        for pass in passes {
+            // Of several at one time the first.
+            if pass.part >= part && pass.part > from.0 {
+                return [from, (pass.part, pass.place)];
+            }
+            from = (pass.part, pass.place);
+        }
+        // At the end of a step that ends with an impact there is no way left.
+        [from, (1.0_f64.max(from.0 + SAME), self.world.position(i))]
+    }
+
+    /// Holds still at a simulated time, s, within the step that leads past it; beyond what is kept at
+    /// its ends.
+    pub fn go_to_time(&mut self, time: f64) {
+        let index = self.playback.first_from(time);
+        self.go_to(index);
+        let part = 1.0 - (self.world.time() - time) / self.world.settings().dt;
+        if index > 0 && part < 1.0 - SAME {
+            self.instant = Some(part.max(0.0));
+        }
+    }
+
+    /// Holds still at the next impact that is kept, found or missed, or at the one before.
+    pub fn go_to_impact(&mut self, next: bool) {
+        let now = self.shown_time();
+        let slack = SAME * self.world.settings().dt;
+        let times = self.playback.contact_times();
+        let found = match next {
+            true => times.filter(|&t| t > now + slack).reduce(f64::min),
+            false => times.filter(|&t| t < now - slack).reduce(f64::max),
+        };
+        match found {
+            Some(time) => self.go_to_time(time),
+            None => {
+                let text = match next {
+                    true => "No later impact is kept.",
+                    false => "No earlier impact is kept.",
+                };
+                self.notices.info("impact", text.to_owned());
+            }
+        }
+    }
+
+    /// Lets the clock go on from the instant that is drawn.
+    pub(super) fn resume_clock(&mut self) {
+        let dt = self.world.settings().dt;
+        let part = self.instant.take().unwrap_or(1.0).min(1.0 - SAME);
+        if let Ok(mut clock) = clock(dt, self.speed) {
+            // Less than a step, so that none is due.
+            clock.advance(std::time::Duration::from_secs_f64(part * dt));
+            self.clock = clock;
+        }
+    }
+}

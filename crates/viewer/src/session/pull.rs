@@ -1,0 +1,124 @@
+//! Pulling a body by a spring while physics runs. Let go, it keeps the speed that it has: it is thrown.
+
+use std::f64::consts::TAU;
+
+use sim_core::{DVec3, Force};
+
+use super::{Session, State};
+
+/// How often the spring alone would swing the body, Hz, and the part of critical damping: firm, and
+/// stable with every method at the usual rates.
+const FREQUENCY: f64 = 1.5;
+const DAMPING: f64 = 0.7;
+
+/// A body that is being pulled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pull {
+    body: usize,
+    /// The place of the spring among the forces.
+    force: usize,
+    /// Where the body is held, from its position, m.
+    grip: DVec3,
+    /// How far in front of the eye it is held, along the view, m.
+    depth: f64,
+}
+
+impl Session {
+    /// Takes hold of the body that a ray meets, if physics runs and the body can be moved. Whether it did.
+    pub fn take_hold(&mut self, origin: DVec3, direction: DVec3) -> bool {
+        self.let_go();
+        if self.state != State::Running {
+            return false;
+        }
+        let Some((along, body)) = self.hit(origin, direction) else {
+            return false;
+        };
+        let mass = self.world.mass(body);
+        if mass.is_infinite() {
+            let name = &self.scene.bodies[body].name;
+            let text = format!("{name} is immovable, so nothing pulls it.");
+            self.notices.info("pull", text);
+            return false;
+        }
+        let point = origin + along * direction;
+        let rate = TAU * FREQUENCY;
+        let spring = Force::Anchor {
+            body,
+            anchor: self.world.position(body),
+            rest_length: 0.0,
+            stiffness: mass * rate * rate,
+            damping: 2.0 * DAMPING * mass * rate,
+        };
+        match self.world.add_force(spring) {
+            Ok(force) => {
+                self.pull = Some(Pull {
+                    body,
+                    force,
+                    grip: point - self.shown_position(body),
+                    depth: (point - self.camera.eye()).dot(self.camera.forward()),
+                });
+                self.select(Some(body));
+                self.disown_jobs();
+                self.begin_record();
+                true
+            }
+            Err(error) => {
+                self.notices.error("pull", error.to_string());
+                false
+            }
+        }
+    }
+
+    /// Pulls what is held to where a ray is as far away as it was taken hold of.
+    pub fn pull(&mut self, origin: DVec3, direction: DVec3) {
+        let Some(pull) = self.pull else { return };
+        let forward = self.camera.forward();
+        let ahead = direction.dot(forward);
+        let along = (pull.depth - (origin - self.camera.eye()).dot(forward)) / ahead;
+        let place = origin + along * direction - pull.grip;
+        let Some(&Force::Anchor {
+            body,
+            anchor,
+            rest_length,
+            stiffness,
+            damping,
+        }) = self.world.forces().get(pull.force)
+        else {
+            self.pull = None;
+            return;
+        };
+        if body != pull.body || anchor == place || !place.is_finite() {
+            return;
+        }
+        let spring = Force::Anchor {
+            body,
+            anchor: place,
+            rest_length,
+            stiffness,
+            damping,
+        };
+        if self.world.replace_force(pull.force, spring).is_ok() {
+            self.disown_jobs();
+            self.begin_record();
+        }
+    }
+
+    /// Whether a body is held.
+    pub fn is_pulling(&self) -> bool {
+        self.pull.is_some()
+    }
+
+    /// Lets go of what is held.
+    pub fn let_go(&mut self) {
+        let Some(pull) = self.pull.take() else {
+            return;
+        };
+        let held = self.world.forces().get(pull.force);
+        if matches!(held, Some(Force::Anchor { body, .. }) if *body == pull.body)
+            && self.world.remove_force(pull.force).is_ok()
+        {
+            self.disown_jobs();
+            self.begin_record();
+        }
+    }
+}

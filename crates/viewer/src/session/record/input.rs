@@ -1,0 +1,71 @@
+//! What a person can do to a world that runs.
+
+use sim_core::{DVec3, Force, SeparateError, Settings, World, WorldError};
+
+/// One change, the same whether it is made the first time or in a replay.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Input {
+    /// How the world steps.
+    Settings(Settings),
+    /// Where a body is, m.
+    Position(usize, DVec3),
+    /// Its velocity, m/s.
+    Velocity(usize, DVec3),
+    /// The constant force on it, N.
+    Force(usize, DVec3),
+    /// Its mass, kg.
+    Mass(usize, f64),
+    /// What it keeps of an approaching speed.
+    Restitution(usize, f64),
+    /// Its coefficient of friction.
+    Friction(usize, f64),
+    /// All forces beside the constant ones.
+    Forces(Vec<Force>),
+    /// Bodies are moved out of overlap.
+    Separate,
+}
+
+/// Why a change was refused.
+#[derive(Clone, Debug)]
+pub enum InputError {
+    /// By the world.
+    World(WorldError),
+    /// Bodies cannot be moved apart.
+    Separate(SeparateError),
+}
+
+impl From<WorldError> for InputError {
+    fn from(error: WorldError) -> Self {
+        Self::World(error)
+    }
+}
+
+impl Input {
+    /// Makes the change; tells which bodies were moved apart. Refused, it leaves the world as it was.
+    pub fn apply(&self, world: &mut World) -> Result<Vec<usize>, InputError> {
+        match *self {
+            Self::Settings(settings) => world.set_settings(settings)?,
+            Self::Position(body, position) => world.set_position(body, position)?,
+            Self::Velocity(body, velocity) => world.set_velocity(body, velocity)?,
+            Self::Force(body, force) => world.set_force(body, force)?,
+            Self::Mass(body, mass) => world.set_mass(body, mass)?,
+            Self::Restitution(body, part) => world.set_restitution(body, part)?,
+            Self::Friction(body, friction) => world.set_friction(body, friction)?,
+            Self::Forces(ref forces) => *world = with_forces(world, forces)?,
+            Self::Separate => return world.separate().map_err(InputError::Separate),
+        }
+        Ok(Vec::new())
+    }
+}
+
+/// The same world under other forces.
+fn with_forces(world: &World, forces: &[Force]) -> Result<World, WorldError> {
+    let mut changed = world.clone();
+    while let Some(last) = changed.forces().len().checked_sub(1) {
+        changed.remove_force(last)?;
+    }
+    for force in forces {
+        changed.add_force(force.clone())?;
+    }
+    Ok(changed)
+}

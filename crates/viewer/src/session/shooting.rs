@@ -1,0 +1,154 @@
+//! Pictures of the run as files: a still of what is seen, and a film of what is kept.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use super::{Session, State};
+use crate::picture::Picture;
+
+/// How long a picture of a film is shown, hundredths of a second.
+const DELAY: u16 = 4;
+/// The most pictures of a film: 12 s.
+const MOST_PICTURES: usize = 300;
+/// The most models in all pictures of a film together.
+const MOST_MODELS: usize = 100_000;
+/// Width of a film, pixels.
+const FILM_WIDTH: u32 = 720;
+
+/// Pictures that are to become a file: one a still, more a film.
+#[derive(Clone)]
+pub struct Shooting {
+    /// What is to be seen.
+    pub pictures: Vec<Picture>,
+    /// Size of the file's pictures, pixels.
+    pub size: [u32; 2],
+    /// How long each is shown, hundredths of a second.
+    pub delay: u16,
+    /// How far it is, seen from outside.
+    pub reel: Reel,
+}
+
+/// How far a shooting is, and whether it is to go on: shared between who shoots and who waits.
+#[derive(Clone, Debug, Default)]
+pub struct Reel(Arc<Counts>);
+
+#[derive(Debug, Default)]
+struct Counts {
+    done: AtomicUsize,
+    total: AtomicUsize,
+    cancelled: AtomicBool,
+}
+
+impl Reel {
+    fn of(total: usize) -> Self {
+        let reel = Self::default();
+        reel.0.total.store(total, Ordering::Relaxed);
+        reel
+    }
+
+    /// Pictures drawn, and pictures to be drawn.
+    pub fn progress(&self) -> [usize; 2] {
+        [&self.0.done, &self.0.total].map(|count| count.load(Ordering::Relaxed))
+    }
+
+    /// One more picture is drawn.
+    pub fn advance(&self) {
+        self.0.done.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Lets it end without a file.
+    pub fn cancel(&self) {
+        self.0.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether it is to end.
+    pub fn is_cancelled(&self) -> bool {
+        self.0.cancelled.load(Ordering::Relaxed)
+    }
+}
+
+/// What is being shot.
+#[derive(Default)]
+pub(super) struct Studio {
+    /// Not handed out yet.
+    waiting: Option<Shooting>,
+    /// Of what is waiting or under way, and whether it is a film.
+    reel: Option<(Reel, bool)>,
+}
+
+impl Session {
+    /// Lets what is seen be drawn into a file, in a size in pixels.
+    pub fn shoot_still(&mut self, size: [u32; 2]) {
+        let picture = self.picture();
+        self.shoot(vec![picture], size);
+    }
+
+    /// Lets the run that is kept, up to where it is looked at, be drawn into a file at the speed that is
+    /// set, in the proportions of a size in pixels: its last 12 s where it takes longer.
+    pub fn shoot_film(&mut self, [width, height]: [u32; 2]) {
+        if self.state == State::Layout || self.playback.len() < 2 {
+            let text = "There is nothing to film yet: start, or step.";
+            return self.notices.info("shoot", text.to_owned());
+        }
+        let end = self.shown_time();
+        self.pause();
+        let (now, instant) = (self.playback.now(), self.instant);
+        let apart = self.speed * f64::from(DELAY) / crate::film::TICKS;
+        let [first, _] = self.playback.span();
+        let most = MOST_PICTURES
+            .min(MOST_MODELS / self.world.len().max(1))
+            .max(2);
+        let count = (((end - first) / apart).floor() as usize + 1).clamp(2, most);
+        let times = (0..count).rev().map(|n| end - n as f64 * apart);
+        let mut pictures = Vec::with_capacity(count);
+        for time in times {
+            self.go_to_time(time.max(first));
+            pictures.push(self.picture());
+        }
+        self.go_to(now);
+        self.instant = instant;
+        let height = (f64::from(height) * f64::from(FILM_WIDTH) / f64::from(width.max(1))).round();
+        self.shoot(
+            pictures,
+            [FILM_WIDTH, (height as u32).clamp(16, 4 * FILM_WIDTH)],
+        );
+    }
+
+    fn shoot(&mut self, pictures: Vec<Picture>, size: [u32; 2]) {
+        if self.studio.reel.is_some() {
+            let text = "The last pictures are still being drawn.";
+            return self.notices.info("shoot", text.to_owned());
+        }
+        let reel = Reel::of(pictures.len());
+        self.studio.reel = Some((reel.clone(), pictures.len() > 1));
+        self.studio.waiting = Some(Shooting {
+            pictures,
+            size,
+            delay: DELAY,
+            reel,
+        });
+    }
+
+    /// What is to be drawn now, once.
+    pub fn shooting_due(&mut self) -> Option<Shooting> {
+        self.studio.waiting.take()
+    }
+
+    /// How far the pictures are that are waiting or being drawn.
+    pub fn reel(&self) -> Option<&Reel> {
+        self.studio.reel.as_ref().map(|(reel, _)| reel)
+    }
+
+    /// Takes in the bytes of a file, or why there are none; nothing where it was cancelled.
+    pub fn accept_shooting(&mut self, outcome: Result<Option<Vec<u8>>, String>) {
+        let Some((_, is_film)) = self.studio.reel.take() else {
+            return;
+        };
+        self.studio.waiting = None;
+        match outcome {
+            Ok(Some(bytes)) => self.export(if is_film { "gif" } else { "png" }, &bytes),
+            Ok(None) => self.notices.info("shoot", "Cancelled.".to_owned()),
+            Err(error) => self.notices.error("shoot", error),
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! The languages of the window. Every text stands in English where it is used, and goes through
+//! [`say`] on its way to the screen, which looks it up in one table.
+
+mod chinese;
+
+use std::cell::Cell;
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
+/// A language of the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Language {
+    /// English.
+    #[default]
+    English,
+    /// Simplified Chinese.
+    Chinese,
+}
+
+impl Language {
+    /// All of them.
+    pub const ALL: [Language; 2] = [Language::English, Language::Chinese];
+
+    /// Its name in itself.
+    pub fn name(self) -> &'static str {
+        match self {
+            Language::English => "English",
+            Language::Chinese => "中文",
+        }
+    }
+
+    /// A text in this language: as it is where the table has nothing for it.
+    pub fn say(self, text: &str) -> String {
+        self.translated(text).unwrap_or_else(|| text.to_owned())
+    }
+
+    /// A text in this language, if it has to be another one and the table has it.
+    pub fn translated(self, text: &str) -> Option<String> {
+        match self {
+            Language::English => None,
+            Language::Chinese => CHINESE.get(text),
+        }
+    }
+}
+
+thread_local! {
+    /// Each thread that draws panels has its own, so that windows of tests do not disturb each other.
+    static LANGUAGE: Cell<Language> = const { Cell::new(Language::English) };
+}
+
+/// Lets what this thread draws be said in a language from now on.
+pub fn speak(language: Language) {
+    LANGUAGE.set(language);
+}
+
+/// The language that is spoken on this thread.
+pub fn spoken() -> Language {
+    LANGUAGE.get()
+}
+
+/// A text in the language of the window. Texts with figures and names in them are found by what stands
+/// around these.
+pub fn say(text: impl AsRef<str>) -> String {
+    spoken().say(text.as_ref())
+}
+
+static CHINESE: LazyLock<Table> = LazyLock::new(|| Table::new(chinese::TEXTS));
+
+/// Texts and what they are in another language.
+struct Table {
+    whole: HashMap<&'static str, &'static str>,
+    /// Those with `{}` in them, what is longest first, so that the most special one is found.
+    patterns: Vec<(Vec<&'static str>, &'static str)>,
+}
+
+impl Table {
+    fn new(texts: &[(&'static str, &'static str)]) -> Self {
+        let mut table = Table {
+            whole: HashMap::new(),
+            patterns: Vec::new(),
+        };
+        for &(english, other) in texts {
+            if english.contains("{}") {
+                let pieces = english.split("{}").collect();
+                table.patterns.push((pieces, other));
+            } else {
+                table.whole.insert(english, other);
+            }
+        }
+        let length = |pieces: &Vec<&str>| pieces.iter().map(|piece| piece.len()).sum::<usize>();
+        table
+            .patterns
+            .sort_by_key(|(pieces, _)| std::cmp::Reverse(length(pieces)));
+        table
+    }
+
+    fn get(&self, text: &str) -> Option<String> {
+        if let Some(other) = self.whole.get(text) {
+            return Some((*other).to_owned());
+        }
+        self.patterns
+            .iter()
+            .find_map(|(pieces, other)| Some(self.fill(other, &parts(text, pieces)?)))
+    }
+
+    /// Puts parts into a text: `{0}` as it is, `{0!}` in the language too.
+    fn fill(&self, text: &str, parts: &[&str]) -> String {
+        let mut filled = String::new();
+        let mut rest = text;
+        while let Some((before, after)) = rest.split_once('{') {
+            filled += before;
+            let (place, after) = after.split_once('}').unwrap_or((after, ""));
+            let number = place.trim_end_matches('!').parse::<usize>();
+            let part = number
+                .ok()
+                .and_then(|n| parts.get(n))
+                .copied()
+                .unwrap_or("");
+            match place.ends_with('!') {
+                true => filled += &self.get(part).unwrap_or_else(|| part.to_owned()),
+                false => filled += part,
+            }
+            rest = after;
+        }
+        filled + rest
+    }
+}
+
+/// What stands between the pieces of a pattern, if the text is of it.
+fn parts<'a>(text: &'a str, pieces: &[&str]) -> Option<Vec<&'a str>> {
+    let (first, others) = pieces.split_first()?;
+    let (last, between) = others.split_last()?;
+    let mut rest = text.strip_prefix(first)?.strip_suffix(last)?;
+    let mut parts = Vec::with_capacity(others.len());
+    for piece in between {
+        let (part, after) = rest.split_once(piece)?;
+        parts.push(part);
+        rest = after;
+    }
+    parts.push(rest);
+    Some(parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_are_found_whole_and_by_their_pattern() {
+        let table = Table::new(&[
+            ("Start", "开始"),
+            ("now", "现在"),
+            ("{} and {} meet, as of {}.", "{2!},{0} 与 {1} 相交。"),
+            ("{} meet.", "{0} 相交。"),
+        ]);
+        let cases = [
+            ("Start", Some("开始")),
+            ("a and b meet, as of now.", Some("现在,a 与 b 相交。")),
+            (
+                "a and b meet, as of 2 s ago.",
+                Some("2 s ago,a 与 b 相交。"),
+            ),
+            ("they meet.", Some("they 相交。")),
+            ("They part.", None),
+        ];
+        for (english, other) in cases {
+            assert_eq!(table.get(english).as_deref(), other, "{english}");
+        }
+    }
+
+    #[test]
+    fn every_text_is_there_once_and_is_chinese_with_all_its_parts() {
+        let mut seen = std::collections::HashSet::new();
+        for (english, chinese) in chinese::TEXTS {
+            assert!(seen.insert(english), "twice: {english}");
+            assert!(!english.is_empty() && !chinese.is_empty());
+            let count = english.matches("{}").count();
+            for part in 0..count {
+                let named = [format!("{{{part}}}"), format!("{{{part}!}}")];
+                let shown = named.iter().any(|name| chinese.contains(name));
+                assert!(shown, "{english}: part {part} is lost");
+            }
+            assert_eq!(chinese.matches('{').count(), count, "{english}");
+        }
+    }
+
+    #[test]
+    fn what_tables_offer_is_in_every_language() {
+        use crate::session::{BEYOND, CHARTS, LABS, PRESETS, Session};
+        let scene = scene::SCENES[0].scene().expect("the first scene");
+        let session = Session::new(scene).expect("a session");
+        let mut texts: Vec<&str> = vec![BEYOND];
+        for method in sim_core::METHODS {
+            texts.extend([method.title, method.stability]);
+        }
+        for entry in scene::SCENES {
+            texts.extend([entry.title(), entry.about()]);
+        }
+        let curves: Vec<_> = CHARTS
+            .iter()
+            .flat_map(|chart| session.curves(chart))
+            .collect();
+        for chart in &CHARTS {
+            texts.extend([chart.title, chart.meaning]);
+        }
+        // Those along an axis are called by its letter.
+        let names = curves.iter().map(|curve| curve.name.as_str());
+        texts.extend(names.filter(|name| name.len() > 1));
+        for preset in &PRESETS {
+            texts.extend([preset.title, preset.meaning]);
+        }
+        for lab in &LABS {
+            texts.push(lab.title);
+            for stop in lab.stops {
+                texts.extend([stop.title, stop.watch, stop.question, stop.answer]);
+                texts.extend(stop.attempts.iter().map(|attempt| attempt.title));
+            }
+        }
+        let missing: Vec<&str> = texts
+            .into_iter()
+            .filter(|text| Language::Chinese.translated(text).is_none())
+            .collect();
+        assert_eq!(missing, Vec::<&str>::new());
+    }
+}
