@@ -3,7 +3,7 @@
 //! A *certificate* is a direction that keeps two sets of points apart for some time: let `s` be the gap
 //! along it now, `w` how fast that changes, and the second derivative of every point's place be bounded;
 //! then the gap is above a parabola, and until that has its root the sets are apart (a plane lies between
-//! their hulls, which a rigid motion moves with their points). [`certificate`] has the parabolas, and for
+//! their hulls, which a rigid motion moves with their points). `certificate` has the parabolas, and for
 //! triangles a cubic.
 //!
 //! A queue holds pairs of boxes and of triangles, each with the time until which it is certified. The
@@ -13,7 +13,7 @@
 //! told is never later than the first contact, and that there is none is proven.** Triangles nearer than
 //! [`NEAR`] roundings that do not move apart are a contact.
 //!
-//! Times come from poses at one time ([`View`]), in a frame at rest that then has the first shape's axes.
+//! Times come from poses at one time (`View`), in a frame at rest that then has the first shape's axes.
 //! All bounds are relative: no length or time is in here.
 
 mod certificate;
