@@ -148,10 +148,12 @@ impl ContactSolver<'_> {
     ) -> bool {
         let push = greatest(free);
         let is_still = |v: DVec3| v.length() <= AT_REST * push * self.scene.settings.dt;
-        // What friction hardly fails to hold is accelerated by little.
+        // What friction hardly fails to hold is accelerated by little: no more than what rounds in sums of all that
+        // bears on a body.
+        let borne = (0..force.len()).map(|k| force[k] * places.yielding(k));
         let unbalanced = match (0..force.len()).any(|k| friction.slides(k, force[k])) {
-            true => ROUNDING,
-            false => UNBALANCED,
+            true => ROUNDING * borne.fold(push, f64::max),
+            false => UNBALANCED * push,
         };
         let at_rest = time == 0.0
             && places.bodies.iter().enumerate().all(|(place, &body)| {
@@ -159,7 +161,7 @@ impl ContactSolver<'_> {
                     false => self.scene.before.velocity[body] == DVec3::ZERO,
                     true => {
                         is_still(self.paths.start.velocity[body])
-                            && acceleration[place].length() <= unbalanced * push
+                            && acceleration[place].length() <= unbalanced
                             && self.view().motion().coupled_group(body).is_none()
                     }
                 }
