@@ -6,7 +6,7 @@ use core::mem;
 use super::super::{profile::Phase, stepping::Cause};
 use super::{event_loop::EventLoop, view::View};
 use crate::{
-    Extent, Shape,
+    Extent,
     collide::{Broad, Front, Swept},
 };
 
@@ -62,21 +62,11 @@ impl View<'_> {
 
     /// The farthest that the plane of a body comes on its trajectory, if it is a half-space.
     fn front(&self, wall: usize) -> Option<Front> {
-        let &Shape::HalfSpace { normal } = self.scene.bodies.shape(wall)? else {
-            return None;
-        };
-        let (from, to) = (
-            self.paths.start.position[wall],
-            self.paths.end.position[wall],
-        );
-        let deviation = self.motion().chord_deviation(wall).dot(normal.abs());
-        Some(Front {
-            normal,
-            body: wall,
-            level: normal.dot(from).max(normal.dot(to)) + deviation,
-            // More than is lost in rounding.
-            slack: 16.0 * f64::EPSILON * (from.length() + to.length()),
-        })
+        let (from, to) = (&self.paths.start.position, &self.paths.end.position);
+        let mut front = self.scene.bodies.swept_front(wall, from[wall], to[wall])?;
+        let deviation = self.motion().chord_deviation(wall);
+        front.level += deviation.dot(front.normal.abs());
+        Some(front)
     }
 }
 
@@ -121,7 +111,7 @@ impl EventLoop<'_> {
         body: usize,
         restarted: &[usize],
     ) -> Result<(), (usize, Cause)> {
-        if self.solver.scene.bodies.shape(body).is_none() {
+        if !self.solver.scene.bodies.has_shape(body) {
             return Ok(());
         }
         let phase = self.record.enter(Phase::Narrow);
