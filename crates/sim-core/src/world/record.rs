@@ -17,9 +17,9 @@ pub(super) struct Record {
     pub(super) contact_steps: u64,
 }
 
-/// A place in the record, to go back to.
+/// What to roll back to.
 #[derive(Clone, Debug)]
-pub(super) struct Mark {
+pub(super) struct Checkpoint {
     impacts: u64,
     last_impact: Option<Impact>,
     listed: usize,
@@ -34,20 +34,20 @@ impl Record {
         self.last_impact = Some(impact);
     }
 
-    pub(super) fn mark(&self) -> Mark {
-        Mark {
+    pub(super) fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
             impacts: self.impacts,
             last_impact: self.last_impact.clone(),
             listed: self.list.as_ref().map_or(0, Vec::len),
         }
     }
 
-    /// Forgets what has been noted since a mark.
-    pub(super) fn go_back(&mut self, mark: &Mark) {
-        self.impacts = mark.impacts;
-        self.last_impact.clone_from(&mark.last_impact);
+    /// Forgets what has been noted since a checkpoint.
+    pub(super) fn roll_back(&mut self, to: &Checkpoint) {
+        self.impacts = to.impacts;
+        self.last_impact.clone_from(&to.last_impact);
         if let Some(list) = &mut self.list {
-            list.truncate(mark.listed);
+            list.truncate(to.listed);
         }
     }
 }

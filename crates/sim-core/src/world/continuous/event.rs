@@ -56,6 +56,26 @@ pub(super) struct Event {
 }
 
 impl Event {
+    /// An impact of two bodies at a time, that are a gap apart then, on trajectories with these versions.
+    pub(super) fn impact(
+        time: f64,
+        bodies: (usize, usize),
+        contact: Contact,
+        gap: f64,
+        version: &[u32],
+    ) -> Event {
+        Event {
+            time,
+            bodies,
+            versions: (version[bodies.0], version[bodies.1]),
+            kind: EventKind::Impact,
+            contact,
+            outcome: Outcome::Bounce,
+            load_speed: 0.0,
+            gap,
+        }
+    }
+
     pub(super) fn is_rest(&self) -> bool {
         self.kind == EventKind::Impact && self.outcome == Outcome::Rest
     }

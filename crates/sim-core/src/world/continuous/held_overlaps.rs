@@ -10,7 +10,7 @@
 use alloc::vec::Vec;
 use glam::DVec3;
 
-use super::super::{Bundled, World, record::Mark, state::State, stepping::Cause};
+use super::super::{Bundled, World, record::Checkpoint, state::State, stepping::Cause};
 use super::{
     contact_set::{ContactConstraint, ContactSet},
     solver::ContactSolver,
@@ -26,7 +26,7 @@ struct Start {
     current: State,
     contacts: ContactSet,
     placed: bool,
-    record: Mark,
+    record: Checkpoint,
 }
 
 impl World {
@@ -39,7 +39,7 @@ impl World {
             current: self.current.clone(),
             contacts: self.contacts.clone(),
             placed: self.continuous.placed,
-            record: self.record.mark(),
+            record: self.record.checkpoint(),
         };
         let mut done = self.collide_once();
         while done.is_ok() && self.hold_deepened() {
@@ -55,7 +55,7 @@ impl World {
         self.current.clone_from(&start.current);
         self.contacts.clone_from(&start.contacts);
         self.continuous.placed = start.placed;
-        self.record.go_back(&start.record);
+        self.record.roll_back(&start.record);
         self.continuous.bundled = Bundled::default();
         self.continuous.wake_all();
     }

@@ -246,22 +246,18 @@ impl EventLoop<'_> {
             if body != first || time >= self.solver.scene.settings.dt {
                 continue;
             }
-            let version = self.solver.paths.version[body];
+            let nothing = Contact {
+                time: 0.0,
+                point: DVec3::ZERO,
+                normal: DVec3::ZERO,
+                feature: None,
+                face: None,
+            };
+            let version = &self.solver.paths.version;
             events.push(Event {
-                time,
-                bodies: (body, body),
-                versions: (version, version),
                 kind: EventKind::Horizon,
                 outcome: Outcome::Rest,
-                load_speed: 0.0,
-                gap: 0.0,
-                contact: Contact {
-                    time: 0.0,
-                    point: DVec3::ZERO,
-                    normal: DVec3::ZERO,
-                    feature: None,
-                    face: None,
-                },
+                ..Event::impact(time, (body, body), nothing, 0.0, version)
             });
         }
         self.queue.waiting = events;

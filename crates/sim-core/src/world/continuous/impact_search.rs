@@ -23,11 +23,7 @@
 use glam::DVec3;
 
 use super::super::{layout::RESOLUTION_ULPS, stepping::Cause};
-use super::{
-    event::{Event, EventKind, Outcome},
-    trajectory::Probe,
-    view::View,
-};
+use super::{event::Event, trajectory::Probe, view::View};
 use crate::collide::{Contact, Form, Parabola, first_contact, first_on_parabola, has_roots, snap};
 
 /// Departure of a chord from its trajectory that is looked past, in largest half extents of the
@@ -285,20 +281,12 @@ impl PairSearch<'_> {
             }
         }
         let (place, _) = self.view.motion().motion_at(i, time, probe)?;
+        let contact = Contact {
+            point: place + contact.point,
+            ..contact
+        };
         let version = &self.view.paths.version;
-        Ok(Event {
-            time,
-            bodies: (i, j),
-            versions: (version[i], version[j]),
-            kind: EventKind::Impact,
-            outcome: Outcome::Bounce,
-            load_speed: 0.0,
-            gap: room,
-            contact: Contact {
-                point: place + contact.point,
-                ..contact
-            },
-        })
+        Ok(Event::impact(time, (i, j), contact, room, version))
     }
 
     /// How far from a contact bodies are kept at their impact, m.

@@ -95,7 +95,7 @@ impl World {
 
     /// Lets bodies have their impacts and contacts on the way from the previous state to the current one.
     pub(super) fn collide_continuously(&mut self) -> Result<(), (usize, Cause)> {
-        let record = self.record.mark();
+        let record = self.record.checkpoint();
         self.continuous.contacts_before.copy_from(&self.contacts);
         let placed = self.continuous.placed.then(|| {
             let position = self.previous.position.clone();
@@ -105,7 +105,7 @@ impl World {
         self.continuous.near.knows_near &= placed.is_none();
         self.separate_placed();
         if let Err(failed) = self.collide_without_deepening() {
-            self.record.go_back(&record);
+            self.record.roll_back(&record);
             mem::swap(&mut self.contacts, &mut self.continuous.contacts_before);
             if let Some((position, overlapping)) = placed {
                 self.continuous.placed = true;

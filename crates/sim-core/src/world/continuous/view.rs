@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::super::{exchange::Instant, layout::Layout, order::ordinal, scene::Scene};
 use super::{
     contact_set::{ContactConstraint, ContactSet},
-    event::{Event, EventKind, Outcome},
+    event::Event,
     tallies::Tallies,
     trajectory::{Motion, Trajectories},
 };
@@ -74,24 +74,14 @@ impl<'a> View<'a> {
 
     /// A contact as an impact now.
     pub(super) fn event_of(&self, constraint: &ContactConstraint, time: f64) -> Event {
-        let (i, j) = constraint.bodies;
-        let version = &self.paths.version;
-        Event {
-            time,
-            bodies: (i, j),
-            versions: (version[i], version[j]),
-            kind: EventKind::Impact,
-            outcome: Outcome::Bounce,
-            load_speed: 0.0,
-            gap: 0.0,
-            contact: Contact {
-                time: 0.0,
-                point: self.paths.start.position[i] + constraint.point,
-                normal: constraint.normal,
-                feature: None,
-                face: None,
-            },
-        }
+        let contact = Contact {
+            time: 0.0,
+            point: self.paths.start.position[constraint.bodies.0] + constraint.point,
+            normal: constraint.normal,
+            feature: None,
+            face: None,
+        };
+        Event::impact(time, constraint.bodies, contact, 0.0, &self.paths.version)
     }
 
     /// Where two bodies are that have an impact at a time, s from the step's start, at which the trajectories
