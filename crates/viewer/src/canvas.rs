@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use egui_wgpu::wgpu;
 
 use crate::picture::Picture;
-use crate::render::Renderer;
+use crate::render::{self, Renderer};
 
 /// Format of the picture's texture, the only one that egui shows.
 const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -51,7 +51,7 @@ impl Canvas {
         troubles.listen(&device);
         let mut ui = egui_wgpu::Renderer::new(&device, format, Default::default());
         let scene = Renderer::new(&device, PICTURE, samples);
-        let picture_view = picture_texture(&device, [1, 1]);
+        let picture_view = texture(&device, [1, 1], PICTURE);
         let picture_id =
             ui.register_native_texture(&device, &picture_view, wgpu::FilterMode::Linear);
         Self {
@@ -135,30 +135,13 @@ impl Canvas {
             size_in_pixels: whole,
             pixels_per_point: frame.pixels_per_point,
         };
-        let mut commands = self.ui.update_buffers(
-            &self.device,
-            &self.queue,
-            &mut encoder,
+        let mut commands = render::paint_panels(
+            &mut self.ui,
+            (&self.device, &self.queue),
+            (&mut encoder, view),
             &frame.primitives,
             &screen,
         );
-        let mut pass = encoder
-            .begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("control panel"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                        store: wgpu::StoreOp::Store,
-                    },
-                    depth_slice: None,
-                })],
-                ..Default::default()
-            })
-            .forget_lifetime();
-        self.ui.render(&mut pass, &frame.primitives, &screen);
-        drop(pass);
         commands.push(encoder.finish());
         self.queue.submit(commands);
     }
@@ -175,7 +158,7 @@ impl Canvas {
         if size == self.picture_size {
             return;
         }
-        self.picture_view = picture_texture(&self.device, size);
+        self.picture_view = texture(&self.device, size, PICTURE);
         self.picture_size = size;
         self.ui.update_egui_texture_from_wgpu_texture(
             &self.device,
@@ -199,7 +182,11 @@ impl Troubles {
     }
 }
 
-fn picture_texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
+fn texture(
+    device: &wgpu::Device,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+) -> wgpu::TextureView {
     device
         .create_texture(&wgpu::TextureDescriptor {
             label: Some("picture"),
@@ -211,7 +198,7 @@ fn picture_texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Te
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: PICTURE,
+            format,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         })
@@ -221,7 +208,7 @@ fn picture_texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Te
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::{self, offscreen};
+    use crate::render::offscreen;
 
     const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
@@ -237,24 +224,6 @@ mod tests {
         Some(Canvas::new(made.expect("a device"), FORMAT, samples))
     }
 
-    fn target(canvas: &Canvas, [width, height]: [u32; 2]) -> wgpu::TextureView {
-        let texture = canvas.device().create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
-        texture.create_view(&Default::default())
-    }
-
     fn frame() -> UiFrame {
         UiFrame {
             primitives: Vec::new(),
@@ -266,7 +235,7 @@ mod tests {
     #[test]
     fn a_place_of_no_size_and_one_beyond_the_device_are_painted() {
         let Some(mut canvas) = canvas() else { return };
-        let view = target(&canvas, [64, 48]);
+        let view = texture(canvas.device(), [64, 48], FORMAT);
         let picture = Picture {
             grid: true,
             ..Picture::default()
@@ -281,7 +250,7 @@ mod tests {
     #[test]
     fn a_lost_device_is_noticed_and_painting_on_does_no_harm() {
         let Some(mut canvas) = canvas() else { return };
-        let view = target(&canvas, [64, 48]);
+        let view = texture(canvas.device(), [64, 48], FORMAT);
         canvas.paint(&view, [64, 48], (&Picture::default(), [64, 48]), &frame());
         assert!(!canvas.is_lost());
         canvas.device().destroy();
@@ -294,7 +263,7 @@ mod tests {
         let Some(mut canvas) = self::canvas() else {
             return;
         };
-        let view = target(&canvas, [64, 48]);
+        let view = texture(canvas.device(), [64, 48], FORMAT);
         canvas.paint(&view, [64, 48], (&Picture::default(), [64, 48]), &frame());
         assert_eq!((canvas.is_lost(), canvas.take_error()), (false, None));
     }

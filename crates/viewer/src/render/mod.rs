@@ -16,6 +16,7 @@ mod lines;
 mod meshes;
 mod normals;
 pub mod offscreen;
+mod panels;
 mod panes;
 mod pipeline;
 mod shadow;
@@ -24,6 +25,7 @@ mod targets;
 mod triangles;
 
 pub use device::{device_descriptor, supported_samples};
+pub use panels::paint_panels;
 
 use egui_wgpu::wgpu;
 

@@ -5,7 +5,7 @@ use std::fmt;
 use egui_wgpu::wgpu;
 use image::RgbaImage;
 
-use super::{Renderer, device_descriptor, supported_samples};
+use super::{Renderer, device_descriptor, paint_panels, supported_samples};
 use crate::picture::Picture;
 
 /// Bytes.
@@ -151,23 +151,9 @@ pub fn panel(
         format,
     };
     target.taken(size, |encoder, view| {
-        painter.update_buffers(&device, &queue, encoder, &primitives, &screen);
-        let mut pass = encoder
-            .begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("panel"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                        store: wgpu::StoreOp::Store,
-                    },
-                    depth_slice: None,
-                })],
-                ..Default::default()
-            })
-            .forget_lifetime();
-        painter.render(&mut pass, &primitives, &screen);
+        let parts = (&device, &queue);
+        let before = paint_panels(&mut painter, parts, (encoder, view), &primitives, &screen);
+        queue.submit(before);
     })
 }
 
