@@ -10,6 +10,7 @@ pub mod app;
 pub mod camera;
 pub mod canvas;
 pub mod cli;
+pub mod errors;
 pub mod expression;
 pub mod failure;
 pub mod film;

@@ -10,8 +10,8 @@ use std::time::Duration;
 use scene::{SCENES, Scene, shown};
 use sim_core::{Force, StepError, World};
 
+use crate::errors;
 use crate::failure::Failure;
-use crate::headless;
 use crate::interrupt::Interrupt;
 use crate::number;
 use crate::session::{Drift, Reference};
@@ -173,7 +173,7 @@ fn soak(
                 Ok(()) => {}
                 // What closing walls are there for.
                 Err(StepError::Squeezed { .. }) if world.steps() > 0 => break,
-                Err(error) => return Err(Failure::Run(headless::step_error(scene, &error))),
+                Err(error) => return Err(Failure::Run(errors::step_error(scene, &error))),
             }
             let seconds = watch.read().as_secs_f64();
             let drift = reference.drift(&world);

@@ -450,7 +450,9 @@ fn ghosts_are_seen_through_and_cast_no_shadow() {
 
 #[test]
 fn a_panel_can_be_drawn_without_a_window() {
-    let image = match viewer::render::offscreen::panel([400, 200], |ui| {
+    let context = egui::Context::default();
+    viewer::ui::apply_style(&context);
+    let image = match viewer::render::offscreen::panel(&context, [400, 200], |ui| {
         ui.label("a panel");
     }) {
         Err(ShotError::NoAdapter) => return skip_without_adapter(),

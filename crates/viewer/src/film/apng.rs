@@ -2,7 +2,8 @@
 
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder};
 
-use super::{Film, TICKS};
+use super::Film;
+use crate::session::TICKS;
 
 pub(super) fn encode(film: &Film) -> Result<Vec<u8>, String> {
     let told = |error: png::EncodingError| format!("cannot encode the PNG: {error}");

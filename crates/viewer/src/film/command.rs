@@ -4,12 +4,13 @@ use std::time::Duration;
 
 use scene::{Scene, file, shown};
 
-use super::{Film, Form, MOST_FRAMES, TICKS};
+use super::{Film, Form, MOST_FRAMES};
 use crate::cli::FilmArgs;
 use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
 use crate::render::offscreen::Offscreen;
 use crate::session::Session;
+use crate::session::TICKS;
 use crate::shot;
 use crate::stopwatch::Stopwatch;
 

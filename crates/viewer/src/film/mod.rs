@@ -13,8 +13,6 @@ pub use shooting::shoot;
 
 /// The most frames of a film.
 pub const MOST_FRAMES: usize = 3000;
-/// Hundredths of a second, the unit in which a GIF counts time.
-pub const TICKS: f64 = 100.0;
 
 /// Frames in a row.
 #[derive(Debug)]

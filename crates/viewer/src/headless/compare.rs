@@ -6,7 +6,8 @@ use scene::{Scene, shown};
 use serde::Serialize;
 use sim_core::Settings;
 
-use super::{step_error, to_json};
+use super::to_json;
+use crate::errors::step_error;
 use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
 use crate::number;

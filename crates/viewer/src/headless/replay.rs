@@ -4,7 +4,7 @@ use std::path::Path;
 
 use scene::shown;
 
-use super::step_error;
+use crate::errors::step_error;
 use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
 use crate::session::{MOST_RECORDED, Record, ReplayError, is_run_file, verify};

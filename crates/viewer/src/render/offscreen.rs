@@ -105,16 +105,15 @@ impl Offscreen {
     }
 }
 
-/// A part of the control panel, laid out by `contents`, at two pixels a point.
+/// A part of the control panel, laid out by `contents` in the style of a context, at two pixels a point.
 pub fn panel(
+    context: &egui::Context,
     size: [u32; 2],
     mut contents: impl FnMut(&mut egui::Ui),
 ) -> Result<RgbaImage, ShotError> {
     // What egui mixes colours in.
     let format = wgpu::TextureFormat::Rgba8Unorm;
     let Offscreen { device, queue, .. } = Offscreen::with_format(format)?;
-    let context = egui::Context::default();
-    crate::ui::apply_style(&context);
     let pixels_per_point = 2.0;
     let [width, height] = size.map(|side| side as f32 / pixels_per_point);
     let mut painter = egui_wgpu::Renderer::new(&device, format, Default::default());

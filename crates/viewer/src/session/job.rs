@@ -16,7 +16,7 @@ use super::{
     trails,
 };
 use crate::stopwatch::nanoseconds;
-use crate::{headless, number};
+use crate::{errors, number};
 
 /// Real time that the steps of one frame may take before the rest of them is given up: leaves
 /// half of a 60 Hz frame to the drawing.
@@ -184,7 +184,7 @@ impl Session {
                 self.pause();
                 self.select(Some(error.body()));
                 self.notices
-                    .error("step", headless::step_error(&self.scene, &error));
+                    .error("step", errors::step_error(&self.scene, &error));
                 if let Some(rate) = stable_rate(&error) {
                     self.notices.offer("step", Remedy::Rate(rate));
                 }

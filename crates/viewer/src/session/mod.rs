@@ -72,7 +72,7 @@ pub use record::{
     ReplayError, Verdict, is_run_file, verify,
 };
 pub use sample::{COLUMNS, Column, Sample, csv_head, csv_line};
-pub use shooting::{Reel, Shooting};
+pub use shooting::{Reel, Shooting, TICKS};
 pub use touching::Part;
 pub use tour::{Attempt, BEYOND, LABS, Lab, Stop, stop, stop_count};
 use trails::Trails;

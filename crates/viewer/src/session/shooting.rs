@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use super::{Session, State};
 use crate::picture::Picture;
 
+/// Hundredths of a second, the unit in which films count time, as GIF does.
+pub const TICKS: f64 = 100.0;
 /// How long a picture of a film is shown, hundredths of a second.
 const DELAY: u16 = 4;
 /// The most pictures of a film: 12 s.
@@ -93,7 +95,7 @@ impl Session {
         let end = self.shown_time();
         self.pause();
         let (now, instant) = (self.playback.now(), self.instant);
-        let apart = self.speed * f64::from(DELAY) / crate::film::TICKS;
+        let apart = self.speed * f64::from(DELAY) / TICKS;
         let [first, _] = self.playback.span();
         let most = MOST_PICTURES
             .min(MOST_MODELS / self.world.len().max(1))

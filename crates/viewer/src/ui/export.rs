@@ -1,6 +1,6 @@
 //! The curves of the plots as files: a table (CSV) or a picture (PNG).
 
-use super::plots::Plots;
+use super::{plots::Plots, style};
 use crate::picture;
 use crate::render::offscreen;
 use crate::session::Session;
@@ -37,7 +37,9 @@ pub(super) fn buttons(ui: &mut egui::Ui, plots: &Plots, session: &mut Session) {
 
 /// The plots as a picture.
 fn png(plots: &Plots, session: &mut Session) -> Result<Vec<u8>, String> {
-    let image = offscreen::panel(SIZE, |ui| plots.draw(ui, session));
+    let context = egui::Context::default();
+    style::apply(&context);
+    let image = offscreen::panel(&context, SIZE, |ui| plots.draw(ui, session));
     let image = image.map_err(|error| error.to_string())?;
     picture::png(&image).map_err(|error| format!("Cannot encode the picture: {error}"))
 }

@@ -6,7 +6,7 @@ use scene::shown;
 
 use super::input::InputError;
 use super::{Divergence, Input, Record, Replay};
-use crate::headless;
+use crate::errors;
 use crate::session::playback::Moment;
 use crate::session::{Session, State};
 
@@ -154,8 +154,8 @@ impl InputError {
     /// In words, with the names of bodies.
     pub fn text(&self, scene: &scene::Scene) -> String {
         match self {
-            Self::World(error) => shown::part(&headless::with_names(scene, error)),
-            Self::Separate(error) => headless::separate_error(scene, error),
+            Self::World(error) => shown::part(&errors::with_names(scene, error)),
+            Self::Separate(error) => errors::separate_error(scene, error),
         }
     }
 }

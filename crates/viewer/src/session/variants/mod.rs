@@ -18,7 +18,7 @@ pub use runner::{Halt, Runner, Snapshot};
 use super::figures::Drift;
 use super::playback;
 use super::{STEP_BUDGET, Session};
-use crate::headless;
+use crate::errors;
 use crate::picture::{Ghost, Line};
 
 /// The most variants beside the run.
@@ -315,7 +315,7 @@ impl Session {
             }
             variant.take_in(snapshots);
             variant.failure = halt.map(|halt| match halt {
-                Halt::Step(error) => headless::step_error(&self.scene, &error),
+                Halt::Step(error) => errors::step_error(&self.scene, &error),
                 Halt::Unknown => "not known from here on".to_owned(),
             });
             variant.runner = Some(runner);
