@@ -1,8 +1,10 @@
 //! Scenes and their bodies: the gallery, files, and the list to select from.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use egui::{ComboBox, RichText, TextEdit};
+use egui::{ComboBox, Galley, RichText, TextEdit};
 use scene::{MeshRef, SceneShape, shown};
 use sim_core::DVec3;
 
@@ -188,34 +190,88 @@ fn bodies(ui: &mut egui::Ui, session: &mut Session) {
             }
         }
     });
+    let chosen = list(ui, session);
+    if let Some(chosen) = chosen {
+        session.select(chosen);
+    }
+}
+
+/// The bodies by name, row after row, of which only those in sight are laid out; tells a choice.
+fn list(ui: &mut egui::Ui, session: &Session) -> Option<Option<usize>> {
+    let labels: Vec<Arc<Galley>> = (0..session.scene().bodies.len())
+        .map(|i| label(ui, session, i))
+        .collect();
+    let spacing = ui.spacing();
+    let (gap, padding) = (spacing.item_spacing.x, 2.0 * spacing.button_padding.x);
+    let room = ui.available_width() - spacing.scroll.allocated_width();
+    let widths = labels.iter().map(|label| label.size().x + padding);
+    let rows = rows(widths, gap, room);
+    let height = spacing.interact_size.y;
     let mut chosen = None;
     egui::ScrollArea::vertical()
         .max_height(120.0)
         .auto_shrink([false, true])
-        .show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                for (i, body) in session.scene().bodies.iter().enumerate() {
-                    let selected = session.selection() == Some(i);
-                    let mut text = egui::text::LayoutJob::default();
-                    let font = egui::TextStyle::Button.resolve(ui.style());
-                    let mut part = |what: &str, colour| {
-                        let format = egui::TextFormat::simple(font.clone(), colour);
-                        text.append(what, 0.0, format);
-                    };
-                    part("⏺ ", style::curve(session.colour(i), ui.visuals()));
-                    let colour = match (selected, session.is_hidden(i)) {
-                        (true, _) => ui.visuals().selection.stroke.color,
-                        (false, true) => ui.visuals().weak_text_color(),
-                        (false, false) => ui.visuals().strong_text_color(),
-                    };
-                    part(&shown::name(&body.name), colour);
-                    if ui.selectable_label(selected, text).clicked() {
-                        chosen = Some((!selected).then_some(i));
+        .show_rows(ui, height, rows.len(), |ui, seen| {
+            for row in &rows[seen] {
+                ui.horizontal(|ui| {
+                    for i in row.clone() {
+                        let selected = session.selection() == Some(i);
+                        if ui.selectable_label(selected, labels[i].clone()).clicked() {
+                            chosen = Some((!selected).then_some(i));
+                        }
                     }
-                }
-            });
+                });
+            }
         });
-    if let Some(chosen) = chosen {
-        session.select(chosen);
+    chosen
+}
+
+/// A dot in the colour of a body and its name.
+fn label(ui: &egui::Ui, session: &Session, i: usize) -> Arc<Galley> {
+    let mut text = egui::text::LayoutJob::default();
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let mut part = |what: &str, colour| {
+        let format = egui::TextFormat::simple(font.clone(), colour);
+        text.append(what, 0.0, format);
+    };
+    part("⏺ ", style::curve(session.colour(i), ui.visuals()));
+    let colour = match (session.selection() == Some(i), session.is_hidden(i)) {
+        (true, _) => ui.visuals().selection.stroke.color,
+        (false, true) => ui.visuals().weak_text_color(),
+        (false, false) => ui.visuals().strong_text_color(),
+    };
+    part(&shown::name(&session.scene().bodies[i].name), colour);
+    ui.fonts_mut(|fonts| fonts.layout_job(text))
+}
+
+/// Which of a row of things stand side by side, from one to the next of some widths with gaps between them, where
+/// there is so much room.
+fn rows(widths: impl Iterator<Item = f32>, gap: f32, room: f32) -> Vec<Range<usize>> {
+    let mut rows: Vec<Range<usize>> = Vec::new();
+    let mut end = 0.0;
+    for (i, width) in widths.enumerate() {
+        match rows.last_mut() {
+            Some(row) if end + gap + width <= room => {
+                row.end = i + 1;
+                end += gap + width;
+            }
+            _ => {
+                rows.push(i..i + 1);
+                end = width;
+            }
+        }
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rows;
+
+    #[test]
+    fn rows_hold_what_there_is_room_for_and_each_thing_once() {
+        let widths = [30.0, 30.0, 40.0, 200.0, 10.0, 80.0];
+        assert_eq!(rows(widths.into_iter(), 5.0, 100.0), [0..2, 2..3, 3..4, 4..6]);
+        assert_eq!(rows([].into_iter(), 5.0, 100.0), []);
     }
 }
