@@ -117,3 +117,28 @@ fn balls_circle_in_bowls_as_on_a_pendulum() {
     let lost = [48, 96].map(|sides| circled(sides, 0.0).0);
     assert!(lost[0] < 0.2 && lost[1] < 0.7 * lost[0], "{lost:?}");
 }
+
+/// Through the lowest point, where a ball is on several flat triangles within a step: it rises on the other side
+/// nearly as high.
+#[test]
+fn balls_swing_through_the_lowest_point_of_a_bowl() {
+    let angle: f64 = 0.6;
+    for (sides, restitution) in [(64, 0.0), (64, 0.5), (96, 0.0), (96, 0.5), (96, 1.0)] {
+        let mut world = in_bowl(sides, angle, 0.0, restitution);
+        let (mut there, mut back) = (0.0_f64, 0.0_f64);
+        // Half a period of a small swing takes 1.33 s, and one of this angle 1.02 times as long.
+        let (lost, rise) = run(&mut world, 2.8, |time, place| match time < 2.0 {
+            true => there = there.min(place.x),
+            false => back = back.max(place.x),
+        });
+        let high = LENGTH * angle.sin();
+        println!(
+            "{sides} sides, e = {restitution}: {lost:.2e} lost, {there:.3} and {back:.3} of {high:.3} m"
+        );
+        assert!(rise < 1e-9, "{sides} {restitution}: {rise}");
+        assert!(
+            there < -0.95 * high && back > 0.9 * high,
+            "{sides} {restitution}: {there} {back}"
+        );
+    }
+}

@@ -271,7 +271,10 @@ mod tests {
     #[test]
     fn rows_hold_what_there_is_room_for_and_each_thing_once() {
         let widths = [30.0, 30.0, 40.0, 200.0, 10.0, 80.0];
-        assert_eq!(rows(widths.into_iter(), 5.0, 100.0), [0..2, 2..3, 3..4, 4..6]);
+        assert_eq!(
+            rows(widths.into_iter(), 5.0, 100.0),
+            [0..2, 2..3, 3..4, 4..6]
+        );
         assert_eq!(rows([].into_iter(), 5.0, 100.0), []);
     }
 }

@@ -47,15 +47,16 @@ impl ContactSolver<'_> {
             hover.max(4.0 * rounding).max(SLIGHTEST * hop[k])
         };
         let still: Vec<f64> = (0..count).map(still).collect();
-        // In a heap, what forces press does not part. That takes energy and gives none, as standing still is
-        // among what is allowed.
+        // In a heap, what forces press does not part, unless by more than they turn back in a step. That takes
+        // energy and gives none, as standing still is among what is allowed.
         let is_held =
             |k: usize| is_bundled && constraint(k).target >= 0.0 && constraint(k).load_speed > 0.0;
-        let held: Vec<bool> = (0..count).map(is_held).collect();
+        let mut held: Vec<bool> = (0..count).map(is_held).collect();
         let before = velocity.clone();
+        let limits = (&hop[..], &still[..], rounding);
         let (mut given, target) =
             self.view()
-                .stop_closing(island, places, &mut velocity, (&held, &still, rounding));
+                .stop_closing(island, places, &mut velocity, &mut held, limits);
         let mut spent = None;
         if self.scene.bodies.is_rough() {
             let bundled = is_bundled.then_some(left);
@@ -159,7 +160,8 @@ impl View<'_> {
         island: &Island,
         places: &Places,
         velocity: &mut [DVec3],
-        (held, still, rounding): (&[bool], &[f64], f64),
+        held: &mut [bool],
+        (hop, still, rounding): (&[f64], &[f64], f64),
     ) -> (Vec<f64>, Vec<f64>) {
         let (joined, inverse_mass) = (&places.joined, &places.inverse_mass);
         let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
@@ -179,6 +181,12 @@ impl View<'_> {
                     enough,
                 };
                 given = project_with(joined, inverse_mass, velocity, &closing, known);
+                let leaving = leaving(places, &before, (held, hop), (&target, &given), enough);
+                if !leaving.is_empty() {
+                    velocity.copy_from_slice(&before);
+                    leaving.into_iter().for_each(|k| held[k] = false);
+                    continue;
+                }
             } else {
                 given.fill(0.0);
             }
@@ -252,4 +260,31 @@ impl View<'_> {
         };
         Some((body, Cause::Squeezed((first.min(other), first.max(other)))))
     }
+}
+
+/// The contacts that are held, and that part by more than a hop where none is held. Between surfaces that turn
+/// by little from one to the next, what is held would stop all that slides along them.
+fn leaving(
+    places: &Places,
+    before: &[DVec3],
+    (held, hop): (&[bool], &[f64]),
+    (target, given): (&[f64], &[f64]),
+    enough: f64,
+) -> Vec<usize> {
+    let joined = &places.joined;
+    let pulls = |&k: &usize| held[k] && given[k] * places.yielding(k) < -hop[k];
+    let mut leaving: Vec<usize> = (0..given.len()).filter(pulls).collect();
+    if leaving.is_empty() {
+        return leaving;
+    }
+    let mut free = before.to_vec();
+    let missing = |k: usize| target[k] - joined[k].opening(before);
+    let missing: Vec<f64> = (0..given.len()).map(missing).collect();
+    let known = Known {
+        enough,
+        ..Known::default()
+    };
+    project_with(joined, &places.inverse_mass, &mut free, &missing, known);
+    leaving.retain(|&k| joined[k].opening(&free) > hop[k]);
+    leaving
 }
