@@ -101,7 +101,7 @@ mod test_random;
 mod world;
 
 pub use aabb::Aabb;
-pub use body::Body;
+pub use body::{Body, Turn};
 pub use bvh::{Bvh, RayHit};
 pub use clock::{ClockError, FixedStep};
 pub use collide::Feature;

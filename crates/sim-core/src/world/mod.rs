@@ -24,6 +24,7 @@ mod separate;
 mod state;
 mod stepping;
 mod system;
+mod turning;
 #[cfg(test)]
 mod tests;
 
@@ -170,6 +171,9 @@ impl World {
         error::check_friction(index, body.friction)?;
         let shape = body.shape.map(|shape| error::check_shape(index, shape));
         let shape = shape.transpose()?;
+        if let Some(turn) = body.turn {
+            self.add_turn(index, turn, (body.mass, shape.as_ref()))?;
+        }
         self.current.push(body.position, body.velocity);
         self.previous.push(body.position, body.velocity);
         self.bodies.push(
@@ -330,7 +334,7 @@ impl World {
         let mut near = self.bodies.near_pairs(at, |_| 0.0);
         let known = self.overlapping();
         near.retain(|&(i, j)| {
-            known.binary_search(&(i, j)).is_err() && self.bodies.meet_at(i, j, at[j] - at[i])
+            known.binary_search(&(i, j)).is_err() && self.bodies.meet_in(&self.current, i, j)
         });
         near
     }

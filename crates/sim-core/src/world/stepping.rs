@@ -19,6 +19,7 @@ use super::{
 };
 use glam::DVec3;
 
+use crate::rotation::FlightError;
 use crate::integrate::{Failure, Method, Scratch, Step, Watch, ballistic, stability};
 
 /// Bodies in a block: some 200 bytes each for state, acceleration and a few stages fill about
@@ -448,6 +449,7 @@ impl World {
                 method,
                 stable_dt,
             },
+            Cause::Turning(error) => StepError::Turning { body, step, error },
             Cause::Failure(Failure::NotConverged { iterations, .. }) => StepError::NotConverged {
                 body,
                 step,
@@ -542,4 +544,6 @@ pub(super) enum Cause {
         stable_dt: f64,
     },
     Failure(Failure),
+    /// A rotation that cannot be followed.
+    Turning(FlightError),
 }

@@ -37,7 +37,8 @@ pub(super) struct Gap {
     pub(super) near: f64,
     /// They are apart for so long, s.
     pub(super) lasts: f64,
-    /// Whether all of them part along the direction that tells so.
+    /// Whether the nearest points part along the direction that tells so, and fast enough beside what is near
+    /// them for this to be followed.
     pub(super) opens: bool,
     pub(super) normal: DVec3,
     pub(super) points: [DVec3; 2],
@@ -136,6 +137,9 @@ impl View {
         let bend = self.first.second * far_a + self.second.second * far_b;
         let third = self.first.third * far_a + self.second.third * far_b;
         let heights = |n: DVec3, points: &[DVec3; 3]| points.map(|p| n.dot(p));
+        let [at_a, at_b] = pair.points;
+        let parting = self.velocity + moves(self.second.spin, at_b - self.offset)
+            - moves(self.first.spin, at_a);
         // How long a unit vector keeps them apart, and whether they part along it; 0 as soon as that is
         // known to be no longer than what there is.
         let lasts_along = |n: DVec3, than: f64, is_last: bool| {
@@ -143,7 +147,7 @@ impl View {
             let (speeds_a, speeds_b) = (heights(n, &va), heights(n, &vb));
             let (bends_a, bends_b) = (heights(n, &ca), heights(n, &cb));
             let q = n.dot(self.acceleration) - bend - 64.0 * UNIT * margin.bend;
-            let (mut lasts, mut opens) = (f64::INFINITY, true);
+            let (mut lasts, mut closing) = (f64::INFINITY, 0.0_f64);
             for (i, j) in PAIRS {
                 let s = high[j] - low[i] - radius - 32.0 * UNIT * margin.size;
                 if s <= 0.0 {
@@ -151,7 +155,12 @@ impl View {
                 }
                 let w = speeds_b[j] - speeds_a[i] - 32.0 * UNIT * margin.speed;
                 let c = bends_b[j] - bends_a[i] - 64.0 * UNIT * margin.bend;
-                opens &= w >= 0.0;
+                if s <= 4.0 * gap.near {
+                    closing = closing.max(-w);
+                }
+                // What comes from afar stops where there is room for another rounding.
+                let room = HALT * UNIT * margin.size;
+                let s = if s > room { s - room } else { s };
                 let mut until = root(s, w, q.max(c - third * self.left / 3.0));
                 if is_last && until < self.left.min(lasts) {
                     until = longer(until, s, w, [c, third], self.left);
@@ -161,7 +170,8 @@ impl View {
                     return (0.0, false);
                 }
             }
-            (lasts, opens)
+            let parting = n.dot(parting) - 32.0 * UNIT * margin.speed;
+            (lasts, parting >= FOLLOWED * closing)
         };
         let mut along = |direction: DVec3| -> f64 {
             // Also where squares of lengths would be no numbers.
@@ -234,6 +244,13 @@ impl View {
         refined(gap)
     }
 }
+
+/// Roundings that are left of a gap where shapes that close stop, beside those that certificates keep.
+const HALT: f64 = 64.0;
+
+/// Nearest points that part by less than this beside the speed at which corners near them close are in
+/// contact: to follow them would take as many certificates as this is small.
+const FOLLOWED: f64 = 1.0 / 1024.0;
 
 /// Corners of both, those next to each other in no order apart, as most directions fail early.
 const PAIRS: [(usize, usize); 9] = [

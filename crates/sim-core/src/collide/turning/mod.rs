@@ -17,6 +17,7 @@
 //! All bounds are relative: no length or time is in here.
 
 mod certificate;
+mod contact_set;
 mod nearest;
 mod pieces;
 mod view;
@@ -28,6 +29,7 @@ use glam::{DQuat, DVec3};
 
 use crate::{Bvh, rotation::Flight};
 use certificate::Gap;
+pub use contact_set::{ContactPoint, features_within};
 use pieces::{Boxed, Item, Points};
 use view::View;
 

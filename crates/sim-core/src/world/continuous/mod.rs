@@ -48,6 +48,8 @@ mod tallies;
 #[cfg(test)]
 mod tests;
 mod trajectory;
+mod turning_response;
+mod turning_search;
 mod velocity_solve;
 mod view;
 
@@ -65,6 +67,7 @@ use position_correction::Correction;
 use solver::ContactSolver;
 use tallies::Tallies;
 use trajectory::Trajectories;
+use turning_response::TurningRest;
 
 /// What a step with continuous collision needs beside the state; empty while there is none.
 #[derive(Clone, Debug, Default)]
@@ -84,6 +87,8 @@ pub(super) struct Continuous {
     contacts_before: ContactSet,
     /// Pairs in overlap that move as one in this step.
     held: Vec<(usize, usize)>,
+    /// Turning bodies in contact in this step.
+    turning: TurningRest,
     /// What bundling has changed in the step.
     pub(super) bundled: Bundled,
 }
@@ -136,6 +141,8 @@ impl World {
         let continuous = &mut self.continuous;
         let is_placed = mem::take(&mut continuous.placed);
         continuous.paths.begin(&scene);
+        continuous.paths.begin_turning(&scene)?;
+        continuous.turning.begin(scene.bodies.turners.body.len());
         continuous.tallies.clear();
         let mut events = EventLoop {
             solver: ContactSolver {
@@ -148,6 +155,7 @@ impl World {
                 near: &mut continuous.near,
                 visited: &mut continuous.visited,
                 bundled: &mut continuous.bundled,
+                turning: &mut continuous.turning,
             },
             queue: &mut continuous.queue,
             record: &mut self.record,
