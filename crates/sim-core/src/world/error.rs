@@ -72,6 +72,18 @@ pub enum WorldError {
         /// Why.
         error: crate::InertiaError,
     },
+    /// A body without a rotation.
+    #[error("body {body} does not turn: add it with `turn`")]
+    DoesNotTurn {
+        /// Index of the body.
+        body: usize,
+    },
+    /// A mass that leaves the inertia of a body that turns unknown.
+    #[error("body {body} turns: its mass stays finite, or infinite, as it was added")]
+    TurningMass {
+        /// Index of the body.
+        body: usize,
+    },
     /// A half-space that is to turn.
     #[error("body {body} is a half-space, which cannot turn")]
     TurningHalfSpace {
@@ -160,6 +172,14 @@ pub enum StepError {
         /// Where forces get stiffer still on a stable way, a run with this `dt` says so in its turn.
         stable_dt: f64,
     },
+    /// A body that turns in a discrete mode.
+    #[error("step {step}: body {body} turns, which needs continuous collisions")]
+    TurnsDiscretely {
+        /// Index of the body.
+        body: usize,
+        /// The step that failed, from 1.
+        step: u64,
+    },
     /// A body turns too fast to be followed.
     #[error("step {step}: body {body} cannot be turned: {error}")]
     Turning {
@@ -240,6 +260,7 @@ impl StepError {
             | StepError::TooManySteps { body, .. }
             | StepError::Squeezed { body, .. }
             | StepError::Turning { body, .. }
+            | StepError::TurnsDiscretely { body, .. }
             | StepError::TooManyImpacts { body, .. } => body,
         }
     }

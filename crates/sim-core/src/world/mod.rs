@@ -25,6 +25,7 @@ mod state;
 mod stepping;
 mod system;
 mod turning;
+mod turning_start;
 #[cfg(test)]
 mod tests;
 
@@ -218,10 +219,15 @@ impl World {
     /// Lets bodies that meet bounce, and those that stay in contact be where contact lets them be.
     fn collide(&mut self) -> Result<(), (usize, Cause)> {
         if self.bodies.solid.len() < 2 {
-            return Ok(());
+            return self.turn_freely();
         }
         match self.settings.collision {
             Collision::Naive | Collision::Bvh => {
+                let mut turning = self.bodies.turners.body.iter();
+                if let Some(&body) = turning.find(|&&body| self.bodies.tumbles(body)) {
+                    return Err((body, Cause::TurnsDiscretely));
+                }
+                self.turn_freely()?;
                 self.collide_discretely();
                 Ok(())
             }
@@ -382,6 +388,7 @@ impl World {
     pub fn set_mass(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_mass(body, mass)?;
+        self.scale_inertia(body, mass)?;
         self.forget_contacts_of(body);
         self.bodies.mass[body] = mass;
         // Immovable bodies may be in each other.

@@ -449,6 +449,7 @@ impl World {
                 method,
                 stable_dt,
             },
+            Cause::TurnsDiscretely => StepError::TurnsDiscretely { body, step },
             Cause::Turning(error) => StepError::Turning { body, step, error },
             Cause::Failure(Failure::NotConverged { iterations, .. }) => StepError::NotConverged {
                 body,
@@ -546,4 +547,6 @@ pub(super) enum Cause {
     Failure(Failure),
     /// A rotation that cannot be followed.
     Turning(FlightError),
+    /// A turning body among others in a discrete mode.
+    TurnsDiscretely,
 }

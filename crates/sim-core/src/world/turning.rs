@@ -9,6 +9,7 @@ use super::{
     bodies::Bodies,
     error,
     state::{State, Turned},
+    stepping::Cause,
 };
 use crate::{
     Extent, Inertia, Shape, Turn,
@@ -17,7 +18,7 @@ use crate::{
         turning::{Figure, Moving, Turning},
     },
     impulse::arms::{Twist, Yielding},
-    rotation,
+    rotation::{self, Flight},
 };
 
 /// What the bodies that turn are.
@@ -118,11 +119,19 @@ impl Bodies {
         if !self.pair_tumbles(i, j) {
             return self.meet_at(i, j, state.position[j] - state.position[i]);
         }
+        let placed = |body: usize| (state.position[body], self.rotation_in(state, body));
+        self.meet_placed((i, placed(i)), (j, placed(j)))
+    }
+
+    /// Whether two bodies meet at their places and turned as told, by the exact test.
+    pub(super) fn meet_placed(
+        &self,
+        (i, (x, first)): (usize, (DVec3, DQuat)),
+        (j, (y, second)): (usize, (DVec3, DQuat)),
+    ) -> bool {
         self.need_bvh(i);
         self.need_bvh(j);
-        let (first, second) = (self.rotation_in(state, i), self.rotation_in(state, j));
-        let origins = (self.origin_in(state, i), self.origin_in(state, j));
-        let between = origins.1 - origins.0;
+        let between = (y - second * self.centre_of(j)) - (x - first * self.centre_of(i));
         match (self.shape(i), self.shape(j)) {
             (Some(Shape::Mesh(_)), Some(Shape::Mesh(_))) => {
                 let (Some(a), Some(b)) = (self.bvh(i), self.bvh(j)) else {
@@ -217,6 +226,16 @@ impl Bodies {
     }
 }
 
+impl Turned {
+    /// With an angular velocity in the world, rad/s.
+    fn spinning(inertia: &Inertia, rotation: DQuat, spin: DVec3) -> Turned {
+        Turned {
+            rotation,
+            momentum: rotation * (inertia.moments() * (rotation.inverse() * spin)),
+        }
+    }
+}
+
 impl World {
     /// Adds what turns of a body that is about to be the next one.
     pub(super) fn add_turn(
@@ -259,14 +278,93 @@ impl World {
             Some(Shape::HalfSpace { .. }) | None => 0.0,
         };
         let rotation = (turn.rotation.normalize() * inertia.axes()).normalize();
-        let inside = inertia.moments() * (rotation.inverse() * turn.spin);
-        let turned = Turned {
-            rotation,
-            momentum: rotation * inside,
-        };
+        let turned = Turned::spinning(&inertia, rotation, turn.spin);
         self.current.turned.push(turned);
         self.previous.turned.push(turned);
         self.bodies.turners.push(body, inertia, torque, radius);
+        Ok(())
+    }
+
+    /// The bodies that turn.
+    pub(crate) fn turning_bodies(&self) -> impl Iterator<Item = usize> + '_ {
+        self.bodies.turners.body.iter().copied()
+    }
+
+    /// Turns all bodies that do as if nothing met.
+    pub(super) fn turn_freely(&mut self) -> Result<(), (usize, Cause)> {
+        let Turners {
+            body,
+            inertia,
+            torque,
+            ..
+        } = &self.bodies.turners;
+        let dt = self.settings.dt;
+        for (slot, &body) in body.iter().enumerate() {
+            let Turned { rotation, momentum } = self.previous.turned[slot];
+            let moments = inertia[slot].moments();
+            let flight = Flight::new(moments, rotation, momentum, torque[slot], dt)
+                .map_err(|error| (body, Cause::Turning(error)))?;
+            self.current.turned[slot] = Turned {
+                rotation: flight.rotation_at(dt),
+                momentum: flight.momentum_at(dt),
+            };
+        }
+        Ok(())
+    }
+
+    /// Turns a body's shape as given, a unit quaternion; it keeps its spin.
+    pub fn set_rotation(&mut self, body: usize, rotation: DQuat) -> Result<(), WorldError> {
+        self.check_body(body)?;
+        if !rotation.is_finite() || !rotation.is_normalized() {
+            return Err(WorldError::Rotation { body });
+        }
+        let slot = self.slot_of(body)?;
+        let inertia = self.bodies.turners.inertia[slot];
+        let spin = self.spin(body);
+        let rotation = (rotation.normalize() * inertia.axes()).normalize();
+        let turned = Turned::spinning(&inertia, rotation, spin);
+        self.current.turned[slot] = turned;
+        self.previous.turned[slot] = turned;
+        self.forget_contacts_of(body);
+        self.note_placed(body);
+        Ok(())
+    }
+
+    /// Sets the angular velocity of a body that turns, in the world, rad/s.
+    pub fn set_spin(&mut self, body: usize, spin: DVec3) -> Result<(), WorldError> {
+        self.check_body(body)?;
+        error::check_vector(body, "spin", spin)?;
+        let slot = self.slot_of(body)?;
+        let inertia = self.bodies.turners.inertia[slot];
+        let rotation = self.current.turned[slot].rotation;
+        self.current.turned[slot] = Turned::spinning(&inertia, rotation, spin);
+        Ok(())
+    }
+
+    fn slot_of(&self, body: usize) -> Result<usize, WorldError> {
+        let slot = self.bodies.turners.slot(body);
+        slot.ok_or(WorldError::DoesNotTurn { body })
+    }
+
+    /// Gives a body that turns the inertia of another mass, with its spin.
+    pub(super) fn scale_inertia(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
+        let Some(slot) = self.bodies.turners.slot(body) else {
+            return Ok(());
+        };
+        let ratio = mass / self.bodies.mass[body];
+        if !(ratio.is_finite() && ratio > 0.0) {
+            return match mass == self.bodies.mass[body] {
+                true => Ok(()),
+                false => Err(WorldError::TurningMass { body }),
+            };
+        }
+        let old = self.bodies.turners.inertia[slot];
+        let new = Inertia::new(ratio * old.moments(), old.axes(), old.centre());
+        self.bodies.turners.inertia[slot] =
+            new.map_err(|error| WorldError::Inertia { body, error })?;
+        for state in [&mut self.current, &mut self.previous] {
+            state.turned[slot].momentum *= ratio;
+        }
         Ok(())
     }
 

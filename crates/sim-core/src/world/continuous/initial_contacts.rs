@@ -47,6 +47,7 @@ impl World {
         if !self.continuous.placed || self.overlaps.pairs.is_empty() {
             return;
         }
+        self.part_turning();
         let at = self.previous.position.clone();
         let layout = self.layout();
         let pairs = self.overlaps.pairs.iter();

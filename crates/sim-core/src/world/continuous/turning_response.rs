@@ -38,7 +38,7 @@ const REACH: f64 = 8.0;
 /// Least gap from which bodies bounce, in the same: where those stop that come from afar.
 const LEAST_ROOM: f64 = 0.75;
 /// Gap at which bodies that drift are kept, in the same.
-const ROOM: f64 = 2.0;
+const ROOM: f64 = 32.0;
 /// Impacts of a turning body in a step after which it drifts, if its impacts lose something.
 const MANY_IMPACTS: u32 = 32;
 /// The same if they lose nothing.
@@ -89,6 +89,15 @@ struct Touching {
     room: f64,
 }
 
+/// What becomes of an impact.
+enum TurningOutcome {
+    Bounce,
+    /// Bodies lose the speed at which they close, and stay in contact.
+    Stop,
+    /// They stay in contact, as they were.
+    Rest,
+}
+
 impl TurningRest {
     /// Begins a step.
     pub(super) fn begin(&mut self, slots: usize) {
@@ -136,17 +145,22 @@ impl EventLoop<'_> {
         let mut found: Vec<Vec<Touching>> = Vec::new();
         for event in &turning {
             let mut touching = self.solver.touching(event, time)?;
-            self.solver.make_room(event, &mut touching);
+            self.solver.make_room(event, &mut touching, time)?;
             found.push(touching);
         }
-        let (mut bouncing, mut resting) = (Vec::new(), Vec::new());
+        let (mut bouncing, mut stopped, mut resting) = (Vec::new(), Vec::new(), Vec::new());
         for (event, touching) in turning.iter().zip(found) {
-            match self.solver.bounces_off(event, &touching, time)? {
-                true => bouncing.push((event, touching)),
-                false => resting.push(touching),
+            match self.solver.outcome(event, &touching, time)? {
+                TurningOutcome::Bounce => bouncing.push((event, touching)),
+                TurningOutcome::Stop => {
+                    stopped.push((event, touching.clone()));
+                    resting.push(touching);
+                }
+                TurningOutcome::Rest => resting.push(touching),
             }
         }
-        self.bounce_turning(&bouncing, time)?;
+        self.bounce_turning(&bouncing, None, time)?;
+        self.bounce_turning(&stopped, Some(0.0), time)?;
         let seen: Vec<usize> = turning
             .iter()
             .flat_map(|event| [event.bodies.0, event.bodies.1])
@@ -160,10 +174,11 @@ impl EventLoop<'_> {
         Ok(())
     }
 
-    /// Lets bodies bounce, those that impacts tie together at once.
+    /// Lets bodies bounce, those that impacts tie together at once: with a restitution, or the least of all.
     fn bounce_turning(
         &mut self,
         bouncing: &[(&Event, Vec<Touching>)],
+        restitution: Option<f64>,
         time: f64,
     ) -> Result<(), (usize, Cause)> {
         if bouncing.is_empty() {
@@ -190,7 +205,7 @@ impl EventLoop<'_> {
         for tied in ties.chunk_by(|a, b| a.0 == b.0) {
             let tied: Vec<&(&Event, Vec<Touching>)> =
                 tied.iter().map(|&(_, k)| &bouncing[k]).collect();
-            self.bounce_tied(&tied, time)?;
+            self.bounce_tied(&tied, restitution, time)?;
         }
         Ok(())
     }
@@ -198,17 +213,17 @@ impl EventLoop<'_> {
     fn bounce_tied(
         &mut self,
         tied: &[&(&Event, Vec<Touching>)],
+        restitution: Option<f64>,
         time: f64,
     ) -> Result<(), (usize, Cause)> {
         let scene = self.solver.scene;
-        let restitution = tied
-            .iter()
-            .map(|(event, _)| {
-                scene
-                    .bodies
-                    .pair_restitution(event.bodies.0, event.bodies.1)
-            })
-            .fold(1.0, f64::min);
+        let least = || {
+            let pairs = tied.iter().map(|(event, _)| event.bodies);
+            pairs
+                .map(|(i, j)| scene.bodies.pair_restitution(i, j))
+                .fold(1.0, f64::min)
+        };
+        let restitution = restitution.unwrap_or_else(least);
         let touching: Vec<Touching> = tied.iter().flat_map(|(_, all)| all).copied().collect();
         let mut island = self.solver.gather(&touching, time)?;
         let before = island.twists.clone();
@@ -412,28 +427,63 @@ impl ContactSolver<'_> {
             .collect())
     }
 
-    /// Moves bodies apart that are nearer than a search from there can tell from a contact: by a rounding.
-    fn make_room(&mut self, event: &Event, touching: &mut [Touching]) {
+    /// Moves bodies apart that are nearer than a search from there can tell from a contact: by a rounding,
+    /// where others leave room for it.
+    fn make_room(
+        &mut self,
+        event: &Event,
+        touching: &mut [Touching],
+        time: f64,
+    ) -> Result<(), (usize, Cause)> {
         let nearest = touching.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
         let Some(&Touching { gap, normal, .. }) = nearest else {
-            return;
+            return Ok(());
         };
         let missing = LEAST_ROOM * event.gap - gap;
-        if missing > 0.0 {
-            self.move_apart(event.bodies, missing * normal);
-            for other in touching {
-                other.gap += missing * other.normal.dot(normal);
+        if missing <= 0.0 {
+            return Ok(());
+        }
+        let (i, j) = event.bodies;
+        let before = [i, j].map(|body| self.paths.start.position[body]);
+        self.move_apart(event.bodies, missing * normal);
+        for body in [i, j] {
+            if self.scene.bodies.is_movable(body) && self.meets_others(body, time)? {
+                self.paths.start.position[i] = before[0];
+                self.paths.start.position[j] = before[1];
+                return Ok(());
             }
         }
+        for other in touching {
+            other.gap += missing * other.normal.dot(normal);
+        }
+        Ok(())
     }
 
-    /// Whether bodies part after an impact, or stay in contact.
-    fn bounces_off(
+    /// Whether a body meets another one at a time, by the exact test.
+    fn meets_others(&mut self, body: usize, time: f64) -> Result<bool, (usize, Cause)> {
+        let mut partners = mem::take(&mut self.near.partners);
+        partners.clear();
+        let broad = &self.near.broad;
+        broad.each_partner(body, |other| partners.push(other));
+        let own = (body, (self.place_at(body, time)?, self.rotation_at(body, time)));
+        let mut meets = false;
+        for &other in &partners {
+            if self.scene.may_collide(body.min(other), body.max(other)) {
+                let place = (self.place_at(other, time)?, self.rotation_at(other, time));
+                meets |= self.scene.bodies.meet_placed(own, (other, place));
+            }
+        }
+        self.near.partners = partners;
+        Ok(meets)
+    }
+
+    /// What becomes of an impact.
+    fn outcome(
         &mut self,
         event: &Event,
         touching: &[Touching],
         time: f64,
-    ) -> Result<bool, (usize, Cause)> {
+    ) -> Result<TurningOutcome, (usize, Cause)> {
         let island = self.gather(touching, time)?;
         let fastest = island
             .contacts
@@ -441,7 +491,7 @@ impl ContactSolver<'_> {
             .map(|contact| (-contact.opening(&island.twists), contact.normal))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         let Some((closing, normal)) = fastest else {
-            return Ok(false);
+            return Ok(TurningOutcome::Rest);
         };
         let (i, j) = event.bodies;
         let mut most = 0;
@@ -460,7 +510,17 @@ impl ContactSolver<'_> {
         };
         let applied = &self.paths.applied_acceleration;
         let load_speed = self.scene.settings.dt * (applied[i] - applied[j]).dot(normal);
-        Ok(most <= many && self.view().bounces(((i, j), normal), closing, load_speed))
+        let pull = applied[i].dot(normal).abs().max(applied[j].dot(normal).abs());
+        // What has fallen through the room that bodies are kept at is no impact.
+        let fallen = libm::sqrt(8.0 * ROOM * event.gap * pull);
+        let unfelt = self.view().unfelt(load_speed) + fallen;
+        Ok(
+            match most <= many && self.view().bounces(((i, j), normal), closing, load_speed) {
+                true => TurningOutcome::Bounce,
+                false if closing > unfelt => TurningOutcome::Stop,
+                false => TurningOutcome::Rest,
+            },
+        )
     }
 
     /// Bodies of contacts as they move at a time.
@@ -593,6 +653,59 @@ impl ContactSolver<'_> {
         Ok(touching)
     }
 
+    /// Whether a body has met so much in a drift that it stays where it is.
+    fn is_stopped(&self, body: usize) -> bool {
+        let slot = self.scene.bodies.turners.slot(body);
+        slot.is_some_and(|slot| self.turning.rounds[slot] > MANY_ROUNDS)
+    }
+
+    /// Adds the contacts that bodies keep which do not turn, and whom turning ones push: they give on what
+    /// they get.
+    fn add_kept_contacts(
+        &mut self,
+        touching: &mut Vec<Touching>,
+        time: f64,
+        restarted: &mut Vec<usize>,
+    ) -> Result<(), (usize, Cause)> {
+        let all = self.scene.bodies;
+        let mut bodies: Vec<usize> = Vec::new();
+        let mut reach = |bodies: &mut Vec<usize>, (i, j): (usize, usize)| {
+            for body in [i, j] {
+                if all.is_movable(body) && !all.tumbles(body) && !bodies.contains(&body) {
+                    bodies.push(body);
+                }
+            }
+        };
+        for touching in touching.iter() {
+            reach(&mut bodies, touching.bodies);
+        }
+        let mut known: Vec<u32> = Vec::new();
+        let mut next = 0;
+        while let Some(&body) = bodies.get(next) {
+            next += 1;
+            for &index in self.contacts.of_body(body) {
+                if known.contains(&index) {
+                    continue;
+                }
+                known.push(index);
+                let constraint = &self.contacts.all()[index as usize];
+                reach(&mut bodies, constraint.bodies);
+                touching.push(Touching {
+                    bodies: constraint.bodies,
+                    arms: (DVec3::ZERO, DVec3::ZERO),
+                    normal: constraint.normal,
+                    owner: 0,
+                    gap: 0.0,
+                    room: 0.0,
+                });
+            }
+        }
+        for body in bodies {
+            self.restart(body, time, restarted)?;
+        }
+        Ok(())
+    }
+
     /// Lets bodies that touch, and those that drift and touch them, drift for the rest of the step.
     fn drift_all(
         &mut self,
@@ -631,9 +744,11 @@ impl ContactSolver<'_> {
             self.restart(body, time, restarted)?;
             self.end_drift(body, time);
         }
-        seeds.extend(&bodies);
         let left = self.scene.settings.dt - time;
-        let touching = self.known_contacts(&bodies, time)?;
+        let mut touching = self.known_contacts(&bodies, time)?;
+        self.add_kept_contacts(&mut touching, time, restarted)?;
+        let tied = touching.iter().flat_map(|touching| [touching.bodies.0, touching.bodies.1]);
+        seeds.extend(tied.chain(bodies.iter().copied()));
         let mut island = self.gather(&touching, time)?;
         let mut before: Vec<(usize, usize, Before)> = Vec::new();
         for (place, &body) in island.bodies.iter().enumerate() {
@@ -647,7 +762,7 @@ impl ContactSolver<'_> {
             let stagger = self.paths.velocity_stagger;
             let pull = self.view().motion().acceleration_there(body);
             let twist = &mut island.twists[place];
-            if self.turning.rounds[slot] > MANY_ROUNDS {
+            if self.is_stopped(body) {
                 // It stays where it is for what is left, and is only pushed.
                 *twist = Twist::default();
                 self.paths.start.turned[slot].momentum = DVec3::ZERO;
@@ -664,7 +779,7 @@ impl ContactSolver<'_> {
                     momentum,
                 },
             ));
-            if self.turning.rounds[slot] <= MANY_ROUNDS {
+            if !self.is_stopped(body) {
                 twist.velocity += left * pull;
                 let torque = all.turners.torque[slot];
                 self.paths.start.turned[slot].momentum += left * torque;
@@ -676,7 +791,12 @@ impl ContactSolver<'_> {
             .iter()
             .zip(&touching)
             .map(|(arms, touching)| {
-                (touching.room - touching.gap) / left - arms.opening(&island.twists)
+                let (i, j) = touching.bodies;
+                let widened = match self.is_stopped(i) || self.is_stopped(j) {
+                    true => 0.0,
+                    false => (touching.room - touching.gap) / left,
+                };
+                widened - arms.opening(&island.twists)
             })
             .collect();
         let given = arms::multipliers(&island.contacts, &island.yielding, &wanted);

@@ -29,6 +29,9 @@ impl View<'_> {
         (i, j): (usize, usize),
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
+        if self.stands(i) && self.stands(j) {
+            return Ok(None);
+        }
         let start = self.paths.since[i].max(self.paths.since[j]);
         let end = self.motion().horizon(i).min(self.motion().horizon(j));
         let halvings = match self.is_bent(i) || self.is_bent(j) {
@@ -36,6 +39,19 @@ impl View<'_> {
             false => 0,
         };
         self.find_on_part((i, j), (start, end), halvings, probe)
+    }
+
+    /// Whether a body stays where and as it is.
+    fn stands(&self, body: usize) -> bool {
+        let slot = self.scene.bodies.turners.slot(body);
+        self.paths.start.velocity[body] == DVec3::ZERO
+            && self.paths.acceleration[body] == DVec3::ZERO
+            && !self.is_bent(body)
+            && slot.is_none_or(|slot| {
+                self.paths.start.turned[slot].momentum == DVec3::ZERO
+                    && (self.paths.drifting[slot]
+                        || self.scene.bodies.turners.torque[slot] == DVec3::ZERO)
+            })
     }
 
     /// Whether the trajectory of a body is no parabola.
