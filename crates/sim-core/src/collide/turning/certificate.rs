@@ -173,6 +173,72 @@ impl View {
             let parting = n.dot(parting) - 32.0 * UNIT * margin.speed;
             (lasts, parting >= FOLLOWED * closing)
         };
+        // The same along a unit vector that turns with one of both, as the normal of its face does.
+        let lasts_with = |owner: usize, n: DVec3, than: f64| {
+            let (own, other) = match owner {
+                0 => (&self.first, &self.second),
+                _ => (&self.second, &self.first),
+            };
+            // The other one's points as seen from the owner's centre of mass, and how they move against it.
+            let (points, speeds, bends, far, sign) = match owner {
+                0 => (second, vb, cb, far_b, 1.0),
+                _ => (
+                    first.map(|p| p - self.offset),
+                    va.map(|v| v - self.velocity),
+                    ca.map(|c| c - self.acceleration),
+                    far_a,
+                    -1.0,
+                ),
+            };
+            let face = match owner {
+                0 => heights(n, &first),
+                _ => heights(n, &arms),
+            };
+            let level = match owner {
+                0 => face[0].max(face[1]).max(face[2]),
+                _ => face[0].min(face[1]).min(face[2]),
+            };
+            let acceleration = self.acceleration.length();
+            let fastest = self.velocity.length()
+                + acceleration * self.left
+                + other.fastest * (far + radius);
+            let bent = acceleration + other.second * (far + radius);
+            let (mut lasts, mut parts) = (f64::INFINITY, true);
+            for k in 0..3 {
+                let (d, v) = (points[k], speeds[k]);
+                let s = sign * (n.dot(d) - level) - radius - 32.0 * UNIT * margin.size;
+                if s <= 0.0 {
+                    return (0.0, false);
+                }
+                let away = d.length() + fastest * self.left;
+                let speed = margin.speed + own.fastest * d.length();
+                let w = sign * n.dot(v - own.spin.cross(d)) - 32.0 * UNIT * speed;
+                let most = bent + 2.0 * own.fastest * fastest + own.second * away;
+                let turned = bends[k]
+                    - own.turning.cross(d)
+                    - 2.0 * own.spin.cross(v)
+                    - own.spin.cross(d).cross(own.spin);
+                let third = other.third * far
+                    + 3.0 * own.fastest * bent
+                    + 3.0 * own.second * fastest
+                    + own.third * away;
+                let c = sign * n.dot(turned) - 64.0 * UNIT * most;
+                if s <= 4.0 * gap.near {
+                    parts &= w >= 0.0;
+                }
+                let room = HALT * UNIT * margin.size;
+                let s = if s > room { s - room } else { s };
+                let mut until = root(s, w, (-most).max(c - third * self.left / 3.0));
+                if until < self.left {
+                    until = longer(until, s, w, [c, third], self.left);
+                }
+                lasts = lasts.min(until);
+                if lasts <= than {
+                    return (0.0, false);
+                }
+            }
+            (lasts, parts)
+        };
         let mut along = |direction: DVec3| -> f64 {
             // Also where squares of lengths would be no numbers.
             let scaled = direction / direction.abs().max_element();
@@ -237,6 +303,32 @@ impl View {
                 along(across - across.dot(side) / length * side);
             }
         }
+        // Where they nearly touch, also those that turn with what they belong to: what lies in a face, or tips
+        // over an edge, is kept apart by no direction at rest.
+        let mut along_with = |owner: usize, direction: DVec3| {
+            if let Some(n) = direction.try_normalize() {
+                let n = if n.dot(second[0] - first[0]) < 0.0 { -n } else { n };
+                let (lasts, opens) = lasts_with(owner, n, gap.lasts);
+                if lasts > gap.lasts {
+                    (gap.lasts, gap.opens, gap.normal) = (lasts, opens, n);
+                }
+            }
+        };
+        let is_near = distance <= NEARLY * gap.near;
+        for (owner, normal, sides, is_point, spin) in [
+            (0, normal_a, sides_a, a.is_point, self.first.spin),
+            (1, normal_b, sides_b, b.is_point, self.second.spin),
+        ] {
+            if is_near && !is_point && spin != DVec3::ZERO {
+                along_with(owner, normal);
+                for side in sides {
+                    along_with(owner, normal.cross(side));
+                }
+                for (side_a, side_b) in CROSSINGS.map(|(k, m)| (sides_a[k], sides_b[m])) {
+                    along_with(owner, side_a.cross(side_b));
+                }
+            }
+        }
         if gap.normal == DVec3::ZERO {
             let straight = (pair.points[1] - pair.points[0]).try_normalize();
             gap.normal = straight.unwrap_or(DVec3::ZERO);
@@ -244,6 +336,12 @@ impl View {
         refined(gap)
     }
 }
+
+/// Contacts nearer than this times what is one are looked at in frames that turn.
+const NEARLY: f64 = 1024.0;
+
+/// Sides of both.
+const CROSSINGS: [(usize, usize); 9] = PAIRS;
 
 /// Roundings that are left of a gap where shapes that close stop, beside those that certificates keep.
 const HALT: f64 = 64.0;
