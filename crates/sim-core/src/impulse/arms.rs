@@ -81,7 +81,12 @@ impl Arms {
 }
 
 /// Adds impulses (N s) to motions.
-pub(crate) fn push(contacts: &[Arms], yielding: &[Yielding], twists: &mut [Twist], impulse: &[f64]) {
+pub(crate) fn push(
+    contacts: &[Arms],
+    yielding: &[Yielding],
+    twists: &mut [Twist],
+    impulse: &[f64],
+) {
     for (contact, &given) in contacts.iter().zip(impulse) {
         if given != 0.0 {
             for (body, by) in contact.response(yielding) {

@@ -41,9 +41,7 @@ impl World {
         for state in [&self.current, &self.previous] {
             for turned in &state.turned {
                 let DQuat { x, y, z, w } = turned.rotation;
-                [x, y, z, w]
-                    .into_iter()
-                    .for_each(|part| hash.number(part));
+                [x, y, z, w].into_iter().for_each(|part| hash.number(part));
                 hash.vector(turned.momentum);
             }
         }

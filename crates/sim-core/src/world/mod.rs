@@ -24,10 +24,10 @@ mod separate;
 mod state;
 mod stepping;
 mod system;
-mod turning;
-mod turning_start;
 #[cfg(test)]
 mod tests;
+mod turning;
+mod turning_start;
 
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::RangeInclusive;

@@ -19,8 +19,8 @@ use super::{
 };
 use glam::DVec3;
 
-use crate::rotation::FlightError;
 use crate::integrate::{Failure, Method, Scratch, Step, Watch, ballistic, stability};
+use crate::rotation::FlightError;
 
 /// Bodies in a block: some 200 bytes each for state, acceleration and a few stages fill about
 /// the 32 KiB of a first cache.

@@ -89,7 +89,9 @@ impl Bodies {
         let first = self.moving(i, place(i), turning(i))?;
         let second = self.moving(j, place(j), turning(j))?;
         let touching = features_within(&first, &second, (0.0, most));
-        let normals = touching.iter().flat_map(|point| [point.normal, -point.normal]);
+        let normals = touching
+            .iter()
+            .flat_map(|point| [point.normal, -point.normal]);
         let line = self.line_apart(&state.position, (i, j));
         let mut tried: Vec<DVec3> = Vec::new();
         let mut least: Option<(DVec3, f64)> = None;

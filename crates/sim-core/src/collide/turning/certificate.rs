@@ -199,11 +199,10 @@ impl View {
                 _ => face[0].min(face[1]).min(face[2]),
             };
             let acceleration = self.acceleration.length();
-            let fastest = self.velocity.length()
-                + acceleration * self.left
-                + other.fastest * (far + radius);
+            let fastest =
+                self.velocity.length() + acceleration * self.left + other.fastest * (far + radius);
             let bent = acceleration + other.second * (far + radius);
-            let (mut lasts, mut parts) = (f64::INFINITY, true);
+            let (mut lasts, mut closing) = (f64::INFINITY, 0.0_f64);
             for k in 0..3 {
                 let (d, v) = (points[k], speeds[k]);
                 let s = sign * (n.dot(d) - level) - radius - 32.0 * UNIT * margin.size;
@@ -224,7 +223,7 @@ impl View {
                     + own.third * away;
                 let c = sign * n.dot(turned) - 64.0 * UNIT * most;
                 if s <= 4.0 * gap.near {
-                    parts &= w >= 0.0;
+                    closing = closing.max(-w);
                 }
                 let room = HALT * UNIT * margin.size;
                 let s = if s > room { s - room } else { s };
@@ -237,7 +236,8 @@ impl View {
                     return (0.0, false);
                 }
             }
-            (lasts, parts)
+            let parting = n.dot(parting) - 32.0 * UNIT * margin.speed;
+            (lasts, parting >= FOLLOWED * closing)
         };
         let mut along = |direction: DVec3| -> f64 {
             // Also where squares of lengths would be no numbers.
@@ -307,7 +307,11 @@ impl View {
         // over an edge, is kept apart by no direction at rest.
         let mut along_with = |owner: usize, direction: DVec3| {
             if let Some(n) = direction.try_normalize() {
-                let n = if n.dot(second[0] - first[0]) < 0.0 { -n } else { n };
+                let n = if n.dot(second[0] - first[0]) < 0.0 {
+                    -n
+                } else {
+                    n
+                };
                 let (lasts, opens) = lasts_with(owner, n, gap.lasts);
                 if lasts > gap.lasts {
                     (gap.lasts, gap.opens, gap.normal) = (lasts, opens, n);

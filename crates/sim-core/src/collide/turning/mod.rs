@@ -105,7 +105,7 @@ pub struct Effort {
 pub const NEAR: f64 = 128.0;
 
 /// No search looks at more pairs of triangles: it stops where it is, which is no later than a contact.
-const MOST: u32 = 1 << 20;
+const MOST: u32 = 1 << 16;
 
 /// The first contact within `duration`, s; `None` proves that there is none.
 ///

@@ -68,10 +68,13 @@ impl World {
                 self.contacts.insert(contact, &self.bodies);
             }
         }
-        let at = &self.previous.position;
         self.overlaps
-            .retain(|&(i, j)| self.bodies.meet_at(i, j, at[j] - at[i]));
+            .retain(|&(i, j)| self.bodies.meet_in(&self.previous, i, j));
         for (i, j) in self.overlaps.pairs.clone() {
+            // How deep what turns is in another body is not known.
+            if self.bodies.pair_tumbles(i, j) {
+                continue;
+            }
             let at = &self.previous.position;
             let out = self.layout().penetration(i, j, at[j] - at[i]);
             self.overlaps.note_depth((i, j), out.depth);

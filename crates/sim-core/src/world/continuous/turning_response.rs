@@ -132,7 +132,11 @@ impl EventLoop<'_> {
         let is_turning = |event: &Event| {
             event.kind == EventKind::Impact && bodies.pair_tumbles(event.bodies.0, event.bodies.1)
         };
-        let turning: Vec<Event> = group.iter().filter(|event| is_turning(event)).cloned().collect();
+        let turning: Vec<Event> = group
+            .iter()
+            .filter(|event| is_turning(event))
+            .cloned()
+            .collect();
         if turning.is_empty() {
             return Ok(());
         }
@@ -311,8 +315,7 @@ impl ArmIsland {
         let first = (mass(i), self.twists[i].velocity);
         let second = (mass(j), self.twists[j].velocity);
         let mut given = vec![0.0; self.contacts.len()];
-        if let Some(exchange) =
-            crate::impulse::between(first, second, contact.normal, restitution)
+        if let Some(exchange) = crate::impulse::between(first, second, contact.normal, restitution)
         {
             for (body, after) in [(i, exchange.after.0), (j, exchange.after.1)] {
                 if self.yielding[body].mass > 0.0 {
@@ -465,7 +468,10 @@ impl ContactSolver<'_> {
         partners.clear();
         let broad = &self.near.broad;
         broad.each_partner(body, |other| partners.push(other));
-        let own = (body, (self.place_at(body, time)?, self.rotation_at(body, time)));
+        let own = (
+            body,
+            (self.place_at(body, time)?, self.rotation_at(body, time)),
+        );
         let mut meets = false;
         for &other in &partners {
             if self.scene.may_collide(body.min(other), body.max(other)) {
@@ -510,7 +516,10 @@ impl ContactSolver<'_> {
         };
         let applied = &self.paths.applied_acceleration;
         let load_speed = self.scene.settings.dt * (applied[i] - applied[j]).dot(normal);
-        let pull = applied[i].dot(normal).abs().max(applied[j].dot(normal).abs());
+        let pull = applied[i]
+            .dot(normal)
+            .abs()
+            .max(applied[j].dot(normal).abs());
         // What has fallen through the room that bodies are kept at is no impact.
         let fallen = libm::sqrt(8.0 * ROOM * event.gap * pull);
         let unfelt = self.view().unfelt(load_speed) + fallen;
@@ -600,10 +609,7 @@ impl ContactSolver<'_> {
         let inverse = [i, j].map(|body| self.rotation_at(body, time).inverse());
         let contact = Anchored {
             bodies: touching.bodies,
-            points: [
-                inverse[0] * touching.arms.0,
-                inverse[1] * touching.arms.1,
-            ],
+            points: [inverse[0] * touching.arms.0, inverse[1] * touching.arms.1],
             normal: inverse[touching.owner] * touching.normal,
             owner: touching.owner,
             room: touching.room,
@@ -613,9 +619,8 @@ impl ContactSolver<'_> {
             known.bodies == contact.bodies
                 && known.owner == contact.owner
                 && known.normal.dot(contact.normal) > SAME_NORMAL
-                && (0..2).any(|k| {
-                    (known.points[k] - contact.points[k]).length() <= 4.0 * contact.room
-                })
+                && (0..2)
+                    .any(|k| (known.points[k] - contact.points[k]).length() <= 4.0 * contact.room)
         };
         self.turning.contacts.retain(|known| !is_same(known));
         self.turning.contacts.push(contact);
@@ -747,7 +752,9 @@ impl ContactSolver<'_> {
         let left = self.scene.settings.dt - time;
         let mut touching = self.known_contacts(&bodies, time)?;
         self.add_kept_contacts(&mut touching, time, restarted)?;
-        let tied = touching.iter().flat_map(|touching| [touching.bodies.0, touching.bodies.1]);
+        let tied = touching
+            .iter()
+            .flat_map(|touching| [touching.bodies.0, touching.bodies.1]);
         seeds.extend(tied.chain(bodies.iter().copied()));
         let mut island = self.gather(&touching, time)?;
         let mut before: Vec<(usize, usize, Before)> = Vec::new();

@@ -73,8 +73,7 @@ impl View<'_> {
             let at = |(x, v, a): Parabola, t: f64| x + t * (v + 0.5 * t * a);
             let off = |body: usize, parabola: Parabola, there: DVec3| {
                 let most = 4.0 * f64::EPSILON * there.abs().max_element();
-                self.is_bent(body)
-                    && (at(parabola, half - from) - there).abs().max_element() > most
+                self.is_bent(body) && (at(parabola, half - from) - there).abs().max_element() > most
             };
             let there = self.motion().motion_at(i, half, probe)?.0;
             let here = self.motion().motion_at(j, half, probe)?.0;
@@ -109,14 +108,14 @@ impl View<'_> {
             feature: None,
             face: None,
         };
-        let TurningTouch { near, .. } = touch;
+        let TurningTouch { near, distance, .. } = touch;
         // What is taken for a contact at the very end of the step is one of the next step's start.
         let time = (from + at).min(self.scene.settings.dt.next_down());
         Ok(Some(Event::impact(
             time,
             (i, j),
             contact,
-            near,
+            near.max(distance),
             &self.paths.version,
         )))
     }
@@ -163,11 +162,7 @@ impl View<'_> {
 
 impl super::super::bodies::Bodies {
     /// How a body turns by its flight, or stays as its shape is.
-    pub(super) fn turning_of<'a>(
-        &self,
-        body: usize,
-        flight: Option<&'a Flight>,
-    ) -> Turning<'a> {
+    pub(super) fn turning_of<'a>(&self, body: usize, flight: Option<&'a Flight>) -> Turning<'a> {
         match (flight, self.turners.slot(body)) {
             (Some(flight), Some(slot)) => {
                 Turning::Flight(flight, self.turners.inertia[slot].axes())
