@@ -99,7 +99,13 @@ impl View {
     }
 
     /// What is between two triangles, points or a plane, and how long it stays.
-    pub(super) fn pieces_apart(&self, a: &Points, b: &Points, only: Option<DVec3>) -> Gap {
+    pub(super) fn pieces_apart(
+        &self,
+        a: &Points,
+        b: &Points,
+        only: Option<DVec3>,
+        halt: f64,
+    ) -> Gap {
         let first = a.at;
         let arms = b.at.map(|p| self.turn * p);
         let second = arms.map(|p| self.offset + p);
@@ -159,7 +165,7 @@ impl View {
                     closing = closing.max(-w);
                 }
                 // What comes from afar stops where there is room for another rounding.
-                let room = HALT * UNIT * margin.size;
+                let room = halt * UNIT * margin.size;
                 let s = if s > room { s - room } else { s };
                 let mut until = root(s, w, q.max(c - third * self.left / 3.0));
                 if is_last && until < self.left.min(lasts) {
@@ -225,7 +231,7 @@ impl View {
                 if s <= 4.0 * gap.near {
                     closing = closing.max(-w);
                 }
-                let room = HALT * UNIT * margin.size;
+                let room = halt * UNIT * margin.size;
                 let s = if s > room { s - room } else { s };
                 let mut until = root(s, w, (-most).max(c - third * self.left / 3.0));
                 if until < self.left {
@@ -346,9 +352,6 @@ const NEARLY: f64 = 1024.0;
 
 /// Sides of both.
 const CROSSINGS: [(usize, usize); 9] = PAIRS;
-
-/// Roundings that are left of a gap where shapes that close stop, beside those that certificates keep.
-const HALT: f64 = 64.0;
 
 /// Nearest points that part by less than this beside the speed at which corners near them close are in
 /// contact: to follow them would take as many certificates as this is small.

@@ -166,6 +166,7 @@ impl World {
         events.find_all_impacts()?;
         events.record.enter(Phase::Respond);
         events.resolve_all()?;
+        events.go_on_turning();
         self.record.enter(Phase::Narrow);
         let mut correction = Correction {
             scene: &scene,

@@ -34,7 +34,7 @@ use crate::{
 };
 
 /// Features touch that are no farther apart than this times what is a contact.
-const REACH: f64 = 8.0;
+const REACH: f64 = 64.0;
 /// Least gap from which bodies bounce, in the same: where those stop that come from afar.
 const LEAST_ROOM: f64 = 0.75;
 /// Gap at which bodies that drift are kept, in the same.
@@ -54,6 +54,8 @@ pub(super) struct TurningRest {
     rounds: Vec<u32>,
     /// By slot, the motion before the drift, while there is one.
     before: Vec<Option<Before>>,
+    /// By slot, velocity and angular momentum with which a body goes on after the step that has stopped in it.
+    stopped: Vec<Option<(DVec3, DVec3)>>,
     /// What is known to touch.
     contacts: Vec<Anchored>,
 }
@@ -107,6 +109,8 @@ impl TurningRest {
         self.rounds.resize(slots, 0);
         self.before.clear();
         self.before.resize(slots, None);
+        self.stopped.clear();
+        self.stopped.resize(slots, None);
         self.contacts.clear();
     }
 
@@ -117,6 +121,25 @@ impl TurningRest {
 }
 
 impl EventLoop<'_> {
+    /// Gives bodies that have stopped in the step the motion with which they go on, unless they are pushed.
+    pub(super) fn go_on_turning(&mut self) {
+        let ContactSolver {
+            scene,
+            paths,
+            turning,
+            ..
+        } = &mut self.solver;
+        for (slot, stopped) in turning.stopped.iter().enumerate() {
+            let body = scene.bodies.turners.body[slot];
+            if let Some((velocity, momentum)) = *stopped
+                && paths.end.velocity[body] == DVec3::ZERO
+            {
+                paths.end.velocity[body] = velocity;
+                paths.end.turned[slot].momentum = momentum;
+            }
+        }
+    }
+
     /// Answers the impacts of turning bodies at a time, at which their trajectories start, and takes them
     /// from a group.
     pub(super) fn resolve_turning(
@@ -130,9 +153,11 @@ impl EventLoop<'_> {
             return Ok(());
         }
         let is_turning = |event: &Event| {
-            event.kind == EventKind::Impact && bodies.pair_tumbles(event.bodies.0, event.bodies.1)
+            event.kind != EventKind::ContactEnd
+                && event.bodies.0 != event.bodies.1
+                && bodies.pair_tumbles(event.bodies.0, event.bodies.1)
         };
-        let turning: Vec<Event> = group
+        let mut turning: Vec<Event> = group
             .iter()
             .filter(|event| is_turning(event))
             .cloned()
@@ -141,6 +166,7 @@ impl EventLoop<'_> {
             return Ok(());
         }
         group.retain(|event| !is_turning(event));
+        turning.retain(|event| !self.solver.goes_on(event));
         for event in &turning {
             self.solver.end_drift(event.bodies.0, time);
             self.solver.end_drift(event.bodies.1, time);
@@ -231,7 +257,8 @@ impl EventLoop<'_> {
         let touching: Vec<Touching> = tied.iter().flat_map(|(_, all)| all).copied().collect();
         let mut island = self.solver.gather(&touching, time)?;
         let before = island.twists.clone();
-        let given = match tied.len() == 1 && island.is_flat(&touching) {
+        let is_flat = tied.len() == 1 && island.is_flat(&touching);
+        let given = match is_flat {
             true => island.bounce_flat(restitution),
             false => arms::reflect(
                 &island.contacts,
@@ -240,7 +267,9 @@ impl EventLoop<'_> {
                 restitution,
             ),
         };
-        self.solver.put(&island, &given);
+        // Through the centres of mass nothing is turned.
+        let turning = if is_flat { &[][..] } else { &given };
+        self.solver.put(&island, turning);
         let mut first = 0;
         for (event, touching) in tied {
             let of_event = first..first + touching.len();
@@ -285,8 +314,7 @@ impl ArmIsland {
         let (i, j) = first.bodies;
         let is_still = self.twists[i].spin == DVec3::ZERO && self.twists[j].spin == DVec3::ZERO;
         let is_alike = self.contacts.iter().all(|contact| {
-            contact.bodies == first.bodies
-                && (contact.normal - normal).abs().max_element() <= 16.0 * f64::EPSILON
+            contact.bodies == first.bodies && (contact.normal - normal).length() <= SAME_PLACE
         });
         let over = |body: usize, arm: fn(&Touching) -> DVec3| {
             self.yielding[body].mass == 0.0 || {
@@ -354,6 +382,20 @@ fn is_over(points: &[DVec3], normal: DVec3) -> bool {
 const SAME_PLACE: f64 = 1e-12;
 
 impl ContactSolver<'_> {
+    /// Whether an event is no contact yet, and the search goes on from there; not for ever in a step.
+    fn goes_on(&mut self, event: &Event) -> bool {
+        let (i, j) = event.bodies;
+        if event.kind != EventKind::Horizon {
+            return false;
+        }
+        for body in [i, j] {
+            if let Some(slot) = self.scene.bodies.turners.slot(body) {
+                self.turning.rounds[slot] += 1;
+            }
+        }
+        !self.is_stopped(i) && !self.is_stopped(j)
+    }
+
     /// Ends the drift of a body at a time, at which its trajectory starts: it has of the change of its
     /// velocity what belongs to the part that is over.
     fn end_drift(&mut self, body: usize, time: f64) {
@@ -636,7 +678,12 @@ impl ContactSolver<'_> {
         for place in 0..self.turning.contacts.len() {
             let contact = self.turning.contacts[place];
             let (i, j) = contact.bodies;
-            if !bodies.contains(&i) && !bodies.contains(&j) {
+            // What has bounced off since goes its own way.
+            let is_off = |body: usize| {
+                let all = self.scene.bodies;
+                all.is_movable(body) && all.tumbles(body) && !bodies.contains(&body)
+            };
+            if !bodies.contains(&i) && !bodies.contains(&j) || is_off(i) || is_off(j) {
                 continue;
             }
             let rotations = [i, j].map(|body| self.rotation_at(body, time));
@@ -674,7 +721,7 @@ impl ContactSolver<'_> {
     ) -> Result<(), (usize, Cause)> {
         let all = self.scene.bodies;
         let mut bodies: Vec<usize> = Vec::new();
-        let mut reach = |bodies: &mut Vec<usize>, (i, j): (usize, usize)| {
+        let reach = |bodies: &mut Vec<usize>, (i, j): (usize, usize)| {
             for body in [i, j] {
                 if all.is_movable(body) && !all.tumbles(body) && !bodies.contains(&body) {
                     bodies.push(body);
@@ -770,7 +817,10 @@ impl ContactSolver<'_> {
             let pull = self.view().motion().acceleration_there(body);
             let twist = &mut island.twists[place];
             if self.is_stopped(body) {
-                // It stays where it is for what is left, and is only pushed.
+                // It stays where it is for what is left, and is only pushed. What it has, forces apart, it
+                // keeps for the next step.
+                let momentum = self.paths.start.turned[slot].momentum;
+                self.turning.stopped[slot].get_or_insert((twist.velocity, momentum));
                 *twist = Twist::default();
                 self.paths.start.turned[slot].momentum = DVec3::ZERO;
             } else {

@@ -6,11 +6,15 @@
 use glam::DVec3;
 
 use super::super::stepping::Cause;
-use super::{event::Event, trajectory::Probe, view::View};
+use super::{
+    event::{Event, EventKind},
+    trajectory::Probe,
+    view::View,
+};
 use crate::{
     collide::{
         Contact,
-        turning::{self, Turning, TurningTouch},
+        turning::{self, Care, Turning, TurningTouch},
     },
     rotation::Flight,
 };
@@ -96,7 +100,7 @@ impl View<'_> {
         let Some((a, b)) = a.zip(b) else {
             return Ok(None);
         };
-        let Some(touch) = turning::first_contact(&a, &b, to - from) else {
+        let Some(touch) = turning::first_contact_with(&a, &b, to - from, Care::TO_GO_ON).0 else {
             return Ok(None);
         };
         let at = touch.time;
@@ -111,13 +115,13 @@ impl View<'_> {
         let TurningTouch { near, distance, .. } = touch;
         // What is taken for a contact at the very end of the step is one of the next step's start.
         let time = (from + at).min(self.scene.settings.dt.next_down());
-        Ok(Some(Event::impact(
-            time,
-            (i, j),
-            contact,
-            near.max(distance),
-            &self.paths.version,
-        )))
+        let event = Event::impact(time, (i, j), contact, near, &self.paths.version);
+        // What has been looked at for long enough goes on from there.
+        let kind = match distance <= near {
+            true => EventKind::Impact,
+            false => EventKind::Horizon,
+        };
+        Ok(Some(Event { kind, ..event }))
     }
 
     /// The parabola that a body is on, or one that leads to where it is at the end of a part of the step.
