@@ -1,4 +1,6 @@
 //! Bodies that turn, against closed forms.
 
 mod flight;
+mod impacts;
+mod rest;
 mod times;

@@ -43,6 +43,7 @@ impl Scene {
                 force: body.force,
                 restitution: body.restitution,
                 friction: body.friction,
+                turn: None,
             });
             added.map_err(|error| self.world_error(Some(body), None, error))?;
         }

@@ -59,8 +59,9 @@
 //!
 //! # Limits
 //!
-//! - Bodies translate and do not turn. What turning needs is here by itself: [`Inertia`], [`rotation`]
-//!   and [`collide::turning`].
+//! - Bodies turn where they have a [`Turn`], in the continuous mode and without friction. In contact they drift, which
+//!   is of first order; what touches too often in a step stands still for the rest of it; overlaps of turning
+//!   bodies are passed through.
 //! - Ways that bend under forces are searched along chords. A graze shallower than a thousandth of
 //!   the smaller body may be missed within a step; never an overlap at its end.
 //! - In a heap whose contacts are solved at once, contacts close ahead of their time by up to a step,
@@ -101,7 +102,7 @@ mod test_random;
 mod world;
 
 pub use aabb::Aabb;
-pub use body::Body;
+pub use body::{Body, Turn};
 pub use bvh::{Bvh, RayHit};
 pub use clock::{ClockError, FixedStep};
 pub use collide::Feature;

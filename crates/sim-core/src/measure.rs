@@ -5,10 +5,30 @@ use glam::DVec3;
 use crate::World;
 
 impl World {
-    /// Kinetic energy of all bodies, J.
+    /// Kinetic energy of all bodies, J, with that of turning.
     pub fn kinetic_energy(&self) -> f64 {
-        self.movable()
+        let moving: f64 = self
+            .movable()
             .map(|i| 0.5 * self.mass(i) * self.velocity(i).length_squared())
+            .sum();
+        moving + self.turning_energy()
+    }
+
+    /// Kinetic energy of all bodies that is in how they turn about their centres of mass, J.
+    pub fn turning_energy(&self) -> f64 {
+        self.turning_bodies()
+            .filter(|&i| self.mass(i).is_finite())
+            .map(|i| 0.5 * self.angular_momentum(i).dot(self.spin(i)))
+            .sum()
+    }
+
+    /// Angular momentum of all bodies about a point, kg m²/s.
+    pub fn angular_momentum_about(&self, point: DVec3) -> DVec3 {
+        self.movable()
+            .map(|i| {
+                let arm = self.position(i) - point;
+                arm.cross(self.mass(i) * self.velocity(i)) + self.angular_momentum(i)
+            })
             .sum()
     }
 

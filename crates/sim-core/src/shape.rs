@@ -46,6 +46,19 @@ pub(crate) struct Extent {
     pub(crate) farthest: f64,
 }
 
+impl Extent {
+    /// Of a ball.
+    pub(crate) fn of_ball(radius: f64) -> Extent {
+        Extent {
+            low: DVec3::splat(-radius),
+            high: DVec3::splat(radius),
+            half: radius,
+            reach: DVec3::splat(radius),
+            farthest: radius,
+        }
+    }
+}
+
 impl Shape {
     pub(crate) fn extent(&self) -> Extent {
         match self {
@@ -61,13 +74,7 @@ impl Shape {
                     farthest: reach.max_element(),
                 }
             }
-            &Shape::Sphere { radius } => Extent {
-                low: DVec3::splat(-radius),
-                high: DVec3::splat(radius),
-                half: radius,
-                reach: DVec3::splat(radius),
-                farthest: radius,
-            },
+            &Shape::Sphere { radius } => Extent::of_ball(radius),
             Shape::HalfSpace { .. } => Extent {
                 half: f64::INFINITY,
                 ..Extent::default()

@@ -10,6 +10,7 @@
 //! so `j = -(1 + e) (v2 - v1)·n / ((1/m1 + 1/m2) n·n)` (Baraff 1997, "An introduction to
 //! physically based modeling: rigid body simulation II", eq. 8-18, without rotation).
 
+pub(crate) mod arms;
 mod complementarity;
 mod friction;
 mod together;

@@ -77,6 +77,9 @@ pub enum InertiaError {
         /// It, kg.
         mass: f64,
     },
+    /// There is no shape with an inside.
+    #[error("a body without a mesh or a ball has no moments of inertia: give its inertia")]
+    Shapeless,
     /// The radius is not one of a ball that can turn.
     #[error("a ball of radius {radius:e} m has no moment of inertia: give one")]
     Radius {

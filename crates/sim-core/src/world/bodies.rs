@@ -4,6 +4,7 @@ use alloc::{boxed::Box, collections::BTreeMap, sync::Arc, vec::Vec};
 use glam::DVec3;
 use once_cell::race::OnceBox;
 
+use super::turning::Turners;
 use crate::{
     Bvh, Extent, Mesh, Shape,
     collide::{self, Form, snap},
@@ -29,6 +30,8 @@ pub(super) struct Bodies {
     known_shapes: BTreeMap<ShapeKey, u32>,
     /// The bodies that have a shape.
     pub(super) solid: Vec<usize>,
+    /// What turns.
+    pub(super) turners: Turners,
 }
 
 /// A shape, shared by all bodies that have it, and its tree once one is needed.
@@ -208,9 +211,12 @@ impl Bodies {
         }
     }
 
-    /// Those of two bodies.
+    /// Those of two bodies of which none tumbles.
     #[inline]
     pub(super) fn forms(&self, i: usize, j: usize) -> Option<(Form<'_>, Form<'_>)> {
+        if self.pair_tumbles(i, j) {
+            return None;
+        }
         self.form(i).zip(self.form(j))
     }
 

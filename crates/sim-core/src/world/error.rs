@@ -58,6 +58,38 @@ pub enum WorldError {
         /// The value refused.
         value: DVec3,
     },
+    /// A rotation that is none.
+    #[error("rotation of body {body} must be a quaternion of unit length")]
+    Rotation {
+        /// Index of the body.
+        body: usize,
+    },
+    /// A body that cannot turn, as it has no inertia.
+    #[error("body {body} cannot turn: {error}")]
+    Inertia {
+        /// Index of the body.
+        body: usize,
+        /// Why.
+        error: crate::InertiaError,
+    },
+    /// A body without a rotation.
+    #[error("body {body} does not turn: add it with `turn`")]
+    DoesNotTurn {
+        /// Index of the body.
+        body: usize,
+    },
+    /// A mass that leaves the inertia of a body that turns unknown.
+    #[error("body {body} turns: its mass stays finite, or infinite, as it was added")]
+    TurningMass {
+        /// Index of the body.
+        body: usize,
+    },
+    /// A half-space that is to turn.
+    #[error("body {body} is a half-space, which cannot turn")]
+    TurningHalfSpace {
+        /// Index of the body.
+        body: usize,
+    },
     /// A body that does not exist.
     #[error("there is no body {body}: the world has {bodies}, counted from 0")]
     NoBody {
@@ -140,6 +172,24 @@ pub enum StepError {
         /// Where forces get stiffer still on a stable way, a run with this `dt` says so in its turn.
         stable_dt: f64,
     },
+    /// A body that turns in a discrete mode.
+    #[error("step {step}: body {body} turns, which needs continuous collisions")]
+    TurnsDiscretely {
+        /// Index of the body.
+        body: usize,
+        /// The step that failed, from 1.
+        step: u64,
+    },
+    /// A body turns too fast to be followed.
+    #[error("step {step}: body {body} cannot be turned: {error}")]
+    Turning {
+        /// Index of the body.
+        body: usize,
+        /// The step that failed, from 1.
+        step: u64,
+        /// Why.
+        error: crate::rotation::FlightError,
+    },
     /// An implicit method found no solution of its equations.
     #[error(
         "step {step}: {method} found no motion of body {body} in {iterations} iterations; lower dt"
@@ -209,6 +259,8 @@ impl StepError {
             | StepError::NotConverged { body, .. }
             | StepError::TooManySteps { body, .. }
             | StepError::Squeezed { body, .. }
+            | StepError::Turning { body, .. }
+            | StepError::TurnsDiscretely { body, .. }
             | StepError::TooManyImpacts { body, .. } => body,
         }
     }

@@ -1,12 +1,12 @@
 //! The state of a world in 64 bits, to tell whether two runs are the same.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use super::World;
 
 impl World {
     /// A hash of the state that steps change: of every bit of the positions, velocities and previous
-    /// positions, of time, steps and impacts, of the latest impact, and of the pairs that are still
+    /// positions, of rotations and angular momenta, of time, steps and impacts, of the latest impact, and of the pairs that are still
     /// in overlap. Worlds that were set up alike and have the same hash go on alike, and report the
     /// same, but for a collision in 2^64.
     ///
@@ -37,6 +37,13 @@ impl World {
         ];
         for vector in columns.into_iter().flatten() {
             hash.vector(*vector);
+        }
+        for state in [&self.current, &self.previous] {
+            for turned in &state.turned {
+                let DQuat { x, y, z, w } = turned.rotation;
+                [x, y, z, w].into_iter().for_each(|part| hash.number(part));
+                hash.vector(turned.momentum);
+            }
         }
         hash.number(self.time());
         hash.word(self.elapsed.steps);

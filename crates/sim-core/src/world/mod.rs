@@ -26,6 +26,8 @@ mod stepping;
 mod system;
 #[cfg(test)]
 mod tests;
+mod turning;
+mod turning_start;
 
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::RangeInclusive;
@@ -170,6 +172,9 @@ impl World {
         error::check_friction(index, body.friction)?;
         let shape = body.shape.map(|shape| error::check_shape(index, shape));
         let shape = shape.transpose()?;
+        if let Some(turn) = body.turn {
+            self.add_turn(index, turn, (body.mass, shape.as_ref()))?;
+        }
         self.current.push(body.position, body.velocity);
         self.previous.push(body.position, body.velocity);
         self.bodies.push(
@@ -214,10 +219,15 @@ impl World {
     /// Lets bodies that meet bounce, and those that stay in contact be where contact lets them be.
     fn collide(&mut self) -> Result<(), (usize, Cause)> {
         if self.bodies.solid.len() < 2 {
-            return Ok(());
+            return self.turn_freely();
         }
         match self.settings.collision {
             Collision::Naive | Collision::Bvh => {
+                let mut turning = self.bodies.turners.body.iter();
+                if let Some(&body) = turning.find(|&&body| self.bodies.tumbles(body)) {
+                    return Err((body, Cause::TurnsDiscretely));
+                }
+                self.turn_freely()?;
                 self.collide_discretely();
                 Ok(())
             }
@@ -330,7 +340,7 @@ impl World {
         let mut near = self.bodies.near_pairs(at, |_| 0.0);
         let known = self.overlapping();
         near.retain(|&(i, j)| {
-            known.binary_search(&(i, j)).is_err() && self.bodies.meet_at(i, j, at[j] - at[i])
+            known.binary_search(&(i, j)).is_err() && self.bodies.meet_in(&self.current, i, j)
         });
         near
     }
@@ -378,6 +388,7 @@ impl World {
     pub fn set_mass(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_mass(body, mass)?;
+        self.scale_inertia(body, mass)?;
         self.forget_contacts_of(body);
         self.bodies.mass[body] = mass;
         // Immovable bodies may be in each other.

@@ -17,7 +17,7 @@ impl Bodies {
             high,
             farthest,
             ..
-        } = self.extent(body);
+        } = self.extent_however_turned(body);
         // More than is lost in rounding, here and where vertices are placed.
         let margin = 8.0 * f64::EPSILON * (from.abs() + to.abs() + 2.0 * farthest);
         Swept {
@@ -49,7 +49,7 @@ impl Bodies {
     ) -> Vec<(usize, usize)> {
         let mut broad = Broad::default();
         let swept = |body: usize| {
-            let extent = self.extent(body);
+            let extent = self.extent_however_turned(body);
             let wide = DVec3::splat(margin(body));
             Swept {
                 min: at[body] + extent.low - wide,

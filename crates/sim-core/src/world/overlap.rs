@@ -125,8 +125,7 @@ impl World {
         let mut pairs = self.overlaps.pairs.clone();
         let mut ask = |i: usize, j: usize| {
             let is_movable = self.bodies.is_movable(i) || self.bodies.is_movable(j);
-            let offset = self.current.position[j] - self.current.position[i];
-            if is_movable && self.bodies.meet_at(i, j, offset) {
+            if is_movable && self.bodies.meet_in(&self.current, i, j) {
                 pairs.push((i, j));
             }
         };
@@ -173,9 +172,8 @@ impl World {
         if self.overlaps.pairs.is_empty() {
             return;
         }
-        let at = &self.current.position;
         self.overlaps
-            .retain(|&(i, j)| self.bodies.meet_at(i, j, at[j] - at[i]));
+            .retain(|&(i, j)| self.bodies.meet_in(&self.current, i, j));
         let pairs = &self.overlaps.pairs;
         self.contacts.retain(|constraint| {
             !constraint.is_overlap || pairs.binary_search(&constraint.bodies).is_ok()

@@ -2,13 +2,26 @@
 
 use alloc::vec::Vec;
 use core::ops::Range;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// Motion of all bodies.
 #[derive(Debug, Default)]
 pub(super) struct State {
+    /// Places, m; of bodies that turn, of their centres of mass.
     pub(super) position: Vec<DVec3>,
     pub(super) velocity: Vec<DVec3>,
+    /// How those are turned that turn, by their slots.
+    pub(super) turned: Vec<Turned>,
+}
+
+/// How a body is turned, and turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Turned {
+    /// Turns principal axes into the world.
+    pub(super) rotation: DQuat,
+    /// Angular momentum about the centre of mass in the world, kg m²/s; of a body of infinite mass, per
+    /// kg m² of it.
+    pub(super) momentum: DVec3,
 }
 
 impl Clone for State {
@@ -16,6 +29,7 @@ impl Clone for State {
         State {
             position: self.position.clone(),
             velocity: self.velocity.clone(),
+            turned: self.turned.clone(),
         }
     }
 
@@ -23,6 +37,7 @@ impl Clone for State {
     fn clone_from(&mut self, other: &State) {
         self.position.clone_from(&other.position);
         self.velocity.clone_from(&other.velocity);
+        self.turned.clone_from(&other.turned);
     }
 }
 
@@ -36,6 +51,7 @@ impl State {
     pub(super) fn match_len(&mut self, other: &State) {
         self.position.resize(other.position.len(), DVec3::ZERO);
         self.velocity.resize(other.velocity.len(), DVec3::ZERO);
+        self.turned.resize(other.turned.len(), Turned::default());
     }
 
     /// The first of some bodies with a component of position or velocity beyond ±`largest`, or

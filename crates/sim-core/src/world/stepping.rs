@@ -20,6 +20,7 @@ use super::{
 use glam::DVec3;
 
 use crate::integrate::{Failure, Method, Scratch, Step, Watch, ballistic, stability};
+use crate::rotation::FlightError;
 
 /// Bodies in a block: some 200 bytes each for state, acceleration and a few stages fill about
 /// the 32 KiB of a first cache.
@@ -448,6 +449,8 @@ impl World {
                 method,
                 stable_dt,
             },
+            Cause::TurnsDiscretely => StepError::TurnsDiscretely { body, step },
+            Cause::Turning(error) => StepError::Turning { body, step, error },
             Cause::Failure(Failure::NotConverged { iterations, .. }) => StepError::NotConverged {
                 body,
                 step,
@@ -542,4 +545,8 @@ pub(super) enum Cause {
         stable_dt: f64,
     },
     Failure(Failure),
+    /// A rotation that cannot be followed.
+    Turning(FlightError),
+    /// A turning body among others in a discrete mode.
+    TurnsDiscretely,
 }

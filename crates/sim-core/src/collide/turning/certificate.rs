@@ -37,7 +37,8 @@ pub(super) struct Gap {
     pub(super) near: f64,
     /// They are apart for so long, s.
     pub(super) lasts: f64,
-    /// Whether all of them part along the direction that tells so.
+    /// Whether the nearest points part along the direction that tells so, and fast enough beside what is near
+    /// them for this to be followed.
     pub(super) opens: bool,
     pub(super) normal: DVec3,
     pub(super) points: [DVec3; 2],
@@ -98,7 +99,13 @@ impl View {
     }
 
     /// What is between two triangles, points or a plane, and how long it stays.
-    pub(super) fn pieces_apart(&self, a: &Points, b: &Points, only: Option<DVec3>) -> Gap {
+    pub(super) fn pieces_apart(
+        &self,
+        a: &Points,
+        b: &Points,
+        only: Option<DVec3>,
+        halt: f64,
+    ) -> Gap {
         let first = a.at;
         let arms = b.at.map(|p| self.turn * p);
         let second = arms.map(|p| self.offset + p);
@@ -136,6 +143,9 @@ impl View {
         let bend = self.first.second * far_a + self.second.second * far_b;
         let third = self.first.third * far_a + self.second.third * far_b;
         let heights = |n: DVec3, points: &[DVec3; 3]| points.map(|p| n.dot(p));
+        let [at_a, at_b] = pair.points;
+        let parting = self.velocity + moves(self.second.spin, at_b - self.offset)
+            - moves(self.first.spin, at_a);
         // How long a unit vector keeps them apart, and whether they part along it; 0 as soon as that is
         // known to be no longer than what there is.
         let lasts_along = |n: DVec3, than: f64, is_last: bool| {
@@ -143,7 +153,7 @@ impl View {
             let (speeds_a, speeds_b) = (heights(n, &va), heights(n, &vb));
             let (bends_a, bends_b) = (heights(n, &ca), heights(n, &cb));
             let q = n.dot(self.acceleration) - bend - 64.0 * UNIT * margin.bend;
-            let (mut lasts, mut opens) = (f64::INFINITY, true);
+            let (mut lasts, mut closing) = (f64::INFINITY, 0.0_f64);
             for (i, j) in PAIRS {
                 let s = high[j] - low[i] - radius - 32.0 * UNIT * margin.size;
                 if s <= 0.0 {
@@ -151,7 +161,12 @@ impl View {
                 }
                 let w = speeds_b[j] - speeds_a[i] - 32.0 * UNIT * margin.speed;
                 let c = bends_b[j] - bends_a[i] - 64.0 * UNIT * margin.bend;
-                opens &= w >= 0.0;
+                if s <= 4.0 * gap.near {
+                    closing = closing.max(-w);
+                }
+                // What comes from afar stops where there is room for another rounding.
+                let room = halt * UNIT * margin.size;
+                let s = if s > room { s - room } else { s };
                 let mut until = root(s, w, q.max(c - third * self.left / 3.0));
                 if is_last && until < self.left.min(lasts) {
                     until = longer(until, s, w, [c, third], self.left);
@@ -161,7 +176,74 @@ impl View {
                     return (0.0, false);
                 }
             }
-            (lasts, opens)
+            let parting = n.dot(parting) - 32.0 * UNIT * margin.speed;
+            (lasts, parting >= FOLLOWED * closing)
+        };
+        // The same along a unit vector that turns with one of both, as the normal of its face does.
+        let lasts_with = |owner: usize, n: DVec3, than: f64| {
+            let (own, other) = match owner {
+                0 => (&self.first, &self.second),
+                _ => (&self.second, &self.first),
+            };
+            // The other one's points as seen from the owner's centre of mass, and how they move against it.
+            let (points, speeds, bends, far, sign) = match owner {
+                0 => (second, vb, cb, far_b, 1.0),
+                _ => (
+                    first.map(|p| p - self.offset),
+                    va.map(|v| v - self.velocity),
+                    ca.map(|c| c - self.acceleration),
+                    far_a,
+                    -1.0,
+                ),
+            };
+            let face = match owner {
+                0 => heights(n, &first),
+                _ => heights(n, &arms),
+            };
+            let level = match owner {
+                0 => face[0].max(face[1]).max(face[2]),
+                _ => face[0].min(face[1]).min(face[2]),
+            };
+            let acceleration = self.acceleration.length();
+            let fastest =
+                self.velocity.length() + acceleration * self.left + other.fastest * (far + radius);
+            let bent = acceleration + other.second * (far + radius);
+            let (mut lasts, mut closing) = (f64::INFINITY, 0.0_f64);
+            for k in 0..3 {
+                let (d, v) = (points[k], speeds[k]);
+                let s = sign * (n.dot(d) - level) - radius - 32.0 * UNIT * margin.size;
+                if s <= 0.0 {
+                    return (0.0, false);
+                }
+                let away = d.length() + fastest * self.left;
+                let speed = margin.speed + own.fastest * d.length();
+                let w = sign * n.dot(v - own.spin.cross(d)) - 32.0 * UNIT * speed;
+                let most = bent + 2.0 * own.fastest * fastest + own.second * away;
+                let turned = bends[k]
+                    - own.turning.cross(d)
+                    - 2.0 * own.spin.cross(v)
+                    - own.spin.cross(d).cross(own.spin);
+                let third = other.third * far
+                    + 3.0 * own.fastest * bent
+                    + 3.0 * own.second * fastest
+                    + own.third * away;
+                let c = sign * n.dot(turned) - 64.0 * UNIT * most;
+                if s <= 4.0 * gap.near {
+                    closing = closing.max(-w);
+                }
+                let room = halt * UNIT * margin.size;
+                let s = if s > room { s - room } else { s };
+                let mut until = root(s, w, (-most).max(c - third * self.left / 3.0));
+                if until < self.left {
+                    until = longer(until, s, w, [c, third], self.left);
+                }
+                lasts = lasts.min(until);
+                if lasts <= than {
+                    return (0.0, false);
+                }
+            }
+            let parting = n.dot(parting) - 32.0 * UNIT * margin.speed;
+            (lasts, parting >= FOLLOWED * closing)
         };
         let mut along = |direction: DVec3| -> f64 {
             // Also where squares of lengths would be no numbers.
@@ -227,6 +309,36 @@ impl View {
                 along(across - across.dot(side) / length * side);
             }
         }
+        // Where they nearly touch, also those that turn with what they belong to: what lies in a face, or tips
+        // over an edge, is kept apart by no direction at rest.
+        let mut along_with = |owner: usize, direction: DVec3| {
+            if let Some(n) = direction.try_normalize() {
+                let n = if n.dot(second[0] - first[0]) < 0.0 {
+                    -n
+                } else {
+                    n
+                };
+                let (lasts, opens) = lasts_with(owner, n, gap.lasts);
+                if lasts > gap.lasts {
+                    (gap.lasts, gap.opens, gap.normal) = (lasts, opens, n);
+                }
+            }
+        };
+        let is_near = distance <= NEARLY * gap.near;
+        for (owner, normal, sides, is_point, spin) in [
+            (0, normal_a, sides_a, a.is_point, self.first.spin),
+            (1, normal_b, sides_b, b.is_point, self.second.spin),
+        ] {
+            if is_near && !is_point && spin != DVec3::ZERO {
+                along_with(owner, normal);
+                for side in sides {
+                    along_with(owner, normal.cross(side));
+                }
+                for (side_a, side_b) in CROSSINGS.map(|(k, m)| (sides_a[k], sides_b[m])) {
+                    along_with(owner, side_a.cross(side_b));
+                }
+            }
+        }
         if gap.normal == DVec3::ZERO {
             let straight = (pair.points[1] - pair.points[0]).try_normalize();
             gap.normal = straight.unwrap_or(DVec3::ZERO);
@@ -234,6 +346,16 @@ impl View {
         refined(gap)
     }
 }
+
+/// Contacts nearer than this times what is one are looked at in frames that turn.
+const NEARLY: f64 = 1024.0;
+
+/// Sides of both.
+const CROSSINGS: [(usize, usize); 9] = PAIRS;
+
+/// Nearest points that part by less than this beside the speed at which corners near them close are in
+/// contact: to follow them would take as many certificates as this is small.
+const FOLLOWED: f64 = 1.0 / 1024.0;
 
 /// Corners of both, those next to each other in no order apart, as most directions fail early.
 const PAIRS: [(usize, usize); 9] = [

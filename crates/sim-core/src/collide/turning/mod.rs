@@ -17,6 +17,7 @@
 //! All bounds are relative: no length or time is in here.
 
 mod certificate;
+mod contact_set;
 mod nearest;
 mod pieces;
 mod view;
@@ -28,6 +29,7 @@ use glam::{DQuat, DVec3};
 
 use crate::{Bvh, rotation::Flight};
 use certificate::Gap;
+pub use contact_set::{ContactPoint, features_within};
 use pieces::{Boxed, Item, Points};
 use view::View;
 
@@ -102,7 +104,7 @@ pub struct Effort {
 /// Roundings of 2^-53 in which two surfaces touch; placing them is right to 16, and certificates keep 32.
 pub const NEAR: f64 = 128.0;
 
-/// No search looks at more pairs of triangles: it stops where it is, which is no later than a contact.
+/// No search that others may judge looks at more pairs of triangles: it stops where it is, which is no later than a contact.
 const MOST: u32 = 1 << 20;
 
 /// The first contact within `duration`, s; `None` proves that there is none.
@@ -118,10 +120,42 @@ pub fn first_contact_counted(
     b: &Moving<'_>,
     duration: f64,
 ) -> (Option<TurningTouch>, Effort) {
+    let exactly = Care {
+        halt: 0.0,
+        most: MOST,
+    };
+    first_contact_with(a, b, duration, exactly)
+}
+
+/// How a search is made.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Care {
+    /// Roundings that are left of a gap where shapes stop that come from afar, beside those that certificates
+    /// keep: what goes on from there is rounded once more.
+    pub(crate) halt: f64,
+    /// Pairs of pieces that are looked at, at most.
+    pub(crate) most: u32,
+}
+
+impl Care {
+    /// For what goes on from the contact.
+    pub(crate) const TO_GO_ON: Care = Care {
+        halt: 64.0,
+        most: 1 << 12,
+    };
+}
+
+/// The same, made with some care.
+pub(crate) fn first_contact_with(
+    a: &Moving<'_>,
+    b: &Moving<'_>,
+    duration: f64,
+    care: Care,
+) -> (Option<TurningTouch>, Effort) {
     let mut effort = Effort::default();
     let touch = match (&a.figure, &b.figure) {
         (Figure::HalfSpace(_), Figure::HalfSpace(_)) => None,
-        (_, Figure::HalfSpace(_)) => search(b, a, duration, &mut effort).map(|touch| {
+        (_, Figure::HalfSpace(_)) => search(b, a, duration, care, &mut effort).map(|touch| {
             let [first, second] = touch.points;
             let between = b.place(touch.time) - a.place(touch.time);
             TurningTouch {
@@ -131,7 +165,7 @@ pub fn first_contact_counted(
                 ..touch
             }
         }),
-        _ => search(a, b, duration, &mut effort),
+        _ => search(a, b, duration, care, &mut effort),
     };
     (touch, effort)
 }
@@ -185,7 +219,13 @@ impl PartialEq for Entry {
 
 impl Eq for Entry {}
 
-fn search(a: &Moving<'_>, b: &Moving<'_>, end: f64, effort: &mut Effort) -> Option<TurningTouch> {
+fn search(
+    a: &Moving<'_>,
+    b: &Moving<'_>,
+    end: f64,
+    care: Care,
+    effort: &mut Effort,
+) -> Option<TurningTouch> {
     let only = match a.figure {
         Figure::HalfSpace(normal) => Some(normal),
         _ => None,
@@ -212,11 +252,11 @@ fn search(a: &Moving<'_>, b: &Moving<'_>, end: f64, effort: &mut Effort) -> Opti
             }
             effort.pieces += 1;
             let (first, second) = (Points::of(a, entry.a), Points::of(b, entry.b));
-            let gap = view.pieces_apart(&first, &second, only);
+            let gap = view.pieces_apart(&first, &second, only, care.halt);
             let until = now + gap.lasts;
             // Without a proof for any time, and where they are near and come nearer.
             let is_contact = until <= now || gap.distance <= gap.near && !gap.opens;
-            if is_contact || effort.pieces == MOST {
+            if is_contact || effort.pieces == care.most {
                 return Some(touch(&view, &gap, [&first, &second]));
             }
             if until < end {

@@ -47,7 +47,7 @@ impl View<'_> {
             high,
             farthest,
             ..
-        } = self.scene.bodies.extent(body);
+        } = self.scene.bodies.extent_however_turned(body);
         // More than is lost in rounding, here and where vertices are placed, and than a search goes beyond
         // the end of the step; and as far as bodies may be moved where others that meet are parted.
         let bend = self.motion().chord_deviation(body);

@@ -114,6 +114,7 @@ impl ContactSolver<'_> {
             let (i, j) = self.scene.overlaps.pairs[place];
             let is_overlap = |known: &ContactConstraint| known.is_overlap;
             if (self.scene.bodies.is_movable(i) || self.scene.bodies.is_movable(j))
+                && !self.scene.bodies.pair_tumbles(i, j)
                 && !self.contacts.of_pair(i, j).any(is_overlap)
             {
                 let at = &self.scene.before.position;

@@ -65,6 +65,9 @@ impl View<'_> {
         j: usize,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
+        if self.scene.bodies.pair_tumbles(i, j) {
+            return self.find_turning_impact((i, j), probe);
+        }
         let Some(forms) = self.scene.bodies.forms(i, j) else {
             return Ok(None);
         };

@@ -47,6 +47,7 @@ impl World {
         if !self.continuous.placed || self.overlaps.pairs.is_empty() {
             return;
         }
+        self.part_turning();
         let at = self.previous.position.clone();
         let layout = self.layout();
         let pairs = self.overlaps.pairs.iter();
@@ -67,10 +68,13 @@ impl World {
                 self.contacts.insert(contact, &self.bodies);
             }
         }
-        let at = &self.previous.position;
         self.overlaps
-            .retain(|&(i, j)| self.bodies.meet_at(i, j, at[j] - at[i]));
+            .retain(|&(i, j)| self.bodies.meet_in(&self.previous, i, j));
         for (i, j) in self.overlaps.pairs.clone() {
+            // How deep what turns is in another body is not known.
+            if self.bodies.pair_tumbles(i, j) {
+                continue;
+            }
             let at = &self.previous.position;
             let out = self.layout().penetration(i, j, at[j] - at[i]);
             self.overlaps.note_depth((i, j), out.depth);

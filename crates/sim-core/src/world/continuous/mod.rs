@@ -16,6 +16,9 @@
 //!    [`progress`] and [`crush`] stop a step that would have no end.
 //! 6. [`position_correction`]: an exact test makes sure that no two bodies meet.
 //!
+//! [`turning_search`], [`turning_response`]: the same for bodies that turn, which are in no island: they bounce with
+//! their lever arms, or drift in contact for the rest of the step.
+//!
 //! [`held_overlaps`]: where bodies that were placed in overlap would get deeper, all of it is done again
 //! with the two held.
 //!
@@ -48,6 +51,8 @@ mod tallies;
 #[cfg(test)]
 mod tests;
 mod trajectory;
+mod turning_response;
+mod turning_search;
 mod velocity_solve;
 mod view;
 
@@ -65,6 +70,7 @@ use position_correction::Correction;
 use solver::ContactSolver;
 use tallies::Tallies;
 use trajectory::Trajectories;
+use turning_response::TurningRest;
 
 /// What a step with continuous collision needs beside the state; empty while there is none.
 #[derive(Clone, Debug, Default)]
@@ -84,6 +90,8 @@ pub(super) struct Continuous {
     contacts_before: ContactSet,
     /// Pairs in overlap that move as one in this step.
     held: Vec<(usize, usize)>,
+    /// Turning bodies in contact in this step.
+    turning: TurningRest,
     /// What bundling has changed in the step.
     pub(super) bundled: Bundled,
 }
@@ -136,6 +144,8 @@ impl World {
         let continuous = &mut self.continuous;
         let is_placed = mem::take(&mut continuous.placed);
         continuous.paths.begin(&scene);
+        continuous.paths.begin_turning(&scene)?;
+        continuous.turning.begin(scene.bodies.turners.body.len());
         continuous.tallies.clear();
         let mut events = EventLoop {
             solver: ContactSolver {
@@ -148,6 +158,7 @@ impl World {
                 near: &mut continuous.near,
                 visited: &mut continuous.visited,
                 bundled: &mut continuous.bundled,
+                turning: &mut continuous.turning,
             },
             queue: &mut continuous.queue,
             record: &mut self.record,
@@ -158,6 +169,7 @@ impl World {
         events.find_all_impacts()?;
         events.record.enter(Phase::Respond);
         events.resolve_all()?;
+        events.go_on_turning();
         self.record.enter(Phase::Narrow);
         let mut correction = Correction {
             scene: &scene,

@@ -149,8 +149,7 @@ impl Correction<'_> {
     }
 
     fn meet_now(&mut self, i: usize, j: usize) -> bool {
-        let offset = self.end.position[j] - self.end.position[i];
-        self.scene.may_collide(i, j) && self.scene.bodies.meet_at(i, j, offset)
+        self.scene.may_collide(i, j) && self.scene.bodies.meet_in(self.end, i, j)
     }
 
     /// Moves two bodies apart by the least that does it, but for a factor of two, if that is no more

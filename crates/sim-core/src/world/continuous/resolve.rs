@@ -46,12 +46,13 @@ impl EventLoop<'_> {
                 self.view().classify(event);
             }
         }
+        // Whose constraints have to be solved.
+        let mut seeds: Vec<usize> = Vec::new();
+        self.resolve_turning(group, time, (&mut seeds, &mut restarted))?;
         if group.iter().any(Event::is_rest) {
             self.join_resting(group, time, &mut restarted)?;
         }
         self.count(group);
-        // Whose constraints have to be solved.
-        let mut seeds: Vec<usize> = Vec::new();
         let bouncing = group
             .iter()
             .filter(|event| event.outcome == Outcome::Bounce);

@@ -19,6 +19,7 @@ use super::{
     island::{Island, Places, Visited},
     tallies::Tallies,
     trajectory::Trajectories,
+    turning_response::TurningRest,
     view::View,
 };
 
@@ -77,6 +78,7 @@ pub(super) struct ContactSolver<'a> {
     pub(super) near: &'a mut Neighbours,
     pub(super) visited: &'a mut Visited,
     pub(super) bundled: &'a mut Bundled,
+    pub(super) turning: &'a mut TurningRest,
 }
 
 impl ContactSolver<'_> {

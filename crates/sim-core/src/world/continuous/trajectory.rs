@@ -20,12 +20,16 @@ use glam::DVec3;
 use super::super::{
     error,
     scene::Scene,
-    state::State,
+    state::{State, Turned},
     stepping::{Block, Cause},
     system::Part,
 };
 use super::{contact_set::ContactSet, event::Event, horizon::Horizons};
-use crate::{System, integrate::Scratch};
+use crate::{
+    System,
+    integrate::Scratch,
+    rotation::{Flight, FlightError},
+};
 
 /// Room to ask where bodies are.
 #[derive(Clone, Debug, Default)]
@@ -52,6 +56,10 @@ pub(in crate::world) struct Trajectories {
     pub(super) acceleration: Vec<DVec3>,
     /// How long before that of its trajectory a body's velocity is the one that the method keeps, s.
     pub(super) velocity_stagger: f64,
+    /// How bodies that turn do so from where their trajectories start to the step's end, by slot.
+    pub(super) flights: Vec<Flight>,
+    /// By slot, whether what forces do for the rest of the step is in its velocity already.
+    pub(super) drifting: Vec<bool>,
     /// Whether every trajectory is a parabola.
     is_free: bool,
     /// Room to ask where bodies are, and for what starts again.
@@ -110,6 +118,59 @@ impl Trajectories {
         self.version.resize(n, 0);
     }
 
+    /// Turns all bodies that do to the step's end.
+    pub(super) fn begin_turning(&mut self, scene: &Scene<'_>) -> Result<(), (usize, Cause)> {
+        self.flights.clear();
+        self.drifting.clear();
+        self.drifting.resize(scene.bodies.turners.body.len(), false);
+        for (slot, &body) in scene.bodies.turners.body.iter().enumerate() {
+            let flight = self
+                .flight_from(scene, slot, scene.before.turned[slot], scene.settings.dt)
+                .map_err(|error| (body, Cause::Turning(error)))?;
+            self.flights.push(flight);
+            self.turn_to_end(slot, scene.settings.dt);
+        }
+        Ok(())
+    }
+
+    /// The flight of a body that turns, from how it is turned.
+    pub(super) fn flight_from(
+        &self,
+        scene: &Scene<'_>,
+        slot: usize,
+        turned: Turned,
+        duration: f64,
+    ) -> Result<Flight, FlightError> {
+        let turners = &scene.bodies.turners;
+        let torque = match self.drifting[slot] {
+            true => DVec3::ZERO,
+            false => turners.torque[slot],
+        };
+        Flight::new(
+            turners.inertia[slot].moments(),
+            turned.rotation,
+            turned.momentum,
+            torque,
+            duration,
+        )
+    }
+
+    fn turn_to_end(&mut self, slot: usize, length: f64) {
+        let flight = &self.flights[slot];
+        self.end.turned[slot] = Turned {
+            rotation: flight.rotation_at(length),
+            momentum: flight.momentum_at(length),
+        };
+    }
+
+    /// Lets a body turn on from where its trajectory starts.
+    fn turn_on(&mut self, scene: &Scene<'_>, slot: usize, body: usize) -> Result<(), FlightError> {
+        let length = scene.settings.dt - self.since[body];
+        self.flights[slot] = self.flight_from(scene, slot, self.start.turned[slot], length)?;
+        self.turn_to_end(slot, length);
+        Ok(())
+    }
+
     /// Lets the trajectory of a body, and of those coupled to it, start again at a time, where they
     /// are then, and tells which bodies those are.
     pub(super) fn restart_at(
@@ -134,6 +195,9 @@ impl Trajectories {
             for (body, &(x, v)) in bodies.clone().zip(&motion) {
                 self.start.position[body] = x;
                 self.start.velocity[body] = v;
+                if let Some(slot) = scene.bodies.turners.slot(body) {
+                    self.start.turned[slot] = self.motion(scene).turned_at(slot, body, time);
+                }
                 self.since[body] = time;
             }
         }
@@ -187,6 +251,10 @@ impl Trajectories {
         }
         for body in bodies.clone() {
             self.version[body] += 1;
+            if let Some(slot) = scene.bodies.turners.slot(body) {
+                let turned = self.turn_on(scene, slot, body);
+                turned.map_err(|error| (body, Cause::Turning(error)))?;
+            }
         }
         match self.end.beyond(bodies.clone(), error::LARGEST) {
             Some(first) => Err((bodies.start + first, Cause::Range)),
@@ -208,6 +276,10 @@ impl<'a> Motion<'a> {
 
     #[inline(never)]
     fn group_among_forced(&self, body: usize) -> Option<(Range<usize>, bool)> {
+        let slot = self.scene.bodies.turners.slot(body);
+        if slot.is_some_and(|slot| self.paths.drifting[slot]) {
+            return None;
+        }
         let sections = &self.scene.forces.plan.sections;
         let section = sections.get(sections.partition_point(|s| s.bodies.end <= body));
         match section.filter(|section| section.bodies.contains(&body)) {
@@ -255,6 +327,20 @@ impl<'a> Motion<'a> {
             &mut probe.scratch,
         )?;
         Ok((probe.state.position[body], probe.state.velocity[body]))
+    }
+
+    /// How a body that turns is turned at a time between its trajectory's start and the step's end, s from the
+    /// step's start.
+    pub(super) fn turned_at(&self, slot: usize, body: usize, time: f64) -> Turned {
+        let h = time - self.paths.since[body];
+        if h == 0.0 {
+            return self.paths.start.turned[slot];
+        }
+        let flight = &self.paths.flights[slot];
+        Turned {
+            rotation: flight.rotation_at(h),
+            momentum: flight.momentum_at(h),
+        }
     }
 
     /// Position and velocity of a body on a parabola, some time after its trajectory has started.

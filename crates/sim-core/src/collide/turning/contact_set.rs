@@ -1,0 +1,303 @@
+//! All features of two shapes that touch at one time: corners in faces, and edges that cross.
+//!
+//! One pair of nearest points is not enough for what happens at an impact: a cube that lands on its face
+//! touches with four corners, and does not turn.
+
+use alloc::vec::Vec;
+use glam::DVec3;
+
+use super::{
+    Figure, Moving,
+    pieces::{Boxed, Item, Points},
+};
+
+/// Two points that are near each other, and the direction in which they are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// The points, of the first shape and of the second, as seen from the first one's centre of mass, m.
+    pub points: [DVec3; 2],
+    /// A unit vector from the first to the second.
+    pub normal: DVec3,
+    /// The shape with whose surface the normal turns: 0 or 1.
+    pub owner: usize,
+}
+
+/// Cosine of the angle up to which the line between two near points is along the normal of their features.
+/// Where it is not, other features of theirs are nearer.
+const ALONG: f64 = 0.75;
+
+/// Sine of the angle between edges below which no normal comes from them: their ends say it.
+const CROSSING: f64 = 1e-6;
+
+/// Cosine above which normals are those of one plane.
+const SAME: f64 = 1.0 - 1e-8;
+
+/// The features of two shapes that are no farther than `reach` (m) from each other where they are at their
+/// start, and nowhere nearer than `distance`; those of one plane are cut to the corners of their hull, which
+/// without friction do the same.
+///
+/// A ball touches with one point, found elsewhere: of pairs with one there are none.
+pub fn features_within(
+    a: &Moving<'_>,
+    b: &Moving<'_>,
+    (distance, reach): (f64, f64),
+) -> Vec<ContactPoint> {
+    let mut found = Vec::new();
+    match (a.figure, b.figure) {
+        (Figure::HalfSpace(normal), Figure::Mesh(_)) => {
+            corners_on_plane(b, a, normal, reach, &mut |corner, foot| {
+                found.push(ContactPoint {
+                    points: [foot, corner],
+                    normal,
+                    owner: 0,
+                });
+            });
+        }
+        (Figure::Mesh(_), Figure::HalfSpace(normal)) => {
+            let between = b.position - a.position;
+            corners_on_plane(a, b, normal, reach, &mut |corner, foot| {
+                found.push(ContactPoint {
+                    points: [corner + between, foot + between],
+                    normal: -normal,
+                    owner: 1,
+                });
+            });
+        }
+        (Figure::Mesh(_), Figure::Mesh(_)) => between_meshes(a, b, (distance, reach), &mut found),
+        _ => {}
+    }
+    once(&mut found, reach);
+    cut_to_hulls(found)
+}
+
+/// Corners of a mesh that are near a plane, and where they are above it, as seen from the plane's shape.
+fn corners_on_plane(
+    mesh: &Moving<'_>,
+    plane: &Moving<'_>,
+    normal: DVec3,
+    reach: f64,
+    found: &mut dyn FnMut(DVec3, DVec3),
+) {
+    let rotation = mesh.rotation_at(0.0);
+    let back = rotation.inverse() * normal;
+    let between = mesh.position - plane.position;
+    let height = normal.dot(between + plane.rotation_at(0.0) * plane.centre);
+    let mut items = alloc::vec![Boxed::root(mesh)];
+    while let Some(boxed) = items.pop() {
+        let lowest = height + back.dot(boxed.centre) - back.abs().dot(boxed.half);
+        if lowest > reach {
+            continue;
+        }
+        if let Item::Piece(..) = boxed.item {
+            for corner in Points::of(mesh, boxed.item).at {
+                let above = height + back.dot(corner);
+                if above <= reach {
+                    let corner = between + rotation * corner;
+                    found(corner, corner - above * normal);
+                }
+            }
+            continue;
+        }
+        items.extend(Boxed::within(mesh, boxed.item).iter());
+    }
+}
+
+/// Corners in faces and crossing edges of two meshes.
+fn between_meshes(
+    a: &Moving<'_>,
+    b: &Moving<'_>,
+    (distance, reach): (f64, f64),
+    found: &mut Vec<ContactPoint>,
+) {
+    let (of_a, of_b) = (a.rotation_at(0.0), b.rotation_at(0.0));
+    let to_a = of_a.inverse();
+    let turn = glam::DMat3::from_quat((to_a * of_b).normalize());
+    let offset = to_a * (b.position - a.position);
+    let wide = DVec3::splat(reach);
+    let mut pairs = alloc::vec![(Boxed::root(a), Boxed::root(b))];
+    while let Some((first, second)) = pairs.pop() {
+        // Axes of the first; for a bound on what is near, that is enough.
+        let half = turn.x_axis.abs() * second.half.x
+            + turn.y_axis.abs() * second.half.y
+            + turn.z_axis.abs() * second.half.z;
+        let apart = (turn * second.centre + offset - first.centre).abs();
+        let slack = 16.0 * f64::EPSILON * (apart + half + first.half);
+        if (apart - half - first.half).cmpgt(wide + slack).any() {
+            continue;
+        }
+        match (first.item, second.item) {
+            (Item::Piece(..), Item::Piece(..)) => {
+                let (p, q) = (Points::of(a, first.item), Points::of(b, second.item));
+                let q = q.at.map(|corner| turn * corner + offset);
+                let known = found.len();
+                of_triangles(&p.at, &q, (distance, reach), found);
+                for touch in &mut found[known..] {
+                    touch.points = touch.points.map(|point| of_a * point);
+                    touch.normal = of_a * touch.normal;
+                }
+            }
+            (Item::Node(_), Item::Piece(..)) => {
+                let within = Boxed::within(a, first.item);
+                pairs.extend(within.iter().map(|&first| (first, second)));
+            }
+            (Item::Node(_), Item::Node(_)) if first.farthest >= second.farthest => {
+                let within = Boxed::within(a, first.item);
+                pairs.extend(within.iter().map(|&first| (first, second)));
+            }
+            _ => {
+                let within = Boxed::within(b, second.item);
+                pairs.extend(within.iter().map(|&second| (first, second)));
+            }
+        }
+    }
+}
+
+/// Corners in faces and crossing edges of two triangles in one frame.
+fn of_triangles(
+    p: &[DVec3; 3],
+    q: &[DVec3; 3],
+    (distance, reach): (f64, f64),
+    found: &mut Vec<ContactPoint>,
+) {
+    // Less than that, so that a corner that is below the end of a face is not beside it.
+    let slack = 0.25 * distance;
+    for (corners, face, owner) in [(q, p, 0), (p, q, 1)] {
+        let normal = (face[1] - face[0]).cross(face[2] - face[0]);
+        let Some(normal) = normal.try_normalize() else {
+            continue;
+        };
+        for &corner in corners {
+            let above = normal.dot(corner - face[0]);
+            let foot = corner - above * normal;
+            if above.abs() > reach || !is_within(foot, face, normal, slack) {
+                continue;
+            }
+            let points = match owner {
+                0 => [foot, corner],
+                _ => [corner, foot],
+            };
+            let normal = match (points[1] - points[0]).dot(normal) < 0.0 {
+                true => -normal,
+                false => normal,
+            };
+            found.push(ContactPoint {
+                points,
+                normal,
+                owner,
+            });
+        }
+    }
+    for k in 0..3 {
+        let (p0, u) = (p[k], p[(k + 1) % 3] - p[k]);
+        for m in 0..3 {
+            let (q0, v) = (q[m], q[(m + 1) % 3] - q[m]);
+            let cross = u.cross(v);
+            let sine2 = cross.length_squared() / (u.length_squared() * v.length_squared());
+            if sine2.is_nan() || sine2 < CROSSING * CROSSING {
+                continue;
+            }
+            // Where the lines come nearest each other.
+            let r = q0 - p0;
+            let (s, t) = (
+                r.cross(v).dot(cross) / cross.length_squared(),
+                r.cross(u).dot(cross) / cross.length_squared(),
+            );
+            if !(0.0..=1.0).contains(&s) || !(0.0..=1.0).contains(&t) {
+                continue;
+            }
+            let points = [p0 + s * u, q0 + t * v];
+            let between = points[1] - points[0];
+            if between.length() > reach {
+                continue;
+            }
+            let normal = cross.normalize();
+            let normal = match between.dot(normal) < 0.0 {
+                true => -normal,
+                false => normal,
+            };
+            if between.dot(normal) < ALONG * between.length() {
+                continue;
+            }
+            found.push(ContactPoint {
+                points,
+                normal,
+                owner: 0,
+            });
+        }
+    }
+}
+
+/// Whether a point of a triangle's plane is in it, or beside it by less than a length.
+fn is_within(point: DVec3, face: &[DVec3; 3], normal: DVec3, slack: f64) -> bool {
+    (0..3).all(|k| {
+        let edge = face[(k + 1) % 3] - face[k];
+        let inward = normal.cross(edge);
+        inward.dot(point - face[k]) >= -slack * inward.length()
+    })
+}
+
+/// Leaves of touches in one place along one normal one.
+fn once(found: &mut Vec<ContactPoint>, reach: f64) {
+    let mut kept: Vec<ContactPoint> = Vec::with_capacity(found.len());
+    for touch in found.drain(..) {
+        let is_known = |known: &ContactPoint| {
+            (known.points[1] - touch.points[1]).length() <= 2.0 * reach
+                && known.normal.dot(touch.normal) >= SAME
+        };
+        if !kept.iter().any(is_known) {
+            kept.push(touch);
+        }
+    }
+    *found = kept;
+}
+
+/// Of touches along one normal those at the corners of their hull.
+fn cut_to_hulls(mut found: Vec<ContactPoint>) -> Vec<ContactPoint> {
+    let mut kept = Vec::new();
+    while let Some(first) = found.first().copied() {
+        let (plane, rest): (Vec<ContactPoint>, Vec<ContactPoint>) = found
+            .into_iter()
+            .partition(|touch| touch.normal.dot(first.normal) >= SAME);
+        found = rest;
+        kept.extend(hull(plane, first.normal));
+    }
+    kept
+}
+
+/// The corners of the hull of points, seen along a normal (Andrew 1979, "Another efficient algorithm for
+/// convex hulls in two dimensions").
+fn hull(mut touches: Vec<ContactPoint>, normal: DVec3) -> Vec<ContactPoint> {
+    if touches.len() < 4 {
+        return touches;
+    }
+    let (u, v) = normal.any_orthonormal_pair();
+    let flat = |touch: &ContactPoint| (touch.points[1].dot(u), touch.points[1].dot(v));
+    touches.sort_by(|a, b| {
+        let ((ax, ay), (bx, by)) = (flat(a), flat(b));
+        ax.total_cmp(&bx).then(ay.total_cmp(&by))
+    });
+    let turns_left = |a: &ContactPoint, b: &ContactPoint, c: &ContactPoint| {
+        let ((ax, ay), (bx, by), (cx, cy)) = (flat(a), flat(b), flat(c));
+        (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) > 0.0
+    };
+    let mut corners: Vec<ContactPoint> = Vec::new();
+    let mut chain = |along: &mut dyn Iterator<Item = &ContactPoint>| {
+        let begin = corners.len();
+        for touch in along {
+            while corners.len() >= begin + 2
+                && !turns_left(
+                    &corners[corners.len() - 2],
+                    &corners[corners.len() - 1],
+                    touch,
+                )
+            {
+                corners.pop();
+            }
+            corners.push(*touch);
+        }
+        corners.pop();
+    };
+    chain(&mut touches.iter());
+    chain(&mut touches.iter().rev());
+    corners
+}

@@ -1,0 +1,420 @@
+//! Bodies that turn: what resists, and how they are turned. Columns are by slot, and empty where nothing
+//! turns.
+
+use alloc::vec::Vec;
+use glam::{DMat3, DQuat, DVec3};
+
+use super::{
+    World, WorldError,
+    bodies::Bodies,
+    error,
+    state::{State, Turned},
+    stepping::Cause,
+};
+use crate::{
+    Extent, Inertia, Shape, Turn,
+    collide::{
+        self, Placement,
+        turning::{Figure, Moving, Turning},
+    },
+    impulse::arms::{Twist, Yielding},
+    rotation::{self, Flight},
+};
+
+/// What the bodies that turn are.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Turners {
+    /// By body its slot, or [`NONE`]; as long as the last body that turns needs it.
+    slot: Vec<u32>,
+    /// By slot the body.
+    pub(super) body: Vec<usize>,
+    pub(super) inertia: Vec<Inertia>,
+    /// Constant, about the centre of mass, N m.
+    pub(super) torque: Vec<DVec3>,
+    /// The farthest point of the shape from the centre of mass, m.
+    pub(super) radius: Vec<f64>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl Turners {
+    #[inline]
+    pub(super) fn is_empty(&self) -> bool {
+        self.body.is_empty()
+    }
+
+    /// The slot of a body, if it turns.
+    #[inline]
+    pub(super) fn slot(&self, body: usize) -> Option<usize> {
+        let slot = *self.slot.get(body)?;
+        (slot != NONE).then_some(slot as usize)
+    }
+
+    fn push(&mut self, body: usize, inertia: Inertia, torque: DVec3, radius: f64) {
+        self.slot.resize(body, NONE);
+        self.slot.push(self.body.len() as u32);
+        self.body.push(body);
+        self.inertia.push(inertia);
+        self.torque.push(torque);
+        self.radius.push(radius);
+    }
+}
+
+impl Bodies {
+    /// Whether a body shows that it turns: a ball about its centre of mass does not.
+    #[inline]
+    pub(super) fn tumbles(&self, body: usize) -> bool {
+        !self.turners.is_empty() && self.slot_that_shows(body).is_some()
+    }
+
+    fn slot_that_shows(&self, body: usize) -> Option<usize> {
+        let slot = self.turners.slot(body)?;
+        let is_round = matches!(self.shape(body), Some(Shape::Sphere { .. }))
+            && self.turners.inertia[slot].centre() == DVec3::ZERO;
+        (!is_round).then_some(slot)
+    }
+
+    /// Whether one of two bodies tumbles.
+    #[inline]
+    pub(super) fn pair_tumbles(&self, i: usize, j: usize) -> bool {
+        !self.turners.is_empty() && (self.tumbles(i) || self.tumbles(j))
+    }
+
+    /// How far a body's shape reaches about its position, however it is turned.
+    #[inline]
+    pub(super) fn extent_however_turned(&self, body: usize) -> Extent {
+        match self.turners.is_empty() {
+            true => self.extent(body),
+            false => match self.slot_that_shows(body) {
+                Some(slot) => Extent::of_ball(self.turners.radius[slot]),
+                None => self.extent(body),
+            },
+        }
+    }
+
+    /// Turns a body's shape into the world.
+    pub(super) fn rotation_in(&self, state: &State, body: usize) -> DQuat {
+        match self.turners.slot(body) {
+            Some(slot) => {
+                let axes = self.turners.inertia[slot].axes();
+                (state.turned[slot].rotation * axes.inverse()).normalize()
+            }
+            None => DQuat::IDENTITY,
+        }
+    }
+
+    /// The centre of mass in the shape's frame, m, of a body that turns; of others the place is the origin.
+    fn centre_of(&self, body: usize) -> DVec3 {
+        let slot = self.turners.slot(body);
+        slot.map_or(DVec3::ZERO, |slot| self.turners.inertia[slot].centre())
+    }
+
+    /// Where the origin of a body's shape is, m.
+    pub(super) fn origin_in(&self, state: &State, body: usize) -> DVec3 {
+        state.position[body] - self.rotation_in(state, body) * self.centre_of(body)
+    }
+
+    /// Whether two bodies meet where a state has them, by the exact test.
+    pub(super) fn meet_in(&self, state: &State, i: usize, j: usize) -> bool {
+        if !self.pair_tumbles(i, j) {
+            return self.meet_at(i, j, state.position[j] - state.position[i]);
+        }
+        let placed = |body: usize| (state.position[body], self.rotation_in(state, body));
+        self.meet_placed((i, placed(i)), (j, placed(j)))
+    }
+
+    /// Whether two bodies meet at their places and turned as told, by the exact test.
+    pub(super) fn meet_placed(
+        &self,
+        (i, (x, first)): (usize, (DVec3, DQuat)),
+        (j, (y, second)): (usize, (DVec3, DQuat)),
+    ) -> bool {
+        self.need_bvh(i);
+        self.need_bvh(j);
+        let between = (y - second * self.centre_of(j)) - (x - first * self.centre_of(i));
+        match (self.shape(i), self.shape(j)) {
+            (Some(Shape::Mesh(_)), Some(Shape::Mesh(_))) => {
+                let (Some(a), Some(b)) = (self.bvh(i), self.bvh(j)) else {
+                    return false;
+                };
+                let to_first = first.inverse();
+                let place = Placement::turned((to_first * second).normalize(), to_first * between);
+                place.is_some_and(|place| collide::tree::intersect(a, b, place))
+            }
+            // Balls and planes do not turn: in the frame of the other one.
+            (Some(Shape::Mesh(_)), Some(other)) => {
+                self.meets_unturned(i, other, first.inverse() * between, first)
+            }
+            (Some(other), Some(Shape::Mesh(_))) => {
+                self.meets_unturned(j, other, second.inverse() * -between, second)
+            }
+            _ => self
+                .form(i)
+                .zip(self.form(j))
+                .is_some_and(|(a, b)| collide::meet(a, b, collide::snap(between))),
+        }
+    }
+
+    /// Whether a mesh meets a ball or a half-space at an offset in the mesh's frame, turned by a rotation.
+    fn meets_unturned(&self, mesh: usize, other: &Shape, offset: DVec3, turned: DQuat) -> bool {
+        let Some(form) = self.form(mesh) else {
+            return false;
+        };
+        let other = match *other {
+            Shape::Sphere { radius } => collide::Form::Sphere(radius),
+            Shape::HalfSpace { normal } => collide::Form::HalfSpace(turned.inverse() * normal),
+            Shape::Mesh(_) => return false,
+        };
+        collide::meet(form, other, collide::snap(offset))
+    }
+
+    /// A body as the search for turning contacts takes it: at a place, with a velocity and an
+    /// acceleration.
+    pub(super) fn moving<'a>(
+        &'a self,
+        body: usize,
+        (position, velocity, acceleration): (DVec3, DVec3, DVec3),
+        turning: Turning<'a>,
+    ) -> Option<Moving<'a>> {
+        let figure = match self.shape(body)? {
+            Shape::Mesh(_) => Figure::Mesh(self.bvh(body)?),
+            &Shape::Sphere { radius } => Figure::Ball(radius),
+            &Shape::HalfSpace { normal } => Figure::HalfSpace(normal),
+        };
+        Some(Moving {
+            figure,
+            centre: self.centre_of(body),
+            position,
+            velocity,
+            acceleration,
+            turning,
+        })
+    }
+
+    /// How a body moves in a state.
+    pub(super) fn twist_in(&self, state: &State, body: usize) -> Twist {
+        let spin = self.turners.slot(body).map_or(DVec3::ZERO, |slot| {
+            let Turned { rotation, momentum } = state.turned[slot];
+            rotation::spin(self.turners.inertia[slot].moments(), rotation, momentum)
+        });
+        Twist {
+            velocity: state.velocity[body],
+            spin,
+        }
+    }
+
+    /// What impulses do to a body as it is turned in a state.
+    pub(super) fn yielding_in(&self, state: &State, body: usize) -> Yielding {
+        if !self.is_movable(body) {
+            return Yielding {
+                mass: 0.0,
+                inertia: DMat3::ZERO,
+            };
+        }
+        let inertia = match self.turners.slot(body) {
+            Some(slot) if self.tumbles(body) => {
+                let axes = DMat3::from_quat(state.turned[slot].rotation);
+                let inverse = DMat3::from_diagonal(self.turners.inertia[slot].moments().recip());
+                axes * inverse * axes.transpose()
+            }
+            _ => DMat3::ZERO,
+        };
+        Yielding {
+            mass: 1.0 / self.mass[body],
+            inertia,
+        }
+    }
+}
+
+impl Turned {
+    /// With an angular velocity in the world, rad/s.
+    fn spinning(inertia: &Inertia, rotation: DQuat, spin: DVec3) -> Turned {
+        Turned {
+            rotation,
+            momentum: rotation * (inertia.moments() * (rotation.inverse() * spin)),
+        }
+    }
+}
+
+impl World {
+    /// Adds what turns of a body that is about to be the next one.
+    pub(super) fn add_turn(
+        &mut self,
+        body: usize,
+        turn: Turn,
+        (mass, shape): (f64, Option<&Shape>),
+    ) -> Result<(), WorldError> {
+        error::check_vector(body, "spin", turn.spin)?;
+        error::check_vector(body, "torque", turn.torque)?;
+        if !turn.rotation.is_finite() || !turn.rotation.is_normalized() {
+            return Err(WorldError::Rotation { body });
+        }
+        if let Some(Shape::HalfSpace { .. }) = shape {
+            return Err(WorldError::TurningHalfSpace { body });
+        }
+        let of_shape = || match shape {
+            _ if mass.is_infinite() => Inertia::new(DVec3::ONE, DQuat::IDENTITY, DVec3::ZERO),
+            Some(Shape::Mesh(mesh)) => Inertia::solid(mesh, mass),
+            Some(&Shape::Sphere { radius }) => Inertia::ball(radius, mass),
+            Some(Shape::HalfSpace { .. }) | None => Err(crate::InertiaError::Shapeless),
+        };
+        let inertia = turn.inertia.map_or_else(of_shape, Ok);
+        let mut inertia = inertia.map_err(|error| WorldError::Inertia { body, error })?;
+        let mut torque = turn.torque;
+        if mass.is_infinite() {
+            // Nothing changes its spin, whatever its moments are.
+            let steady = Inertia::new(DVec3::ONE, DQuat::IDENTITY, inertia.centre());
+            inertia = steady.map_err(|error| WorldError::Inertia { body, error })?;
+            torque = DVec3::ZERO;
+        }
+        let centre = inertia.centre();
+        let radius = match shape {
+            Some(Shape::Mesh(mesh)) => mesh
+                .vertices()
+                .iter()
+                .map(|v| (v.as_dvec3() - centre).length())
+                .fold(0.0, f64::max),
+            Some(&Shape::Sphere { radius }) => radius + centre.length(),
+            Some(Shape::HalfSpace { .. }) | None => 0.0,
+        };
+        let rotation = (turn.rotation.normalize() * inertia.axes()).normalize();
+        let turned = Turned::spinning(&inertia, rotation, turn.spin);
+        self.current.turned.push(turned);
+        self.previous.turned.push(turned);
+        self.bodies.turners.push(body, inertia, torque, radius);
+        Ok(())
+    }
+
+    /// The bodies that turn.
+    pub(crate) fn turning_bodies(&self) -> impl Iterator<Item = usize> + '_ {
+        self.bodies.turners.body.iter().copied()
+    }
+
+    /// Turns all bodies that do as if nothing met.
+    pub(super) fn turn_freely(&mut self) -> Result<(), (usize, Cause)> {
+        let Turners {
+            body,
+            inertia,
+            torque,
+            ..
+        } = &self.bodies.turners;
+        let dt = self.settings.dt;
+        for (slot, &body) in body.iter().enumerate() {
+            let Turned { rotation, momentum } = self.previous.turned[slot];
+            let moments = inertia[slot].moments();
+            let flight = Flight::new(moments, rotation, momentum, torque[slot], dt)
+                .map_err(|error| (body, Cause::Turning(error)))?;
+            self.current.turned[slot] = Turned {
+                rotation: flight.rotation_at(dt),
+                momentum: flight.momentum_at(dt),
+            };
+        }
+        Ok(())
+    }
+
+    /// Turns a body's shape as given, a unit quaternion; it keeps its spin.
+    pub fn set_rotation(&mut self, body: usize, rotation: DQuat) -> Result<(), WorldError> {
+        self.check_body(body)?;
+        if !rotation.is_finite() || !rotation.is_normalized() {
+            return Err(WorldError::Rotation { body });
+        }
+        let slot = self.slot_of(body)?;
+        let inertia = self.bodies.turners.inertia[slot];
+        let spin = self.spin(body);
+        let rotation = (rotation.normalize() * inertia.axes()).normalize();
+        let turned = Turned::spinning(&inertia, rotation, spin);
+        self.current.turned[slot] = turned;
+        self.previous.turned[slot] = turned;
+        self.forget_contacts_of(body);
+        self.note_placed(body);
+        Ok(())
+    }
+
+    /// Sets the angular velocity of a body that turns, in the world, rad/s.
+    pub fn set_spin(&mut self, body: usize, spin: DVec3) -> Result<(), WorldError> {
+        self.check_body(body)?;
+        error::check_vector(body, "spin", spin)?;
+        let slot = self.slot_of(body)?;
+        let inertia = self.bodies.turners.inertia[slot];
+        let rotation = self.current.turned[slot].rotation;
+        self.current.turned[slot] = Turned::spinning(&inertia, rotation, spin);
+        Ok(())
+    }
+
+    fn slot_of(&self, body: usize) -> Result<usize, WorldError> {
+        let slot = self.bodies.turners.slot(body);
+        slot.ok_or(WorldError::DoesNotTurn { body })
+    }
+
+    /// Gives a body that turns the inertia of another mass, with its spin.
+    pub(super) fn scale_inertia(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
+        let Some(slot) = self.bodies.turners.slot(body) else {
+            return Ok(());
+        };
+        let ratio = mass / self.bodies.mass[body];
+        if !(ratio.is_finite() && ratio > 0.0) {
+            return match mass == self.bodies.mass[body] {
+                true => Ok(()),
+                false => Err(WorldError::TurningMass { body }),
+            };
+        }
+        let old = self.bodies.turners.inertia[slot];
+        let new = Inertia::new(ratio * old.moments(), old.axes(), old.centre());
+        self.bodies.turners.inertia[slot] =
+            new.map_err(|error| WorldError::Inertia { body, error })?;
+        for state in [&mut self.current, &mut self.previous] {
+            state.turned[slot].momentum *= ratio;
+        }
+        Ok(())
+    }
+
+    /// Whether a body turns.
+    pub fn turns(&self, body: usize) -> bool {
+        self.bodies.turners.slot(body).is_some()
+    }
+
+    /// Turns a body's shape into the world.
+    pub fn rotation(&self, body: usize) -> DQuat {
+        self.bodies.rotation_in(&self.current, body)
+    }
+
+    /// Where the origin of a body's shape is, m: its position, unless it turns about a centre of mass that is
+    /// elsewhere.
+    pub fn origin(&self, body: usize) -> DVec3 {
+        match self.turns(body) {
+            true => self.bodies.origin_in(&self.current, body),
+            false => self.position(body),
+        }
+    }
+
+    /// Angular velocity of a body in the world, rad/s.
+    pub fn spin(&self, body: usize) -> DVec3 {
+        self.bodies.twist_in(&self.current, body).spin
+    }
+
+    /// Angular momentum of a body about its centre of mass, kg m²/s; zero of one that does not turn, and of
+    /// one of infinite mass.
+    pub fn angular_momentum(&self, body: usize) -> DVec3 {
+        let slot = self.bodies.turners.slot(body);
+        let slot = slot.filter(|_| self.bodies.is_movable(body));
+        slot.map_or(DVec3::ZERO, |slot| self.current.turned[slot].momentum)
+    }
+
+    /// Inertia of a body that turns.
+    pub fn inertia(&self, body: usize) -> Option<&Inertia> {
+        let slot = self.bodies.turners.slot(body)?;
+        Some(&self.bodies.turners.inertia[slot])
+    }
+
+    /// Place of a shape's origin (m) and rotation between the last two states: 0 gives the previous one, 1 the
+    /// current one. Rotations are interpolated on the sphere, the short way.
+    pub fn interpolated_pose(&self, body: usize, fraction: f64) -> (DVec3, DQuat) {
+        let place = self.interpolated(body, fraction);
+        if !self.turns(body) {
+            return (place, DQuat::IDENTITY);
+        }
+        let before = self.bodies.rotation_in(&self.previous, body);
+        let rotation = before.slerp(self.rotation(body), fraction);
+        (place - rotation * self.bodies.centre_of(body), rotation)
+    }
+}

@@ -1,0 +1,127 @@
+//! Turning bodies that touch where they have been placed.
+//!
+//! To touch is to meet, for the exact test. A turning body that is placed on another one is moved off it by
+//! the least that does it, along the normal of what touches: no more than the `f32` of vertices is rounded.
+//! What is deeper is an overlap: the two pass through each other until they are apart.
+
+use alloc::vec::Vec;
+use glam::DVec3;
+
+use super::{World, bodies::Bodies, state::State};
+use crate::{
+    collide::turning::{Turning, features_within},
+    impulse::{Joined, project},
+};
+
+/// Rounds in which one that is moved off another one may come to meet a third.
+const ROUNDS: usize = 16;
+/// Halvings of what bodies may be moved by to the least.
+const HALVINGS: i32 = 24;
+
+impl World {
+    /// Moves turning bodies off what they touch since they were placed.
+    pub(super) fn part_turning(&mut self) {
+        if self.bodies.turners.is_empty() {
+            return;
+        }
+        let mut planes: Vec<(usize, usize, DVec3, f64)> = Vec::new();
+        let start = self.previous.clone();
+        for _ in 0..ROUNDS {
+            let mut met = false;
+            for &(i, j) in &self.overlaps.pairs {
+                let meets = |state: &State| self.bodies.meet_in(state, i, j);
+                if !self.bodies.pair_tumbles(i, j) || !meets(&self.previous) {
+                    continue;
+                }
+                let most = self.layout().flush(i, j);
+                let known = planes.iter_mut().find(|plane| (plane.0, plane.1) == (i, j));
+                // Once more as far where others have moved them back.
+                if let Some(plane) = known {
+                    plane.3 = (2.0 * plane.3).min(most);
+                    met = true;
+                } else if let Some((normal, by)) =
+                    self.bodies.way_apart(&self.previous, (i, j), most)
+                {
+                    planes.push((i, j, normal, by));
+                    met = true;
+                }
+            }
+            if !met {
+                break;
+            }
+            self.previous.position.clone_from(&start.position);
+            let joined: Vec<Joined> = planes
+                .iter()
+                .map(|&(i, j, normal, _)| Joined {
+                    bodies: (i, j),
+                    normal,
+                })
+                .collect();
+            let missing: Vec<f64> = planes.iter().map(|plane| plane.3).collect();
+            let yielding: Vec<f64> = (0..self.len())
+                .map(|body| match self.bodies.tumbles(body) {
+                    true => 1.0 / self.bodies.mass[body],
+                    false => 0.0,
+                })
+                .collect();
+            project(&joined, &yielding, &mut self.previous.position, &missing);
+        }
+        for (current, (moved, from)) in self
+            .current
+            .position
+            .iter_mut()
+            .zip(self.previous.position.iter().zip(&start.position))
+        {
+            *current += *moved - *from;
+        }
+        let (bodies, previous) = (&self.bodies, &self.previous);
+        self.overlaps
+            .retain(|&(i, j)| !bodies.pair_tumbles(i, j) || bodies.meet_in(previous, i, j));
+    }
+}
+
+impl Bodies {
+    /// A normal along which two bodies that meet are apart when they are moved by no more than a length, and
+    /// how far: the least that is found.
+    fn way_apart(&self, state: &State, (i, j): (usize, usize), most: f64) -> Option<(DVec3, f64)> {
+        let place = |body: usize| (state.position[body], DVec3::ZERO, DVec3::ZERO);
+        let turning = |body: usize| Turning::Still(self.rotation_in(state, body));
+        let first = self.moving(i, place(i), turning(i))?;
+        let second = self.moving(j, place(j), turning(j))?;
+        let touching = features_within(&first, &second, (0.0, most));
+        let normals = touching
+            .iter()
+            .flat_map(|point| [point.normal, -point.normal]);
+        let line = self.line_apart(&state.position, (i, j));
+        let mut tried: Vec<DVec3> = Vec::new();
+        let mut least: Option<(DVec3, f64)> = None;
+        let mut moved = state.clone();
+        for normal in normals.chain(line) {
+            if tried.iter().any(|known| known.dot(normal) > 1.0 - 1e-9) {
+                continue;
+            }
+            tried.push(normal);
+            for halving in (0..=HALVINGS).rev() {
+                let by = libm::ldexp(most, -halving);
+                if least.is_some_and(|(_, known)| known <= by) {
+                    break;
+                }
+                moved.position[j] = state.position[j] + by * normal;
+                if !self.meet_in(&moved, i, j) {
+                    least = Some((normal, by));
+                    break;
+                }
+            }
+            moved.position[j] = state.position[j];
+        }
+        // With as much more as a search from there needs to tell it from a contact.
+        let (normal, by) = least?;
+        let size = self.extent_however_turned(i).farthest.max(0.0)
+            + self.extent_however_turned(j).farthest
+            + (state.position[j] - state.position[i]).length();
+        Some((normal, by + SEEN * f64::EPSILON * size))
+    }
+}
+
+/// Roundings in which a search tells a gap.
+const SEEN: f64 = 128.0;

@@ -1,0 +1,266 @@
+//! Turning bodies that lie, slide, stack, tip and fall: what anybody does first.
+
+use kit::{bodies, shapes, worlds};
+use sim_core::{
+    Body, Collision, DQuat, DVec3, Inertia, Settings, Shape, StepError, Turn, World, WorldError,
+};
+
+const G: f64 = 9.81;
+
+fn cube(side: f64, position: DVec3, restitution: f64) -> Body {
+    Body {
+        turn: Some(Turn::default()),
+        force: -G * DVec3::Y,
+        restitution,
+        ..bodies::at(&shapes::cuboid([0.5 * side as f32; 3]), position)
+    }
+}
+
+fn floor(restitution: f64) -> Body {
+    Body {
+        restitution,
+        ..bodies::wall(DVec3::Y, DVec3::ZERO, DVec3::ZERO)
+    }
+}
+
+fn table(restitution: f64) -> Body {
+    let shape = shapes::cuboid([1.0, 0.5, 1.0]);
+    Body {
+        restitution,
+        ..bodies::immovable(bodies::at(&shape, -0.5 * DVec3::Y))
+    }
+}
+
+/// Kinetic and potential energy, J.
+fn energy(world: &World) -> f64 {
+    let bodies = (0..world.len()).filter(|&body| world.mass(body).is_finite());
+    world.kinetic_energy()
+        + bodies
+            .map(|body| world.mass(body) * G * world.position(body).y)
+            .sum::<f64>()
+}
+
+/// Steps, of which none may bring energy or let bodies meet.
+fn watch(world: &mut World, steps: u64) {
+    for step in 0..steps {
+        let before = energy(world);
+        worlds::step(world, 1);
+        let gained = energy(world) - before;
+        let size = world.kinetic_energy() + world.len() as f64 * G;
+        // Once, bodies that touch get the room at which they are kept.
+        assert!(gained < 1e-12 * size, "step {step}: {gained:e} J");
+        assert_eq!(world.meeting(), [], "step {step}");
+    }
+}
+
+#[test]
+fn what_is_dropped_comes_to_lie_on_a_face() {
+    for restitution in [0.0, 0.5] {
+        for angle in [0.0, 0.1, 0.6] {
+            for ground in [floor(restitution), table(restitution)] {
+                let axis = DVec3::new(1.0, 0.3, 0.7).normalize();
+                let mut body = cube(1.0, 1.2 * DVec3::Y, restitution);
+                let turn = body.turn.as_mut().unwrap();
+                turn.rotation = DQuat::from_axis_angle(axis, angle);
+                let mut world = worlds::world([ground, body]);
+                watch(&mut world, 360);
+                let (height, speed) = (world.position(1).y, world.velocity(1).length());
+                assert!(
+                    (height - 0.5).abs() < 1e-9,
+                    "{restitution} {angle}: {height}"
+                );
+                assert!(speed < 1e-8 && world.spin(1).length() < 1e-8);
+            }
+        }
+    }
+}
+
+#[test]
+fn stacks_that_start_in_touch_stand() {
+    for restitution in [0.0, 0.5, 1.0] {
+        for ground in [floor(restitution), table(restitution)] {
+            let boxes = (0..3).map(|k| {
+                let k = f64::from(k);
+                cube(1.0, DVec3::new(0.1 * k, 0.5 + k, 0.0), restitution)
+            });
+            let mut world = worlds::world([ground].into_iter().chain(boxes));
+            worlds::step(&mut world, 120);
+            assert_eq!(world.overlapping(), []);
+            for k in 0..3 {
+                let off = world.position(k + 1).y - (0.5 + k as f64);
+                assert!(off.abs() < 1e-9, "{restitution}: box {k} is off by {off:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_slides_down_a_smooth_slope_has_the_speed_that_it_must() {
+    for (angle, scale) in [(0.3_f64, 1.0), (0.3, 1e-3), (0.8, 1e3)] {
+        let normal = DVec3::new(-angle.sin(), angle.cos(), 0.0);
+        let slope = Body {
+            restitution: 0.0,
+            ..bodies::wall(normal, DVec3::ZERO, DVec3::ZERO)
+        };
+        let mut body = cube(0.5 * scale, 0.25 * scale * normal, 0.0);
+        body.turn.as_mut().unwrap().rotation = DQuat::from_rotation_z(angle);
+        let mut world = worlds::world([slope, body]);
+        worlds::step(&mut world, 60);
+        let speed = world.velocity(1).length();
+        let exact = G * angle.sin();
+        assert!((speed / exact - 1.0).abs() < 1e-8, "{speed} for {exact}");
+        // A drift takes the speed at its end for all of a step.
+        let way = (world.position(1) - 0.25 * scale * normal).length();
+        let late = way / (0.5 * exact) - 1.0;
+        assert!((late - 1.0 / 60.0).abs() < 1e-4, "{late}");
+        assert!(world.spin(1).length() < 1e-6);
+    }
+}
+
+#[test]
+fn what_is_pushed_over_an_edge_tips_and_falls() {
+    let mut body = cube(0.5, 0.25 * DVec3::Y, 0.0);
+    body.velocity = DVec3::X;
+    let ground = Body {
+        position: -DVec3::Y,
+        ..floor(0.0)
+    };
+    let mut world = worlds::world([table(0.0), ground, body]);
+    watch(&mut world, 57);
+    let before = world.velocity(2);
+    assert!((before - DVec3::X).length() < 1e-9 && world.spin(2).length() < 1e-9);
+    watch(&mut world, 183);
+    let height = world.position(2).y;
+    assert!((height + 0.75).abs() < 1e-6, "it lies at {height}");
+    assert!(world.position(2).x > 1.25);
+}
+
+#[test]
+fn a_lift_carries_what_lies_on_it() {
+    let platform = Body {
+        restitution: 0.0,
+        velocity: DVec3::Y,
+        ..bodies::immovable(bodies::at(&shapes::cuboid([2.0, 0.1, 2.0]), DVec3::ZERO))
+    };
+    let mut world = worlds::world([platform, cube(1.0, 0.7 * DVec3::Y, 0.0)]);
+    worlds::step(&mut world, 120);
+    let above = world.position(1).y - world.position(0).y;
+    assert!((above - 0.6).abs() < 1e-6, "{above}");
+    assert!((world.velocity(1).y - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn what_lies_on_what_does_not_turn_is_borne_by_it() {
+    let mut box_below = bodies::at(&shapes::cuboid([1.0, 0.5, 1.0]), 0.5 * DVec3::Y);
+    (box_below.force, box_below.restitution) = (-G * DVec3::Y, 0.0);
+    let mut body = cube(1.0, 3.0 * DVec3::Y, 0.0);
+    let axis = DVec3::new(0.2, 1.0, 0.4).normalize();
+    body.turn.as_mut().unwrap().rotation = DQuat::from_axis_angle(axis, 0.9);
+    let mut world = worlds::world([floor(0.0), box_below, body]);
+    worlds::step(&mut world, 240);
+    assert!((world.position(1).y - 0.5).abs() < 1e-9);
+    assert!(
+        (world.position(2).y - 1.5).abs() < 1e-9,
+        "{}",
+        world.position(2).y
+    );
+}
+
+#[test]
+fn a_free_body_keeps_what_it_has_in_any_world() {
+    let box_of = shapes::cuboid([0.5, 0.3, 0.1]);
+    let spin = DVec3::new(1e-3, 5.0, 2e-3);
+    let body = Body {
+        turn: Some(Turn {
+            spin,
+            ..Turn::default()
+        }),
+        velocity: DVec3::X,
+        ..bodies::at(&box_of, DVec3::ZERO)
+    };
+    let mut world = worlds::world([&body]);
+    let (momentum, energy) = (world.angular_momentum(0), world.turning_energy());
+    assert!((world.spin(0) - spin).length() < 1e-15);
+    worlds::step(&mut world, 20_000);
+    assert_eq!(world.angular_momentum(0), momentum);
+    assert!((world.turning_energy() / energy - 1.0).abs() < 1e-13);
+    // A pose is between those of the last two steps.
+    let (place, rotation) = world.interpolated_pose(0, 1.0);
+    assert_eq!(place, world.origin(0));
+    assert!(rotation.angle_between(world.rotation(0)) < 1e-7);
+    assert!(world.interpolated_pose(0, 0.5).1.is_normalized());
+    // What turns is part of the state.
+    let mut other = worlds::world([&body]);
+    let before = other.state_hash();
+    other.set_spin(0, 2.0 * spin).unwrap();
+    assert_ne!(other.state_hash(), before);
+}
+
+#[test]
+fn what_cannot_turn_is_refused_by_name() {
+    let mut world = World::new(Settings::default()).unwrap();
+    let with = |shape: Option<Shape>, turn: Turn| Body {
+        shape,
+        turn: Some(turn),
+        ..Body::default()
+    };
+    let half_space = with(Some(shapes::half_space(DVec3::Y)), Turn::default());
+    let refused = world.add(half_space).unwrap_err();
+    assert_eq!(refused, WorldError::TurningHalfSpace { body: 0 });
+    let point = world.add(with(None, Turn::default())).unwrap_err();
+    assert!(
+        matches!(point, WorldError::Inertia { body: 0, .. }),
+        "{point}"
+    );
+    let skewed = Turn {
+        rotation: DQuat::from_xyzw(0.0, 0.0, 0.0, 2.0),
+        ..Turn::default()
+    };
+    let cube = Some(shapes::cube());
+    let rotation = world.add(with(cube.clone(), skewed)).unwrap_err();
+    assert_eq!(rotation, WorldError::Rotation { body: 0 });
+    for spin in [f64::NAN, f64::INFINITY, 1e101] {
+        let turn = Turn {
+            spin: DVec3::new(0.0, spin, 0.0),
+            ..Turn::default()
+        };
+        assert!(world.add(with(cube.clone(), turn)).is_err());
+    }
+    assert!(world.is_empty());
+    // With an inertia of its own a point turns.
+    let inertia = Inertia::new(DVec3::ONE, DQuat::IDENTITY, DVec3::ZERO).unwrap();
+    let turn = Turn {
+        inertia: Some(inertia),
+        ..Turn::default()
+    };
+    world.add(with(None, turn)).unwrap();
+    world.add(with(cube, Turn::default())).unwrap();
+    world
+        .add(bodies::at(&shapes::cube(), 9.0 * DVec3::X))
+        .unwrap();
+    assert_eq!(
+        world.set_spin(2, DVec3::X),
+        Err(WorldError::DoesNotTurn { body: 2 })
+    );
+    // A mass brings its inertia along.
+    world.set_spin(1, DVec3::Y).unwrap();
+    let (before, spin) = (world.turning_energy(), world.spin(1));
+    world.set_mass(1, 3.0).unwrap();
+    assert!((world.turning_energy() / before - 3.0).abs() < 1e-12);
+    assert!((world.spin(1) - spin).length() < 1e-15);
+    assert_eq!(
+        world.set_mass(1, f64::INFINITY),
+        Err(WorldError::TurningMass { body: 1 })
+    );
+    let settings = Settings {
+        collision: Collision::Bvh,
+        ..Settings::default()
+    };
+    world.set_settings(settings).unwrap();
+    let hash = world.state_hash();
+    assert!(matches!(
+        world.step(),
+        Err(StepError::TurnsDiscretely { .. })
+    ));
+    assert_eq!(world.state_hash(), hash);
+}
