@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 
 use scene::SCENES;
 use sim_core::collide::{self, Placement, tree};
+use sim_core::query::{self, Placed};
 use sim_core::{Body, Bvh, Collision, DQuat, DVec3, Force, METHODS, Settings, World};
 
 thread_local! {
@@ -111,6 +112,10 @@ fn questions_about_meshes_do_not_allocate() {
             answers += usize::from(cow.ray(offset, -offset).is_some());
             answers += usize::from(collide::segment_meets(&cow, offset, -offset) == Some(true));
             answers += usize::from(collide::locate(&cow, offset).is_some());
+            let [first, second] =
+                [DVec3::ZERO, offset].map(|at| Placed::mesh(&cow, at).expect("a place"));
+            answers += usize::from(query::distance(first, second).is_some());
+            answers += usize::from(query::time_of_impact(first, second, offset) == Ok(None));
         }
         assert!(answers > 1000, "{answers}");
     };

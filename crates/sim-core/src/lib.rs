@@ -92,6 +92,7 @@ mod measure;
 mod mesh;
 pub mod ode;
 mod pieces;
+pub mod query;
 pub mod rotation;
 mod shape;
 #[cfg(test)]

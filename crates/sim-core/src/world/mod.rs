@@ -18,6 +18,7 @@ mod overlap;
 mod penetration;
 mod plan;
 mod profile;
+mod query;
 mod record;
 mod scene;
 mod separate;
@@ -90,6 +91,8 @@ pub struct World {
     integrator: Integrator,
     continuous: Continuous,
     discrete: Discrete,
+    /// For questions about bodies where they are.
+    index: query::Index,
 }
 
 /// How a world steps.
@@ -156,6 +159,7 @@ impl World {
             integrator: Integrator::default(),
             continuous: Continuous::default(),
             discrete: Discrete::default(),
+            index: query::Index::default(),
         })
     }
 
@@ -189,6 +193,7 @@ impl World {
     ///
     /// On an error the world stays as it was before the step, to the bit.
     pub fn step(&mut self) -> Result<(), StepError> {
+        self.index.forget();
         self.seek_overlaps();
         self.make_plan();
         // What was before is kept until nothing can fail any more.

@@ -1,0 +1,5 @@
+//! Questions about shapes and worlds, against slower ways to the same answers.
+
+mod distance;
+mod oracle;
+mod world;
