@@ -155,3 +155,23 @@ fn steps_of_the_gallery_allocate_only_where_bodies_meet() {
         }
     }
 }
+
+/// Steps that list contacts allocate no more than others, once there is room for them.
+#[test]
+fn events_of_contacts_do_not_allocate() {
+    for entry in SCENES {
+        let scene = entry.scene().expect("a gallery scene");
+        let [mut plain, mut listing] = [(), ()].map(|()| scene.world().expect("a world"));
+        listing.list_contact_events(true);
+        let (mut more, mut events) = (0, 0);
+        for k in 0..WARM_UP + 200 {
+            let own = allocations(|| plain.step().expect("a step"));
+            let all = allocations(|| listing.step().expect("a step"));
+            assert!(all >= own, "{} {k}", entry.name);
+            more += if k < WARM_UP { 0 } else { all - own };
+            events += listing.contact_events().len();
+        }
+        // Lists of impacts, contacts and events grow where more happens than before.
+        assert!(more <= GROWTH, "{}: {more} for {events} events", entry.name);
+    }
+}
