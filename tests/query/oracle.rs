@@ -5,10 +5,10 @@ use kit::rational::{Point, Q, cross, dot, rational, sub, zero};
 use sim_core::DVec3;
 
 /// A triangle by its corners, m.
-pub type Triangle = [DVec3; 3];
+pub(crate) type Triangle = [DVec3; 3];
 
 /// The square of the distance of two triangles, m², exactly.
-pub fn distance_square(s: Triangle, t: Triangle) -> Q {
+pub(crate) fn distance_square(s: Triangle, t: Triangle) -> Q {
     if triangles_meet(s, t) {
         return zero();
     }
