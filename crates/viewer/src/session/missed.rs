@@ -94,13 +94,13 @@ fn passed(world: &World, i: usize, j: usize) -> Option<Missed> {
     let farther = way(world, j).length() >= way(world, i).length();
     let (still, mover) = if farther { (i, j) } else { (j, i) };
     let motion = way(world, mover) - way(world, still);
-    let [first, second] =
-        [still, mover].map(|i| world.placed(i)?.at(world.previous_position(i)).ok());
-    let hit = query::time_of_impact(first?, second?, motion).ok()??;
-    // Bodies in overlap have none.
-    if hit.normal == DVec3::ZERO {
+    let placed = |i: usize| world.placed(i)?.at(world.previous_position(i)).ok();
+    let (first, second) = (placed(still)?, placed(mover)?);
+    // Bodies in overlap are told elsewhere.
+    if query::intersects(first, second) {
         return None;
     }
+    let hit = query::time_of_impact(first, second, motion).ok()??;
     let part = hit.time;
     let dt = world.settings().dt;
     let direction = motion.normalize();
