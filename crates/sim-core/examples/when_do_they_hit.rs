@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Two meshes that move for 2 s: what counts is how the second moves as seen from the first.
     let first = Placed::mesh(&tree, DVec3::ZERO)?;
-    let second = Placed::mesh(&tree, DVec3::new(5.0, 0.2, 0.2))?;
+    let second = Placed::mesh(&tree, DVec3::new(4.0, 0.2, 0.2))?;
     let (velocities, duration) = ([DVec3::X, -DVec3::X], 2.0);
     let motion = (velocities[1] - velocities[0]) * duration;
     match query::time_of_impact(first, second, motion)? {
