@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 
 use scene::SCENES;
 use sim_core::collide::{self, Placement, tree};
+use sim_core::query::{self, Placed};
 use sim_core::{Body, Bvh, Collision, DQuat, DVec3, Force, METHODS, Settings, World};
 
 thread_local! {
@@ -111,6 +112,10 @@ fn questions_about_meshes_do_not_allocate() {
             answers += usize::from(cow.ray(offset, -offset).is_some());
             answers += usize::from(collide::segment_meets(&cow, offset, -offset) == Some(true));
             answers += usize::from(collide::locate(&cow, offset).is_some());
+            let [first, second] =
+                [DVec3::ZERO, offset].map(|at| Placed::mesh(&cow, at).expect("a place"));
+            answers += usize::from(query::distance(first, second).is_some());
+            answers += usize::from(query::time_of_impact(first, second, offset) == Ok(None));
         }
         assert!(answers > 1000, "{answers}");
     };
@@ -148,5 +153,25 @@ fn steps_of_the_gallery_allocate_only_where_bodies_meet() {
             let what = format!("{} {collision:?}", entry.name);
             assert!(is_solved || without <= GROWTH, "{what}: {without}");
         }
+    }
+}
+
+/// Steps that list contacts allocate no more than others, once there is room for them.
+#[test]
+fn events_of_contacts_do_not_allocate() {
+    for entry in SCENES {
+        let scene = entry.scene().expect("a gallery scene");
+        let [mut plain, mut listing] = [(), ()].map(|()| scene.world().expect("a world"));
+        listing.list_contact_events(true);
+        let (mut more, mut events) = (0, 0);
+        for k in 0..WARM_UP + 200 {
+            let own = allocations(|| plain.step().expect("a step"));
+            let all = allocations(|| listing.step().expect("a step"));
+            assert!(all >= own, "{} {k}", entry.name);
+            more += if k < WARM_UP { 0 } else { all - own };
+            events += listing.contact_events().len();
+        }
+        // Lists of impacts, contacts and events grow where more happens than before.
+        assert!(more <= GROWTH, "{}: {more} for {events} events", entry.name);
     }
 }

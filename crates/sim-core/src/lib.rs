@@ -26,7 +26,11 @@
 //!    ([`Body::friction`]) slows and holds, and what lies still sleeps. Where many contacts of a heap
 //!    come and go within a step, they are solved at once, and [`World::bundled`] tells what that costs.
 //! 6. [`World::impacts`] counts impacts, [`World::step_reporting`] lists them, and
-//!    [`World::interpolated`] gives positions between the last two states to draw.
+//!    [`World::interpolated`] gives positions between the last two states to draw;
+//!    [`World::contact_events`] tells who has begun and ended to touch whom, and by what impulse.
+//!
+//! Between steps, and without a world, module [`query`] answers questions about shapes: do they meet, how far
+//! apart are they, when do they hit, what does a ray hit? [`World::cast_ray`] and its like ask all bodies.
 //!
 //! ```
 //! use core::time::Duration;
@@ -93,6 +97,7 @@ mod measure;
 mod mesh;
 pub mod ode;
 mod pieces;
+pub mod query;
 pub mod rotation;
 mod shape;
 #[cfg(test)]
@@ -117,6 +122,6 @@ pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
 pub(crate) use shape::Extent;
 pub use shape::Shape;
 pub use world::{
-    Bundled, Collision, ContactFeature, Impact, Overlap, Phase, Profile, RestingContact,
-    SeparateError, Settings, StepError, Touching, World, WorldError,
+    Bundled, Collision, ContactEvent, ContactEventKind, ContactFeature, Impact, Overlap, Phase,
+    Profile, RestingContact, SeparateError, Settings, StepError, Touching, World, WorldError,
 };

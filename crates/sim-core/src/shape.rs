@@ -31,6 +31,19 @@ impl Shape {
             Shape::Sphere { .. } | Shape::HalfSpace { .. } => None,
         }
     }
+
+    /// Low and high corner of the least box around it, m, about its position; `None` of a half-space, which no
+    /// box holds.
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
+        match self {
+            Shape::Mesh(mesh) => {
+                let bounds = mesh.bounds();
+                Some([bounds.min, bounds.max].map(|corner| corner.as_dvec3()))
+            }
+            &Shape::Sphere { radius } => Some([-radius, radius].map(DVec3::splat)),
+            Shape::HalfSpace { .. } => None,
+        }
+    }
 }
 
 /// How far a shape reaches about its origin.

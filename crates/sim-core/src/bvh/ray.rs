@@ -1,6 +1,6 @@
 //! Rays and points against a BVH: picking, line of sight, inside and outside.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::{Bvh, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
 
@@ -20,18 +20,39 @@ impl Bvh {
     /// 2013, "Watertight ray/triangle intersection"). A direction of zero, or below
     /// the normal range of f64, meets nothing.
     pub fn ray(&self, origin: DVec3, direction: DVec3) -> Option<RayHit> {
-        self.cast(origin, direction, false)
+        Some(self.cast(origin, direction, (f64::INFINITY, false))?.0)
+    }
+
+    /// The same before a time, with the corners of the triangle.
+    pub(crate) fn ray_before(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        within: f64,
+    ) -> Option<(RayHit, [Vec3; 3])> {
+        self.cast(origin, direction, (within, false))
     }
 
     /// Whether a ray meets any triangle: [`Bvh::ray`] without the search for the nearest.
     pub fn ray_meets(&self, origin: DVec3, direction: DVec3) -> bool {
-        self.cast(origin, direction, true).is_some()
+        self.cast(origin, direction, (f64::INFINITY, true))
+            .is_some()
     }
 
-    fn cast(&self, origin: DVec3, direction: DVec3, any: bool) -> Option<RayHit> {
+    /// The nearest hit before a time, or any.
+    fn cast(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        (within, any): (f64, bool),
+    ) -> Option<(RayHit, [Vec3; 3])> {
         let ray = Ray::new(origin, direction)?;
-        let mut best: Option<RayHit> = None;
-        let mut nearest = f64::INFINITY;
+        let mut best: Option<(&Triangles, usize)> = None;
+        let mut nearest = within / ray.scale;
+        let found = |nearest: f64, (triangles, lane): (&Triangles, usize)| {
+            let (t, face) = (nearest * ray.scale, triangles.face[lane]);
+            (RayHit { t, face }, triangles.corners(lane))
+        };
         // Codes and where the ray enters their boxes. Each level leaves at most three siblings.
         let mut stack = [(0, 0.0f32); 3 * MAX_DEPTH + 1];
         let (mut top, mut code) = (0, self.root());
@@ -58,19 +79,15 @@ impl Bvh {
                         continue;
                     }
                     nearest = hits[lane];
-                    let face = triangles.face[lane];
-                    best = Some(RayHit {
-                        t: nearest * ray.scale,
-                        face,
-                    });
+                    best = Some((triangles, lane));
                     if any {
-                        return best;
+                        return Some(found(nearest, (triangles, lane)));
                     }
                 }
             }
             loop {
                 if top == 0 {
-                    return best;
+                    return Some(found(nearest, best?));
                 }
                 top -= 1;
                 if f64::from(stack[top].1) <= nearest {

@@ -6,6 +6,7 @@
 mod apart;
 mod ball;
 mod broad;
+mod closest;
 mod cuboid_mesh;
 mod cuboids;
 mod form;
@@ -26,7 +27,9 @@ pub mod turning;
 
 pub(crate) use ball::nearest;
 pub use ball::{BallTouch, ball_meets, ball_touch};
-pub(crate) use broad::{Broad, Front, Swept};
+pub(crate) use broad::{BoxTree, Broad, Front, Swept};
+pub use closest::Part;
+pub(crate) use closest::{Closest, closest, closest_to_point};
 pub(crate) use form::{Contact, Form, first_contact, is_turned, meet, parting_normals, reach};
 pub use hit::{Hit, Side};
 pub use pairs::Level;

@@ -7,6 +7,7 @@ mod continuous;
 mod discrete;
 mod elapsed;
 mod error;
+mod events;
 mod exchange;
 mod forces;
 mod hash;
@@ -18,6 +19,7 @@ mod overlap;
 mod penetration;
 mod plan;
 mod profile;
+mod query;
 mod record;
 mod scene;
 mod separate;
@@ -41,6 +43,7 @@ use continuous::{ContactSet, Continuous};
 use discrete::Discrete;
 use elapsed::Elapsed;
 pub use error::{StepError, WorldError};
+pub use events::{ContactEvent, ContactEventKind};
 pub use exchange::Impact;
 use forces::Forces;
 use layout::Layout;
@@ -92,6 +95,8 @@ pub struct World {
     integrator: Integrator,
     continuous: Continuous,
     discrete: Discrete,
+    /// For questions about bodies where they are.
+    index: query::Index,
 }
 
 /// How a world steps.
@@ -158,6 +163,7 @@ impl World {
             integrator: Integrator::default(),
             continuous: Continuous::default(),
             discrete: Discrete::default(),
+            index: query::Index::default(),
         })
     }
 
@@ -194,6 +200,10 @@ impl World {
     ///
     /// On an error the world stays as it was before the step, to the bit.
     pub fn step(&mut self) -> Result<(), StepError> {
+        self.index.forget();
+        if let Some(events) = &mut self.record.events {
+            events.begin();
+        }
         self.seek_overlaps();
         self.make_plan();
         // What was before is kept until nothing can fail any more.
@@ -203,6 +213,9 @@ impl World {
         let done = self.integrate().and_then(|()| self.collide());
         done.map_err(|(body, cause)| self.failed(body, cause))?;
         self.elapsed.steps += 1;
+        if self.record.events.is_some() {
+            self.list_events();
+        }
         Ok(())
     }
 

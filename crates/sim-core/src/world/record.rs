@@ -1,8 +1,8 @@
 //! What steps have done, for who asks.
 
-use alloc::vec::Vec;
+use alloc::{boxed::Box, vec::Vec};
 
-use super::{Impact, profile::Timer};
+use super::{Impact, events::Events, profile::Timer};
 
 /// What has happened since the world was made.
 #[derive(Clone, Debug, Default)]
@@ -13,6 +13,8 @@ pub(super) struct Record {
     pub(super) list: Option<Vec<Impact>>,
     /// Reads a clock between phases, while someone asks.
     pub(super) timer: Option<Timer>,
+    /// Contacts that begin and end, while someone asks.
+    pub(super) events: Option<Box<Events>>,
     /// Steps that have ended with bodies in contact.
     pub(super) contact_steps: u64,
 }
@@ -23,6 +25,7 @@ pub(super) struct Checkpoint {
     impacts: u64,
     last_impact: Option<Impact>,
     listed: usize,
+    pushes: usize,
 }
 
 impl Record {
@@ -30,6 +33,9 @@ impl Record {
         self.impacts += 1;
         if let Some(list) = &mut self.list {
             list.push(impact.clone());
+        }
+        if let Some(events) = &mut self.events {
+            events.note(&impact);
         }
         self.last_impact = Some(impact);
     }
@@ -39,6 +45,10 @@ impl Record {
             impacts: self.impacts,
             last_impact: self.last_impact.clone(),
             listed: self.list.as_ref().map_or(0, Vec::len),
+            pushes: self
+                .events
+                .as_ref()
+                .map_or(0, |events| events.impacts.len()),
         }
     }
 
@@ -48,6 +58,9 @@ impl Record {
         self.last_impact.clone_from(&to.last_impact);
         if let Some(list) = &mut self.list {
             list.truncate(to.listed);
+        }
+        if let Some(events) = &mut self.events {
+            events.impacts.truncate(to.pushes);
         }
     }
 }

@@ -96,17 +96,11 @@ impl Session {
 
     /// Box of a body about its position.
     pub(super) fn bounds(&self, i: usize) -> Bounds {
-        match self.world.shape(i) {
-            Some(Shape::Mesh(mesh)) => Bounds {
-                centre: mesh.bounds().centre(),
-                half: mesh.bounds().half_extent(),
-            },
-            Some(&Shape::Sphere { radius }) => Bounds {
-                centre: DVec3::ZERO,
-                half: DVec3::splat(radius),
-            },
-            Some(Shape::HalfSpace { .. }) | None => Bounds::default(),
-        }
+        let bounds = self.world.shape(i).and_then(Shape::bounds);
+        bounds.map_or_else(Bounds::default, |[low, high]| Bounds {
+            centre: (low + high) * 0.5,
+            half: (high - low) * 0.5,
+        })
     }
 
     /// Whether a body stands still for ever.

@@ -3,8 +3,7 @@
 //! Between two sampled states the bodies are taken to move straight; whether they touch on that way is
 //! answered exactly, as in the continuous mode.
 
-use sim_core::collide::{ball_touch, touch};
-use sim_core::{Aabb, Collision, DVec3, Impact, Shape, World};
+use sim_core::{Collision, DVec3, Impact, World, query};
 
 use super::Session;
 use crate::number;
@@ -85,14 +84,8 @@ fn may_touch(world: &World, i: usize, j: usize) -> bool {
 
 /// A body's box about its position, m; none where it has no inside to pass through, or no end.
 fn extent(world: &World, i: usize) -> Option<(DVec3, DVec3)> {
-    match world.shape(i)? {
-        Shape::Mesh(mesh) => {
-            let Aabb { min, max } = mesh.bounds();
-            Some((min.as_dvec3(), max.as_dvec3()))
-        }
-        &Shape::Sphere { radius } => Some((DVec3::splat(-radius), DVec3::splat(radius))),
-        Shape::HalfSpace { .. } => None,
-    }
+    let [low, high] = world.shape(i)?.bounds()?;
+    Some((low, high))
 }
 
 /// The first contact on the way, if there is one.
@@ -100,28 +93,15 @@ fn passed(world: &World, i: usize, j: usize) -> Option<Missed> {
     // The one that moves farther is the one that passes.
     let farther = way(world, j).length() >= way(world, i).length();
     let (still, mover) = if farther { (i, j) } else { (j, i) };
-    let offset = world.previous_position(mover) - world.previous_position(still);
     let motion = way(world, mover) - way(world, still);
-    let (part, point) = match (world.shape(still)?, world.shape(mover)?) {
-        (Shape::Mesh(_), Shape::Mesh(_)) => {
-            let touch = touch::first_touch(world.bvh(still)?, world.bvh(mover)?, offset, motion)?;
-            (touch.time, touch.point)
-        }
-        (Shape::Mesh(_), &Shape::Sphere { radius }) => {
-            let touch = ball_touch(world.bvh(still)?, offset, radius, motion)?;
-            (touch.time, touch.point)
-        }
-        (&Shape::Sphere { radius }, Shape::Mesh(_)) => {
-            let touch = ball_touch(world.bvh(mover)?, -offset, radius, -motion)?;
-            (touch.time, offset + touch.time * motion + touch.point)
-        }
-        (&Shape::Sphere { radius: a }, &Shape::Sphere { radius: b }) => {
-            let part = balls_touch(offset, motion, a + b)?;
-            let apart = offset + part * motion;
-            (part, apart * (a / (a + b)))
-        }
-        _ => return None,
-    };
+    let placed = |i: usize| world.placed(i)?.at(world.previous_position(i)).ok();
+    let (first, second) = (placed(still)?, placed(mover)?);
+    // Bodies in overlap are told elsewhere.
+    if query::intersects(first, second) {
+        return None;
+    }
+    let hit = query::time_of_impact(first, second, motion).ok()??;
+    let part = hit.time;
     let dt = world.settings().dt;
     let direction = motion.normalize();
     let thickness = |i: usize| {
@@ -137,22 +117,10 @@ fn passed(world: &World, i: usize, j: usize) -> Option<Missed> {
             before + part * way(world, mover),
             world.position(mover),
         ],
-        point: world.previous_position(still) + part * way(world, still) + point,
+        point: hit.points[0] + part * way(world, still),
         way: motion.length(),
         thickness: thickness(still)?.min(thickness(mover)?),
     })
-}
-
-/// The part of a motion at which two points come as near as `reach` from outside.
-fn balls_touch(offset: DVec3, motion: DVec3, reach: f64) -> Option<f64> {
-    let (speed, closing) = (motion.length_squared(), offset.dot(motion));
-    let gap = offset.length_squared() - reach * reach;
-    let under = closing * closing - speed * gap;
-    if closing >= 0.0 || gap < 0.0 || under < 0.0 {
-        return None;
-    }
-    let part = gap / (-closing + under.sqrt());
-    (part <= 1.0).then_some(part)
 }
 
 impl Missed {

@@ -1,6 +1,6 @@
 //! Picking bodies with a ray.
 
-use sim_core::{DVec3, Shape};
+use sim_core::{DVec3, Shape, query};
 
 use super::Session;
 
@@ -15,24 +15,17 @@ impl Session {
         self.select(hit.map(|(_, i)| i));
     }
 
-    /// The nearest body that a ray meets, and where, in lengths of `direction`.
-    pub(super) fn hit(&mut self, origin: DVec3, direction: DVec3) -> Option<(f64, usize)> {
-        self.world.build_bvhs();
+    /// The nearest body that a ray meets where it is drawn, and where, in lengths of `direction`. Half-spaces are
+    /// everywhere behind something, and are selected in the list instead.
+    pub(super) fn hit(&self, origin: DVec3, direction: DVec3) -> Option<(f64, usize)> {
         (0..self.world.len())
-            .filter(|&i| !self.is_hidden(i))
-            .filter_map(|i| Some((self.ray(i, origin, direction)?, i)))
+            .filter(|&i| !self.is_hidden(i) && !self.is_half_space(i))
+            .filter_map(|i| {
+                let shown = self.world.placed(i)?.at(self.shown_position(i)).ok()?;
+                let hit = query::ray(shown, origin, direction).ok()??;
+                Some((hit.time, i))
+            })
             .min_by(|a, b| a.0.total_cmp(&b.0))
-    }
-
-    /// Where a ray meets a body, in lengths of `direction`. Half-spaces are everywhere behind
-    /// something, and are selected in the list instead.
-    fn ray(&self, i: usize, origin: DVec3, direction: DVec3) -> Option<f64> {
-        let origin = origin - self.shown_position(i);
-        match *self.world.shape(i)? {
-            Shape::Mesh(_) => Some(self.world.bvh(i)?.ray(origin, direction)?.t),
-            Shape::Sphere { radius } => ray_to_sphere(origin, direction, radius),
-            Shape::HalfSpace { .. } => None,
-        }
     }
 
     /// The body drawn as a dot that a ray passes most closely, in distances along it, and close enough.
@@ -56,17 +49,4 @@ impl Session {
             _ => self.bounds(i).half.max_element() <= least,
         }
     }
-}
-
-/// Where a ray first meets a sphere about the origin, in lengths of its direction; from inside,
-/// where it leaves.
-fn ray_to_sphere(origin: DVec3, direction: DVec3, radius: f64) -> Option<f64> {
-    let length = direction.length();
-    let along = origin.dot(direction) / length;
-    // From the point nearest to the centre, rather than by b² - 4ac, which cancels far away.
-    let aside = origin - along / length * direction;
-    let half_chord = (radius * radius - aside.length_squared()).sqrt();
-    let (near, far) = (-along - half_chord, -along + half_chord);
-    let first = if near >= 0.0 { near } else { far };
-    (first >= 0.0).then_some(first / length)
 }

@@ -6,6 +6,7 @@
 //! one, no other one need be looked at. Boxes that have left theirs are sought among all
 //! ([`rows`]), and once they are many, all wide boxes are made anew.
 
+mod near;
 mod neighbours;
 mod rows;
 mod volume;
@@ -14,6 +15,7 @@ use alloc::vec::Vec;
 use core::mem;
 use glam::DVec3;
 
+pub(crate) use near::BoxTree;
 use neighbours::Neighbours;
 use rows::Rows;
 pub(crate) use volume::{Front, Swept};

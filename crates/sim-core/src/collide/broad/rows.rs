@@ -231,6 +231,54 @@ impl Rows {
     }
 }
 
+impl Rows {
+    /// Visits bodies, those whose boxes are nearest first within each row: `near` tells from a box how near
+    /// what is in it is at least, infinite for nothing, and `visit` takes a body and returns how near it is worth
+    /// to look on.
+    pub(super) fn visit_near(
+        &self,
+        near: &impl Fn(&Swept) -> f64,
+        limit: f64,
+        visit: &mut impl FnMut(usize) -> f64,
+    ) {
+        self.visit_row((self.levels.len(), 0), near, limit, visit);
+    }
+
+    fn visit_row(
+        &self,
+        (level, index): (usize, usize),
+        near: &impl Fn(&Swept) -> f64,
+        mut limit: f64,
+        visit: &mut impl FnMut(usize) -> f64,
+    ) -> f64 {
+        let Some(row) = self.levels[level - 1].get(index) else {
+            return limit;
+        };
+        let mut lanes: [(f64, usize); WIDTH] = core::array::from_fn(|lane| {
+            let swept = row.lane(lane);
+            // Lanes that hold nothing.
+            let is_empty = swept.min.x > swept.max.x;
+            let nearest = if is_empty {
+                f64::INFINITY
+            } else {
+                near(&swept)
+            };
+            (nearest, index * WIDTH + lane)
+        });
+        lanes.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+        for (nearest, below) in lanes {
+            if nearest > limit || nearest == f64::INFINITY {
+                break;
+            }
+            limit = match level {
+                1 => visit(self.sorted[below].body),
+                _ => self.visit_row((level - 1, below), near, limit, visit),
+            };
+        }
+        limit
+    }
+}
+
 /// Sorts boxes by where they begin along an axis, soon if they nearly are.
 fn insert(boxes: &mut [Swept], axis: usize) {
     let mut moves = 8 * boxes.len();

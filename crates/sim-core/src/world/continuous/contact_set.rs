@@ -28,7 +28,7 @@ pub(in crate::world) struct ContactConstraint {
     /// Where it was touched, from the first body, m.
     pub(in crate::world) point: DVec3,
     /// Impulse on the second body along the normal in its last solution, N s.
-    pub(super) impulse: f64,
+    pub(in crate::world) impulse: f64,
     /// Friction on the second body in its last solution, N.
     pub(in crate::world) friction: DVec3,
     /// Whether friction has held it in its last solution, or sliding has just ended; so it is at first.

@@ -385,13 +385,11 @@ fn support(world: &World, i: usize, along: DVec3) -> f64 {
 
 fn extent(world: &World, i: usize) -> Extent {
     let (low, high) = match world.shape(i) {
-        Some(Shape::Mesh(mesh)) => {
-            let Aabb { min, max } = mesh.bounds();
-            (min.as_dvec3(), max.as_dvec3())
-        }
-        Some(&Shape::Sphere { radius }) => (DVec3::splat(-radius), DVec3::splat(radius)),
         Some(&Shape::HalfSpace { normal }) => half_space_extent(normal),
-        None => (DVec3::ZERO, DVec3::ZERO),
+        shape => {
+            let bounds = shape.and_then(Shape::bounds);
+            bounds.map_or((DVec3::ZERO, DVec3::ZERO), |[low, high]| (low, high))
+        }
     };
     Extent { low, high }
 }

@@ -1,0 +1,168 @@
+//! Questions about placed shapes: do they meet, how far apart are they, when do they hit each other, where is a
+//! point, what does a ray hit?
+//!
+//! A [`Placed`] is a mesh, sphere or half-space at a position. A mesh is a surface, so that a sphere deep inside
+//! a closed mesh does not meet it; [`locate`] alone knows the inside of a mesh. Spheres and half-spaces are
+//! solid. Nothing here allocates. Worlds answer the same about all of their bodies:
+//! [`World::cast_ray`](crate::World::cast_ray), [`World::cast_shape`](crate::World::cast_shape),
+//! [`World::bodies_meeting`](crate::World::bodies_meeting), [`World::nearest`](crate::World::nearest).
+//!
+//! ```
+//! use sim_core::{DVec3, query::{self, Placed}};
+//!
+//! let ball = Placed::sphere(0.5, DVec3::new(0.0, 3.0, 0.0))?;
+//! let floor = Placed::half_space(DVec3::Y, DVec3::ZERO)?;
+//! let apart = query::distance(floor, ball).expect("not two half-spaces");
+//! assert_eq!(apart.distance, 2.5);
+//! assert_eq!(apart.points, [DVec3::ZERO, DVec3::new(0.0, 2.5, 0.0)]);
+//!
+//! let fall = DVec3::new(1.0, -5.0, 0.0);
+//! let hit = query::time_of_impact(floor, ball, fall)?.expect("it lands");
+//! assert_eq!((hit.time, hit.normal), (0.5, DVec3::Y));
+//! # Ok::<(), query::QueryError>(())
+//! ```
+
+mod distance;
+mod error;
+mod placed;
+mod ray;
+#[cfg(test)]
+mod tests;
+
+use glam::DVec3;
+
+use crate::collide::{self, Contact, Feature, snap};
+pub use crate::collide::{Part, Place};
+pub use distance::distance;
+pub(crate) use distance::distance_within;
+pub use error::QueryError;
+use error::check_vector;
+pub use placed::Placed;
+pub use ray::ray;
+pub(crate) use ray::{Ray, ray_hit};
+
+/// Where two shapes are closest, or touch; of a ray the first shape is what it hits, and the second one the ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Hit {
+    /// When: as a part of the motion, 0 to 1; on a ray in lengths of its direction; 0 where nothing moves.
+    pub time: f64,
+    /// How far the shapes are apart then, m: 0 where they meet.
+    pub distance: f64,
+    /// The points of the first and of the second shape that are closest then, m; the same where they meet.
+    pub points: [DVec3; 2],
+    /// Unit normal, from the first shape to the second. Zero where there is none: of shapes that share a point
+    /// and are not moved into each other.
+    pub normal: DVec3,
+    /// What is closest of the first and of the second mesh; `None` of other shapes, and where it is not known
+    /// (of a mesh against a half-space, and of shapes that share more than a point).
+    pub parts: [Option<Part>; 2],
+}
+
+impl Hit {
+    /// Two shapes that share a point.
+    fn meeting(point: DVec3) -> Hit {
+        Hit {
+            time: 0.0,
+            distance: 0.0,
+            points: [point; 2],
+            normal: DVec3::ZERO,
+            parts: [None; 2],
+        }
+    }
+
+    /// The same with the shapes in the other order, neither of them moving.
+    fn turned(self) -> Hit {
+        let ([one, other], [first, second]) = (self.points, self.parts);
+        Hit {
+            points: [other, one],
+            normal: -self.normal,
+            parts: [second, first],
+            ..self
+        }
+    }
+}
+
+/// Whether two shapes share a point; two half-spaces are never asked, and do not.
+///
+/// Exact for meshes: for the vertices of one placed in the frame of the other, each of which is rounded once
+/// ([`collide::Placement`]). For others up to rounding in sums of products.
+pub fn intersects(first: Placed<'_>, second: Placed<'_>) -> bool {
+    collide::meet(first.form, second.form, first.offset_to(second))
+}
+
+/// When the second of two shapes, moving by `motion` (m) while the first stands, first hits it; `None` if it does
+/// not on this way, and for two half-spaces. Of shapes that both move, `motion` is that of the second less that
+/// of the first, and the points are those where the first stands.
+///
+/// - Shapes that share a point at the start hit at time 0. The normal is zero unless the motion leads into the
+///   contact.
+/// - Otherwise it is the first contact that the motion leads into: to slide along a surface is no hit. Between
+///   meshes it is decided exactly, and its time is the greatest f64 that is not above the exact one
+///   ([`collide::touch`]); with a sphere it is early by at most 2^-48 of all lengths at the normal speed
+///   ([`collide::ball_touch`]).
+///
+/// # Errors
+///
+/// [`QueryError::Vector`] if a component of `motion` is no number within ±1e100 m.
+pub fn time_of_impact(
+    first: Placed<'_>,
+    second: Placed<'_>,
+    motion: DVec3,
+) -> Result<Option<Hit>, QueryError> {
+    check_motion(motion)?;
+    Ok(first_hit(first, second, motion))
+}
+
+pub(crate) fn check_motion(motion: DVec3) -> Result<(), QueryError> {
+    check_vector("motion", motion)
+}
+
+/// The same of a motion that has been checked.
+pub(crate) fn first_hit(first: Placed<'_>, second: Placed<'_>, motion: DVec3) -> Option<Hit> {
+    let offset = first.offset_to(second);
+    let contact = collide::first_contact(first.form, second.form, offset, snap(motion));
+    let contact = contact.map(|contact| hit_of(&contact, first.position));
+    if contact.is_none_or(|hit| hit.time > 0.0) && intersects(first, second) {
+        return distance(first, second);
+    }
+    contact
+}
+
+fn hit_of(contact: &Contact, origin: DVec3) -> Hit {
+    let face = contact.face.map(Part::Face);
+    let parts = match contact.feature {
+        Some(Feature::VertexFace { vertex, face }) => {
+            [Some(Part::Vertex(vertex)), Some(Part::Face(face))]
+        }
+        Some(Feature::FaceVertex { face, vertex }) => {
+            [Some(Part::Face(face)), Some(Part::Vertex(vertex))]
+        }
+        Some(Feature::EdgeEdge { first, second }) => {
+            [Some(Part::Edge(first)), Some(Part::Edge(second))]
+        }
+        None => [face, None],
+    };
+    Hit {
+        time: contact.time,
+        distance: 0.0,
+        points: [origin + contact.point; 2],
+        normal: contact.normal,
+        parts,
+    }
+}
+
+/// Where a point (m) is, seen from a shape; `None` if the shape is an open mesh, which has no inside. A closed
+/// mesh holds the points from which a way out crosses its surface an odd number of times, whichever way its
+/// triangles are wound.
+///
+/// Exact for the point as it is seen from the shape's position, a difference that rounds once: of a mesh
+/// ([`collide::locate`]) and of a sphere; of a half-space up to rounding in a sum of three products.
+///
+/// # Errors
+///
+/// [`QueryError::Vector`] if a component of `point` is no number within ±1e100 m.
+pub fn locate(shape: Placed<'_>, point: DVec3) -> Result<Option<Place>, QueryError> {
+    check_vector("point", point)?;
+    Ok(shape.locate(point - shape.position))
+}

@@ -1,0 +1,247 @@
+//! Contacts that have begun, persisted or ended in a step, by pairs of bodies.
+
+use alloc::{boxed::Box, vec::Vec};
+use glam::DVec3;
+
+use super::{Impact, World};
+
+/// What has become of the contact of two bodies in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ContactEvent {
+    /// What has happened.
+    pub kind: ContactEventKind,
+    /// The bodies, the lower index first.
+    pub bodies: (usize, usize),
+    /// Unit normal, from the first body to the second: of several contacts that of the one with the greatest
+    /// impulse.
+    pub normal: DVec3,
+    /// Where they touch, or have touched last, m.
+    pub point: DVec3,
+    /// What the second body has got from the first in the step, N s: the impulses of impacts along their normals,
+    /// those that have stopped bodies in contact, and the force of contacts that last
+    /// ([`RestingContact::force`](super::RestingContact::force)), friction with it, times how long they have lasted in
+    /// the step. Friction in an impact is not in it, and where forces change within a step it is that of the last
+    /// solution. Of two events of the same bodies in a step the first has all of it.
+    pub impulse: DVec3,
+}
+
+/// What can become of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactEventKind {
+    /// The bodies were not in contact when the step began, and have been since: they had an impact, or came to
+    /// rest on each other.
+    Begun,
+    /// They were in contact when the step began, and are.
+    Persisting,
+    /// They have been in contact, and are no more. Bodies that bounce have both begun and ended.
+    Ended,
+}
+
+/// The events of the last step, and what they are made from.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Events {
+    /// Impacts since the step began.
+    pub(super) impacts: Vec<Push>,
+    /// Contacts after the step.
+    now: Vec<Push>,
+    /// Of each pair that was in contact before it the one that counts, and room for those after it.
+    before: Vec<Push>,
+    next: Vec<Push>,
+    events: Vec<ContactEvent>,
+}
+
+/// An impact, a contact, or all contacts of two bodies.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Push {
+    bodies: (usize, usize),
+    /// Its place in the order of what has happened.
+    order: usize,
+    /// When, s.
+    time: f64,
+    normal: DVec3,
+    point: DVec3,
+    /// On the second body, N s.
+    impulse: DVec3,
+    /// Force that lasts, N.
+    force: DVec3,
+}
+
+impl Events {
+    /// Forgets what a step has noted that has failed.
+    pub(super) fn begin(&mut self) {
+        self.impacts.clear();
+    }
+
+    pub(super) fn note(&mut self, impact: &Impact) {
+        let (i, j) = impact.bodies;
+        let normal = if i < j { impact.normal } else { -impact.normal };
+        self.impacts.push(Push {
+            bodies: (i.min(j), i.max(j)),
+            order: self.impacts.len(),
+            time: impact.time,
+            normal,
+            point: impact.point,
+            impulse: impact.impulse * normal,
+            force: DVec3::ZERO,
+        });
+    }
+
+    /// Lists the events of a step that lasts from a time (s) for `dt`: of each pair in order.
+    fn list(&mut self, start: f64, dt: f64) {
+        self.events.clear();
+        let key = |push: &Push| (push.bodies, push.order);
+        self.impacts.sort_unstable_by_key(key);
+        self.now.sort_unstable_by_key(key);
+        let (mut impacts, mut now, mut before) =
+            (&self.impacts[..], &self.now[..], &self.before[..]);
+        self.next.clear();
+        loop {
+            let next = [impacts.first(), now.first(), before.first()];
+            let Some(bodies) = next.into_iter().flatten().map(|push| push.bodies).min() else {
+                break;
+            };
+            let [impacts, contacts, was] =
+                [&mut impacts, &mut now, &mut before].map(|list| take(list, bodies));
+            let was = was.first();
+            let mut impulse: DVec3 = impacts.iter().map(|impact| impact.impulse).sum();
+            // What has begun in the step has lasted since its last impact.
+            let since = impacts.last().filter(|_| was.is_none());
+            let lasted = since.map_or(dt, |impact| (start + dt - impact.time).clamp(0.0, dt));
+            for contact in contacts {
+                impulse += lasted * contact.force;
+                // The impact that has brought it to rest has told it already.
+                if impacts.is_empty() {
+                    impulse += contact.impulse;
+                }
+            }
+            let greatest = |list: &[Push]| {
+                let size = |push: &Push| {
+                    push.impulse.length_squared() + (dt * push.force).length_squared()
+                };
+                let greater = |one: Push, other: &Push| {
+                    if size(other) > size(&one) {
+                        *other
+                    } else {
+                        one
+                    }
+                };
+                let (first, rest) = list.split_first()?;
+                Some(rest.iter().fold(*first, greater))
+            };
+            let contact = greatest(contacts);
+            let event = |kind, at: &Push, impulse| ContactEvent {
+                kind,
+                bodies,
+                normal: at.normal,
+                point: at.point,
+                impulse,
+            };
+            match (was, contact) {
+                (Some(_), Some(now)) => {
+                    self.events
+                        .push(event(ContactEventKind::Persisting, &now, impulse));
+                }
+                (None, Some(now)) => {
+                    self.events
+                        .push(event(ContactEventKind::Begun, &now, impulse))
+                }
+                (Some(was), None) => {
+                    let last = impacts.last().unwrap_or(was);
+                    self.events
+                        .push(event(ContactEventKind::Ended, last, impulse));
+                }
+                (None, None) => {
+                    if let Some((first, last)) = greatest(impacts).zip(impacts.last()) {
+                        self.events
+                            .push(event(ContactEventKind::Begun, &first, impulse));
+                        self.events
+                            .push(event(ContactEventKind::Ended, last, DVec3::ZERO));
+                    }
+                }
+            }
+            self.next.extend(contact);
+        }
+        core::mem::swap(&mut self.before, &mut self.next);
+    }
+}
+
+/// Takes those of two bodies from the front of a list.
+fn take<'a>(list: &mut &'a [Push], bodies: (usize, usize)) -> &'a [Push] {
+    let count = list.iter().take_while(|push| push.bodies == bodies).count();
+    let (taken, rest) = list.split_at(count);
+    *list = rest;
+    taken
+}
+
+impl World {
+    /// Lists the contacts that begin, persist and end, from the next step on, or no more. Contacts that there are
+    /// now persist. Steps do the same whether they are listed or not.
+    pub fn list_contact_events(&mut self, is_listed: bool) {
+        let is_known = self.record.events.is_some();
+        if !is_listed {
+            self.record.events = None;
+        } else if !is_known {
+            let mut events = Box::new(Events::default());
+            self.note_contacts(&mut events);
+            events.list(self.time(), self.settings.dt);
+            events.events.clear();
+            self.record.events = Some(events);
+        }
+    }
+
+    /// What has become of contacts in the last step, by pairs in order of their indices, as long as
+    /// [`World::list_contact_events`] is on; of a pair that has touched and parted in the step first that it has begun.
+    /// Outside of [`Collision::Continuous`](super::Collision::Continuous) no contact lasts.
+    ///
+    /// As many contacts have begun and not ended as [`World::contacts`] has pairs of bodies. Once there is room for
+    /// as many events as a step has, none is allocated.
+    ///
+    /// ```
+    /// # use sim_core::{Body, ContactEventKind, DVec3, Settings, Shape, World};
+    /// let mut world = World::new(Settings::default())?;
+    /// let shape = Some(Shape::Sphere { radius: 0.5 });
+    /// world.add(Body { shape: shape.clone(), ..Body::default() })?;
+    /// world.add(Body { shape, position: 1.5 * DVec3::X, velocity: -DVec3::X, ..Body::default() })?;
+    /// world.list_contact_events(true);
+    /// while world.contact_events().is_empty() {
+    ///     world.step()?;
+    /// }
+    /// let [begun, ended] = world.contact_events() else { panic!("they bounce") };
+    /// assert_eq!((begun.kind, ended.kind), (ContactEventKind::Begun, ContactEventKind::Ended));
+    /// assert_eq!((begun.bodies, begun.normal, begun.impulse), ((0, 1), DVec3::X, DVec3::X));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn contact_events(&self) -> &[ContactEvent] {
+        self.record
+            .events
+            .as_ref()
+            .map_or(&[], |events| &events.events)
+    }
+
+    /// Lists the events of a step that has been done.
+    #[cold]
+    pub(super) fn list_events(&mut self) {
+        if let Some(mut events) = self.record.events.take() {
+            self.note_contacts(&mut events);
+            let dt = self.settings.dt;
+            events.list(self.time() - dt, dt);
+            self.record.events = Some(events);
+        }
+    }
+
+    fn note_contacts(&self, events: &mut Events) {
+        let all = self.contacts.all().iter().zip(self.contacts());
+        let pushes = all.enumerate().map(|(order, (constraint, contact))| Push {
+            bodies: contact.bodies,
+            order,
+            time: self.time(),
+            normal: contact.normal,
+            point: contact.point,
+            impulse: constraint.impulse * contact.normal,
+            force: contact.force,
+        });
+        events.now.clear();
+        events.now.extend(pushes);
+    }
+}
