@@ -57,6 +57,23 @@
 //! Without bodies: a [`Stepper`] lets any method step any [`System`] `x'' = a(t, x, v)`, and
 //! [`Dopri5`] and [`Dop853`] solve `y' = f(t, y)` to a tolerance.
 //!
+//! # Bodies
+//!
+//! A body is dynamic, kinematic or static ([`BodyKind`]); groups and pairs tell who collides with whom
+//! ([`Groups`], [`World::ignore_pair`]). [`World::bodies`] shows all of each ([`BodyView`]).
+//! Bodies are named by index; where some are removed ([`World::remove`]) a [`BodyHandle`] goes on
+//! naming the same one.
+//!
+//! # Features
+//!
+//! | Feature | What it brings |
+//! |---|---|
+//! | `std` | Asks the processor at run time for wider vectors than the crate was compiled for. |
+//! | `rayon` | Seeks impacts on many threads; the same bits at any number of them. Needs `std`. |
+//! | `serde` | Writes and reads [`Body`], [`Settings`], [`Mesh`], [`Force`] and a whole [`World`], which goes on to the bit. |
+//!
+//! None is on by default. None changes a result.
+//!
 //! # Limits
 //!
 //! - Bodies translate and do not turn. What turning needs is here by itself: [`Inertia`], [`rotation`]
@@ -75,6 +92,9 @@
 #![deny(unsafe_code)]
 
 extern crate alloc;
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
@@ -93,6 +113,8 @@ mod mesh;
 pub mod ode;
 mod pieces;
 pub mod rotation;
+#[cfg(feature = "serde")]
+mod serde_number;
 mod shape;
 #[cfg(test)]
 mod test_meshes;
@@ -101,7 +123,7 @@ mod test_random;
 mod world;
 
 pub use aabb::Aabb;
-pub use body::Body;
+pub use body::{Body, BodyKind};
 pub use bvh::{Bvh, RayHit};
 pub use clock::{ClockError, FixedStep};
 pub use collide::Feature;
@@ -116,6 +138,6 @@ pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
 pub(crate) use shape::Extent;
 pub use shape::Shape;
 pub use world::{
-    Bundled, Collision, ContactFeature, Impact, Overlap, Phase, Profile, RestingContact,
-    SeparateError, Settings, StepError, Touching, World, WorldError,
+    BodyHandle, BodyView, Bundled, Collision, ContactFeature, Groups, Impact, Overlap, Phase,
+    Profile, RestingContact, SeparateError, Settings, StepError, Touching, World, WorldError,
 };
