@@ -113,12 +113,11 @@ pub(crate) fn motley() -> World {
         mass: 3.0,
         ..at(&ball(0.7), 0.5 * DVec3::X)
     };
-    let mut world = world(
-        [Body::default(), floor]
-            .into_iter()
-            .chain(cubes)
-            .chain([lift]),
-    );
+    let first = Body {
+        position: 9.0 * DVec3::X,
+        ..Body::default()
+    };
+    let mut world = world([first, floor].into_iter().chain(cubes).chain([lift]));
     add_gravity(&mut world, -9.81 * DVec3::Y);
     let forces = [
         Force::Gravitation { constant: 0.01 },

@@ -41,6 +41,8 @@ pub(super) struct Snapshot {
     /// Bodies whose contacts are solved once a step.
     bundled: Vec<usize>,
     bundled_in_step: Bundled,
+    /// Bodies at rest, whose contacts are not solved anew.
+    asleep: Vec<usize>,
     placed: bool,
     knows_near: bool,
     impacts: u64,
@@ -142,6 +144,7 @@ impl Snapshot {
             contacts_of: contacts_of.to_vec(),
             bundled,
             bundled_in_step: world.continuous.bundled,
+            asleep: world.continuous.sleepers(),
             placed: world.continuous.placed,
             knows_near: world.continuous.knows_near(),
             impacts: world.record.impacts,

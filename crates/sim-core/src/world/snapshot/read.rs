@@ -60,7 +60,14 @@ impl TryFrom<Snapshot> for World {
             &world.bodies,
         )
         .ok_or("each contact must be listed with its movable bodies, once, and no other")?;
+        world.build_trees_in_touch();
         world.continuous = Continuous::resumed(data.placed, data.knows_near, data.bundled_in_step);
+        data.asleep
+            .iter()
+            .try_for_each(|&body| world.is_there(body))?;
+        world
+            .continuous
+            .put_to_sleep(&data.asleep, world.bodies.len());
         if let Some(impact) = &data.last_impact {
             world.check_impact(impact)?;
         }
@@ -178,6 +185,15 @@ impl World {
         match found {
             true => Ok(()),
             false => Err("the latest impact is at a feature that its bodies do not have".into()),
+        }
+    }
+
+    /// Builds the trees that were there: a step takes those of bodies in touch for granted.
+    fn build_trees_in_touch(&self) {
+        let contacts = self.contacts.all().iter().map(|contact| contact.bodies);
+        for (i, j) in contacts.chain(self.overlaps.pairs.iter().copied()) {
+            self.bodies.need_bvh(i);
+            self.bodies.need_bvh(j);
         }
     }
 
