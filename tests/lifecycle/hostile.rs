@@ -8,7 +8,7 @@ use super::snapshot::motley;
 
 /// Steps a world and asks it all that may go wrong.
 fn use_it(mut world: World) {
-    for _ in 0..3 {
+    for _ in 0..2 {
         let _ = world.step();
         let _ = (world.state_hash(), world.overlaps(), world.meeting());
         for contact in world.contacts().collect::<Vec<_>>() {
@@ -16,7 +16,7 @@ fn use_it(mut world: World) {
         }
     }
     assert!(world.bodies().all(|body| body.position.is_finite()));
-    while !world.is_empty() {
+    for _ in 0..world.len().min(2) {
         let handle = world.handle(world.len() / 2);
         let body = world.index_of(handle).expect("it is there");
         world.remove(body).expect("it is there");
@@ -67,38 +67,33 @@ fn a_text_with_a_wrong_value_is_refused_or_sound() {
         json!([0, 0]),
         json!([5, 1]),
     ];
-    for place in &all {
-        for _ in 0..2 {
-            let mut changed = whole.clone();
-            let there = changed.pointer_mut(place).expect("a place");
-            match (there, random.below(4)) {
-                (Value::Array(items), 0) if !items.is_empty() => {
-                    items.remove(random.below(items.len()));
-                }
-                (Value::Array(items), 1) if !items.is_empty() => {
-                    let twice = items[random.below(items.len())].clone();
-                    items.push(twice);
-                }
-                (there, _) => *there = values[random.below(values.len())].clone(),
+    for _ in 0..250 {
+        let place = &all[random.below(all.len())];
+        let mut changed = whole.clone();
+        let there = changed.pointer_mut(place).expect("a place");
+        match (there, random.below(4)) {
+            (Value::Array(items), 0) if !items.is_empty() => {
+                items.remove(random.below(items.len()));
             }
-            match serde_json::from_value::<World>(changed) {
-                Ok(world) => use_it(world),
-                Err(_) => refused += 1,
+            (Value::Array(items), 1) if !items.is_empty() => {
+                let twice = items[random.below(items.len())].clone();
+                items.push(twice);
             }
+            (there, _) => *there = values[random.below(values.len())].clone(),
+        }
+        match serde_json::from_value::<World>(changed) {
+            Ok(world) => use_it(world),
+            Err(_) => refused += 1,
         }
     }
-    assert!(
-        all.len() > 300 && refused > all.len(),
-        "{refused} {}",
-        all.len()
-    );
+    assert!(all.len() > 300 && refused > 100, "{refused} {}", all.len());
 }
 
 #[test]
 fn bytes_that_have_been_changed_are_refused_or_sound() {
     let bytes = postcard::to_allocvec(&motley()).expect("bytes");
     let (mut refused, mut read, mut random) = (0, 0, Random::splitmix(9));
-    for _ in 0..1500 {
+    for _ in 0..250 {
         let mut changed = bytes.clone();
         for _ in 0..1 + random.below(3) {
             let place = random.below(changed.len());
@@ -119,7 +114,7 @@ fn bytes_that_have_been_changed_are_refused_or_sound() {
             Err(_) => refused += 1,
         }
     }
-    assert!(refused > 100 && read > 100, "{refused} {read}");
+    assert!(refused > 20 && read > 20, "{refused} {read}");
 }
 
 #[test]
