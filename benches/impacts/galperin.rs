@@ -2,7 +2,7 @@
 //! nothing to say here.
 
 use criterion::Criterion;
-use sim_core::{Body, DVec3, Settings, Shape, World};
+use sim_core::{Body, BodyKind, DVec3, Settings, Shape, World};
 
 use crate::table::{Table, time};
 use crate::watch::{self, Engine};
@@ -21,7 +21,7 @@ fn world(k: i32) -> World {
     };
     let wall = Body {
         shape: Some(Shape::HalfSpace { normal: DVec3::X }),
-        mass: f64::INFINITY,
+        kind: BodyKind::Static,
         ..Body::default()
     };
     for body in [wall, ball(1.0, 1.0, 0.0), ball(100f64.powi(k), 2.0, -1.0)] {

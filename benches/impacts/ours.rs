@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use sim_core::{Body, Collision, DVec3, Force, Mesh, Method, Settings, Shape, Vec3, World};
+use sim_core::{
+    Body, BodyKind, Collision, DVec3, Force, Mesh, Method, Settings, Shape, Vec3, World,
+};
 
 use crate::scene::{Form, Scene};
 use crate::watch::Engine;
@@ -37,7 +39,11 @@ pub(crate) fn world(scene: &Scene, collision: Collision, method: &str) -> World 
             shape,
             position: item.position,
             velocity: item.velocity,
-            mass: if item.is_fixed() { f64::INFINITY } else { 1.0 },
+            kind: if item.is_fixed() {
+                BodyKind::Kinematic
+            } else {
+                BodyKind::Dynamic
+            },
             restitution: scene.restitution,
             friction: scene.friction,
             ..Body::default()

@@ -1,13 +1,13 @@
 //! A ball that falls on a floor, by nothing but the public interface of `sim-core`.
 
-use sim_core::{Body, DVec3, Force, Settings, Shape, World};
+use sim_core::{Body, BodyKind, DVec3, Force, Settings, Shape, World};
 
 /// The height of a ball of radius 0.5 m, dropped from 2 m, after a second, m; it loses nothing.
 pub fn height_after_a_second() -> Result<f64, Box<dyn std::error::Error>> {
     let mut world = World::new(Settings::default())?;
     world.add(Body {
         shape: Some(Shape::HalfSpace { normal: DVec3::Y }),
-        mass: f64::INFINITY,
+        kind: BodyKind::Static,
         ..Body::default()
     })?;
     let ball = world.add(Body {

@@ -1,7 +1,9 @@
 //! What the probe does: some bodies under every method in every collision mode, and the hash of it all.
 
 use alloc::sync::Arc;
-use sim_core::{Body, Collision, DVec3, Force, METHODS, Mesh, Settings, Shape, Vec3, World};
+use sim_core::{
+    Body, BodyKind, Collision, DVec3, Force, METHODS, Mesh, Settings, Shape, Vec3, World,
+};
 
 /// The hash on every machine, with the standard library and without.
 pub(crate) const EXPECTED: u64 = 0x98c5_0ef2_c0c8_f421;
@@ -41,7 +43,7 @@ fn world(settings: Settings, mesh: &Arc<Mesh>) -> Option<World> {
     let mut world = World::new(settings).ok()?;
     let floor = Body {
         shape: Some(Shape::HalfSpace { normal: DVec3::Y }),
-        mass: f64::INFINITY,
+        kind: BodyKind::Static,
         ..Body::default()
     };
     let ball = Body {

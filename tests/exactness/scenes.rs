@@ -92,7 +92,7 @@ pub(crate) fn step(world: &mut World) -> Result<Vec<Impact>, String> {
 
 /// Kinetic energy, and potential energy under a weight along -y, J.
 pub(crate) fn energy(world: &World, gravity: f64) -> f64 {
-    let movable = (0..world.len()).filter(|&i| world.mass(i).is_finite());
+    let movable = (0..world.len()).filter(|&i| world.kind(i).is_movable());
     let potential = movable.map(|i| world.mass(i) * gravity * world.position(i).y);
     world.kinetic_energy() + potential.sum::<f64>()
 }

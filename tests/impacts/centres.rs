@@ -36,13 +36,21 @@ fn drift(world: &mut World, steps: u32) -> Result<f64, String> {
         fastest = fastest.max(world.kinetic_energy());
         for impact in &impacts {
             let (i, j) = impact.bodies;
-            let (first, second) = (1.0 / world.mass(i), 1.0 / world.mass(j));
+            let (first, second) = (inverse_mass(world, i), inverse_mass(world, j));
             let speed = impact.speeds.0;
             fastest = fastest.max(0.5 * speed * speed / (first + second));
         }
         most = most.max((energy(world) - start).abs());
     }
     Ok(most / fastest)
+}
+
+/// 1/kg; 0 of a body that nothing moves.
+fn inverse_mass(world: &World, body: usize) -> f64 {
+    match world.kind(body).is_movable() {
+        true => 1.0 / world.mass(body),
+        false => 0.0,
+    }
 }
 
 fn gravitating(method: &'static Method, dt: f64, stars: &[Body]) -> World {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use kit::bodies::wall;
 use kit::meshes::cube;
-use sim_core::{Body, DVec3, Mesh, World};
+use sim_core::{Body, BodyKind, DVec3, Mesh, World};
 
 use crate::shapes::star;
 use crate::worlds::{DT, Kept, ball, bits, mesh_body, run, run_apart, world};
@@ -92,13 +92,7 @@ fn exact_ties_are_decided_the_same_way_in_every_order() {
         let mut in_order = passing(body, body, aside, velocity);
         let mut bodies: Vec<Body> = Vec::new();
         for i in [1, 2, 0] {
-            bodies.push(Body {
-                shape: in_order.shape(i).cloned(),
-                position: in_order.position(i),
-                velocity: in_order.velocity(i),
-                mass: in_order.mass(i),
-                ..Body::default()
-            });
+            bodies.push(in_order.body(i).to_body());
         }
         let mut reordered = world(DT, &bodies);
         let energy = in_order.kinetic_energy();
@@ -124,7 +118,7 @@ fn joints_of_a_floor_stop_nothing() {
     for height in [1.0 + 1e-12, 1.0 + 1e-9] {
         let mut bodies: Vec<Body> = (0..4)
             .map(|i| Body {
-                mass: f64::INFINITY,
+                kind: BodyKind::Static,
                 ..mesh_body(&tile, DVec3::X * f64::from(i), DVec3::ZERO)
             })
             .collect();

@@ -79,7 +79,7 @@ pub(crate) struct Kept {
 
 impl Kept {
     pub(crate) fn of(world: &World) -> Kept {
-        let movable = (0..world.len()).filter(|&i| world.mass(i).is_finite());
+        let movable = (0..world.len()).filter(|&i| world.kind(i).is_movable());
         Kept {
             energy: world.kinetic_energy(),
             momentum: world.momentum(),

@@ -1,6 +1,6 @@
 //! Bodies.
 
-use sim_core::{Body, DVec3, Shape};
+use sim_core::{Body, BodyKind, DVec3, Shape};
 
 use crate::shapes::half_space;
 
@@ -22,7 +22,7 @@ pub fn body(shape: &Shape, position: DVec3, velocity: DVec3) -> Body {
 /// The same body, which nothing moves.
 pub fn immovable(body: Body) -> Body {
     Body {
-        mass: f64::INFINITY,
+        kind: BodyKind::Kinematic,
         ..body
     }
 }

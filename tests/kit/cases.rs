@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use scene::{FORMATS, Scene, mesh_file};
 use sim_core::collide::{naive, touch, tree};
-use sim_core::{Body, Bvh, Collision, DVec3, METHODS, Mesh, Settings, Shape, Vec3, World};
+use sim_core::{
+    Body, BodyKind, Bvh, Collision, DVec3, METHODS, Mesh, Settings, Shape, Vec3, World,
+};
 
 use crate::oracle::segment_meets_triangle;
 
@@ -219,15 +221,16 @@ fn step(bytes: &[u8]) {
             shape,
             position: 4.0 * source.vector(),
             velocity: 30.0 * source.vector(),
-            mass: if kind % 4 == 1 || kind > 200 {
-                f64::INFINITY
+            mass: 1.0 + f64::from(kind % 7),
+            kind: if kind % 4 == 1 || kind > 200 {
+                BodyKind::Static
             } else {
-                1.0 + f64::from(kind % 7)
+                BodyKind::Dynamic
             },
             ..Body::default()
         };
         // Immovable bodies that move may give energy.
-        let still = body.mass.is_infinite();
+        let still = body.kind == BodyKind::Static;
         let velocity = if still { DVec3::ZERO } else { body.velocity };
         let _ = world.add(Body { velocity, ..body });
     }

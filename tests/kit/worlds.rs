@@ -51,7 +51,7 @@ pub fn meeting(world: &World, settings: Settings) -> Vec<(usize, usize)> {
     let bodies = (0..world.len()).map(|i| Body {
         shape: world.shape(i).cloned(),
         position: world.position(i),
-        mass: world.mass(i),
+        kind: world.kind(i),
         ..Body::default()
     });
     world_of(settings, bodies).overlapping().to_vec()

@@ -4,7 +4,7 @@ use kit::bodies::{at, immovable};
 use kit::random::Random;
 use kit::shapes::{ball, cow, cuboid, half_space};
 use kit::worlds::{add_gravity, meeting, world, world_of};
-use sim_core::{Body, Collision, DVec3, SeparateError, Settings, World};
+use sim_core::{Body, BodyKind, Collision, DVec3, SeparateError, Settings, World};
 
 use crate::WEIGHT;
 
@@ -21,7 +21,7 @@ fn separated(world: &mut World, what: &str) -> Vec<usize> {
         assert_eq!(world.velocity(i), velocities[i], "{what}");
         assert_eq!(moved.contains(&i), world.position(i) != before[i], "{what}");
         assert!(
-            world.mass(i).is_finite() || world.position(i) == before[i],
+            world.kind(i).is_movable() || world.position(i) == before[i],
             "{what}"
         );
     }
@@ -52,7 +52,7 @@ fn pairs_of_all_shapes_are_moved_out_of_each_other() {
                     body.mass = [1.0, 1e-3, 7.0][random.below(3)];
                 }
                 if random.below(2) == 0 {
-                    pair[random.below(2)].mass = f64::INFINITY;
+                    pair[random.below(2)].kind = BodyKind::Kinematic;
                 }
                 let what = format!("{pair:?}");
                 separated(&mut world(pair), &what[..what.len().min(400)]);

@@ -2,7 +2,7 @@
 
 use kit::shapes::{ball, cube};
 use kit::worlds::{GRAVITY, set_rate, step};
-use sim_core::{Body, DVec3, METHODS, Method, World};
+use sim_core::{Body, BodyKind, DVec3, METHODS, Method, World};
 
 use crate::scenes::{ground, rk4, world};
 
@@ -310,7 +310,7 @@ fn what_slides_off_an_edge_falls_from_there() {
         for x in [-1.0, 0.0] {
             let table = Body {
                 position: x * DVec3::X,
-                mass: f64::INFINITY,
+                kind: BodyKind::Static,
                 ..brick.clone()
             };
             world.add(table).expect("a table");

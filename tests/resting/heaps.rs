@@ -8,7 +8,7 @@ use sim_core::{Body, DVec3, World};
 use crate::scenes::{ground, rk4, world};
 
 fn energy(world: &World) -> f64 {
-    let movable = (0..world.len()).filter(|&body| world.mass(body).is_finite());
+    let movable = (0..world.len()).filter(|&body| world.kind(body).is_movable());
     let of = |body: usize| {
         let (mass, at, velocity) = (world.mass(body), world.position(body), world.velocity(body));
         mass * (0.5 * velocity.length_squared() + GRAVITY * at.y)

@@ -2,7 +2,8 @@
 
 use kit::{bodies, shapes, worlds};
 use sim_core::{
-    Body, Collision, DQuat, DVec3, Inertia, Settings, Shape, StepError, Turn, World, WorldError,
+    Body, BodyKind, Collision, DQuat, DVec3, Inertia, Settings, Shape, StepError, Turn, World,
+    WorldError,
 };
 
 const G: f64 = 9.81;
@@ -33,7 +34,7 @@ fn table(restitution: f64) -> Body {
 
 /// Kinetic and potential energy, J.
 fn energy(world: &World) -> f64 {
-    let bodies = (0..world.len()).filter(|&body| world.mass(body).is_finite());
+    let bodies = (0..world.len()).filter(|&body| world.kind(body).is_movable());
     world.kinetic_energy()
         + bodies
             .map(|body| world.mass(body) * G * world.position(body).y)
@@ -249,8 +250,8 @@ fn what_cannot_turn_is_refused_by_name() {
     assert!((world.turning_energy() / before - 3.0).abs() < 1e-12);
     assert!((world.spin(1) - spin).length() < 1e-15);
     assert_eq!(
-        world.set_mass(1, f64::INFINITY),
-        Err(WorldError::TurningMass { body: 1 })
+        world.set_kind(1, BodyKind::Static),
+        Err(WorldError::TurningKind { body: 1 })
     );
     let settings = Settings {
         collision: Collision::Bvh,

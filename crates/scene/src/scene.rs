@@ -56,14 +56,21 @@ pub struct SceneBody {
     pub velocity: DVec3,
     /// Constant force in newtons.
     pub force: DVec3,
-    /// Mass in kilograms, above 0; infinite for an immovable body, as half-spaces of a scene file
-    /// always are.
+    /// Whether nothing moves it: it stands still or keeps its velocity, as half-spaces of a scene file
+    /// always do.
+    pub immovable: bool,
+    /// Mass in kilograms, above 0; it counts while the body is movable, and files hold it then.
     pub mass: f64,
     /// Part of the approaching speed with which it leaves an impact, 0 to 1.
     pub restitution: f64,
     /// Coefficient of friction, from 0 (smooth) to infinity (never slips); of two bodies the
     /// geometric mean counts ([`sim_core::Body::friction`]).
     pub friction: f64,
+    /// The names of the groups that it is in; `None`: in all, of all names.
+    pub groups: Option<Vec<String>>,
+    /// The names of the groups that it collides with; `None`: with all. Two bodies collide if each is in
+    /// a group with which the other one does.
+    pub collides_with: Option<Vec<String>>,
     /// Colour as sRGB-encoded red, green and blue from 0 to 1, if the scene chooses one.
     pub colour: Option<[f32; 3]>,
 }
@@ -97,9 +104,12 @@ impl SceneBody {
             scale: DVec3::ONE,
             velocity: DVec3::ZERO,
             force: DVec3::ZERO,
-            mass: if is_half_space { f64::INFINITY } else { 1.0 },
+            immovable: is_half_space,
+            mass: 1.0,
             restitution: 1.0,
             friction: 0.0,
+            groups: None,
+            collides_with: None,
             colour: None,
         }
     }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3, EulerRot};
-use sim_core::{Body, Mesh, MeshError, Settings, Shape, World};
+use sim_core::{Body, BodyKind, Groups, Mesh, MeshError, Settings, Shape, World};
 
 use crate::scene::{Scene, SceneBody, SceneShape};
 use crate::{MeshRef, SceneError};
@@ -23,6 +23,14 @@ impl Scene {
         };
         let mut world =
             World::new(settings).map_err(|error| self.world_error(None, None, error))?;
+        let names = group_names(&self.bodies);
+        if names.len() > MOST_GROUPS {
+            let what = format!(
+                "{} groups are named: there can be {MOST_GROUPS}",
+                names.len()
+            );
+            return Err(self.world_error(None, Some("groups"), what));
+        }
         let mut baked = Baked::default();
         for body in &self.bodies {
             let shape = match &body.shape {
@@ -39,11 +47,16 @@ impl Scene {
                 shape: Some(shape),
                 position: body.position,
                 velocity: body.velocity,
+                kind: kind(body),
                 mass: body.mass,
                 force: body.force,
                 restitution: body.restitution,
                 friction: body.friction,
-                turn: None,
+                groups: Groups {
+                    member_of: bits(&names, body.groups.as_deref()),
+                    collides_with: bits(&names, body.collides_with.as_deref()),
+                },
+                ..Body::default()
             });
             added.map_err(|error| self.world_error(Some(body), None, error))?;
         }
@@ -67,6 +80,43 @@ impl Scene {
             field: field.map(str::to_owned),
             what: what.to_string(),
         }
+    }
+}
+
+/// Groups that bodies of a scene can be in.
+const MOST_GROUPS: usize = 32;
+
+/// The names of all groups of some bodies, in the order in which they come up.
+fn group_names(bodies: &[SceneBody]) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for body in bodies {
+        let own = body.groups.iter().chain(&body.collides_with).flatten();
+        for name in own {
+            // More than there can be are not counted one by one.
+            if !names.contains(&name.as_str()) && names.len() <= MOST_GROUPS {
+                names.push(name);
+            }
+        }
+    }
+    names
+}
+
+/// A bit for each of some groups, all bits where none are named.
+fn bits(names: &[&str], groups: Option<&[String]>) -> u32 {
+    let bit = |name: &String| names.iter().position(|known| known == name);
+    groups.map_or(u32::MAX, |groups| {
+        groups
+            .iter()
+            .filter_map(bit)
+            .fold(0, |bits, bit| bits | 1 << bit)
+    })
+}
+
+fn kind(body: &SceneBody) -> BodyKind {
+    match (body.immovable, body.velocity == DVec3::ZERO) {
+        (false, _) => BodyKind::Dynamic,
+        (true, false) => BodyKind::Kinematic,
+        (true, true) => BodyKind::Static,
     }
 }
 

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use scene::mesh_file::BUILTIN_MESHES;
 use scene::{MeshRef, SCENES, Scene, SceneBody, SceneError, SceneShape};
-use sim_core::{Collision, METHODS, Mesh, Shape};
+use sim_core::{BodyKind, Collision, METHODS, Mesh, Shape};
 
 fn mesh(name: &str) -> SceneShape {
     SceneShape::Mesh(MeshRef::builtin(name).expect("built in"))
@@ -91,20 +91,64 @@ fn everything_can_be_said() {
     assert_eq!(a.force, DVec3::new(0.0, 0.0, 7.0));
     assert_eq!(a.mass, 2.0);
     assert_eq!(a.colour, Some([1.0, 0.0, 128.0 / 255.0]));
-    assert_eq!((b.scale, b.mass), (DVec3::splat(2.0), f64::INFINITY));
+    assert_eq!((b.scale, b.immovable), (DVec3::splat(2.0), true));
     assert!(Arc::ptr_eq(triangles(a), triangles(b)));
     assert_eq!(c.shape, SceneShape::Sphere { radius: 0.5 });
     assert_eq!((c.mass, c.restitution), (1.0, 0.25));
     let normal = DVec3::new(0.0, 2.0, 0.0);
     assert_eq!(d.shape, SceneShape::HalfSpace { normal });
-    assert_eq!((d.mass, d.restitution), (f64::INFINITY, 1.0));
+    assert_eq!((d.immovable, d.restitution), (true, 1.0));
     let friction = [0.0, 0.0, 0.3, f64::INFINITY];
     assert_eq!([a, b, c, d].map(|body| body.friction), friction);
     let world = scene.world().expect("a world");
     assert_eq!(world.shape(2), Some(&Shape::Sphere { radius: 0.5 }));
     assert_eq!(world.shape(3), Some(&Shape::HalfSpace { normal: DVec3::Y }));
-    assert_eq!((world.mass(3), world.restitution(2)), (f64::INFINITY, 0.25));
+    assert_eq!(
+        (world.kind(3), world.restitution(2)),
+        (BodyKind::Static, 0.25)
+    );
     assert_eq!([0, 1, 2, 3].map(|i| world.friction(i)), friction);
+}
+
+#[test]
+fn groups_of_a_file_tell_who_collides_with_whom() {
+    let text = r#"
+        rate = 60
+        [[body]]
+        name = "spark"
+        sphere = 0.5
+        groups = ["sparks"]
+        collides_with = ["walls"]
+        [[body]]
+        name = "wall"
+        half-space = [0, 1, 0]
+        groups = ["walls", "all else"]
+        [[body]]
+        name = "anything"
+        sphere = 0.5
+        [[body]]
+        name = "ghost"
+        sphere = 0.5
+        collides_with = []
+    "#;
+    let scene = parse(text).expect("a scene");
+    assert_eq!(parse(&scene.to_toml()).expect("its text"), scene);
+    let world = scene.world().expect("a world");
+    let collide = |i, j| world.groups(i).collide(world.groups(j));
+    assert!(collide(0, 1) && collide(0, 2) && collide(1, 2) && !collide(0, 0));
+    assert!((0..4).all(|other| !collide(3, other)));
+    let empty = text.replace("\"walls\", ", "\" \", ");
+    let error = parse(&empty).expect_err("a name").to_string();
+    assert!(
+        error.contains("line 11") && error.contains("groups"),
+        "{error}"
+    );
+    // More than there are bits.
+    let mut many = scene.clone();
+    let names = (0..33).map(|n| n.to_string());
+    many.bodies[0].groups = Some(names.collect());
+    let error = many.world().expect_err("too many").to_string();
+    assert!(error.contains("groups"), "{error}");
 }
 
 #[test]
@@ -577,21 +621,34 @@ fn body() -> impl Strategy<Value = SceneBody> {
     let moved = (vector(), vector(), vector());
     let turned = (vector(), scale);
     let colour = proptest::option::of(any::<[u8; 3]>());
-    let mass = prop_oneof![1e-100..1e100_f64, Just(f64::INFINITY)];
+    // The mass of an immovable body has no text.
+    let mass = prop_oneof![
+        (1e-100..1e100_f64).prop_map(|mass| (mass, false)),
+        Just((1.0, true))
+    ];
     let restitution = prop_oneof![0.0..=1.0_f64, Just(1.0)];
     let friction = prop_oneof![0.0..1e100_f64, Just(0.0), Just(f64::INFINITY)];
-    let impact = (mass, restitution, friction);
+    let groups = || proptest::option::of(proptest::collection::vec("[a-c]{1,2}", 0..3));
+    let impact = (mass, restitution, (friction, groups(), groups()));
     (any::<String>(), shape(), moved, turned, impact, colour).prop_map(
-        |(name, shape, moved, (rotation, scale), (mass, restitution, friction), colour)| {
+        |(
+            name,
+            shape,
+            moved,
+            (rotation, scale),
+            ((mass, immovable), restitution, (friction, groups, collides)),
+            colour,
+        )| {
             let mut body = SceneBody::new(name, shape);
             (body.position, body.velocity, body.force) = moved;
             (body.restitution, body.friction) = (restitution, friction);
+            (body.groups, body.collides_with) = (groups, collides);
             body.colour = colour.map(|bytes| bytes.map(|byte| f32::from(byte) / 255.0));
             if body.mesh().is_some() {
                 (body.rotation, body.scale) = (rotation, scale);
             }
             if !matches!(body.shape, SceneShape::HalfSpace { .. }) {
-                body.mass = mass;
+                (body.mass, body.immovable) = (mass, immovable);
             }
             body
         },

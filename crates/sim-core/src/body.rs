@@ -2,23 +2,63 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::{Inertia, Shape};
+use crate::{Groups, Inertia, Shape};
+
+/// What moves a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum BodyKind {
+    /// Forces and impulses do.
+    #[default]
+    Dynamic,
+    /// Nothing: it keeps its velocity until that is set, as a lift or a closing wall does, and what it
+    /// meets gives way.
+    Kinematic,
+    /// Nothing: it stands still, as a floor does.
+    Static,
+}
+
+impl BodyKind {
+    /// Whether forces and impulses change the motion of such a body. Two that are not movable pass through
+    /// each other.
+    #[inline]
+    #[must_use]
+    pub const fn is_movable(self) -> bool {
+        matches!(self, BodyKind::Dynamic)
+    }
+}
 
 /// A body at the start: where it is, how it moves, what drives it. It translates, and a fixed
 /// orientation and scale are part of its mesh ([`Mesh::transformed`](crate::Mesh::transformed)), unless
 /// it is told to [`turn`](Body::turn).
+///
+/// ```
+/// use sim_core::{Body, BodyKind, DVec3, Shape};
+///
+/// let floor = Body {
+///     shape: Some(Shape::HalfSpace { normal: DVec3::Y }),
+///     kind: BodyKind::Static,
+///     ..Body::default()
+/// };
+/// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Body {
     /// What collides; `None` is a point, which meets nothing.
     pub shape: Option<Shape>,
+    /// What moves it.
+    pub kind: BodyKind,
     /// Place of the shape's origin, m; of a body that turns, of its centre of mass.
     pub position: DVec3,
-    /// Velocity, m/s; of a body that turns, of its centre of mass.
+    /// Velocity, m/s; zero of a static body; of a body that turns, of its centre of mass.
     pub velocity: DVec3,
-    /// Mass, kg; positive. Infinite for a body that nothing moves and that keeps its velocity:
-    /// static where that is zero, kinematic where it is not.
+    /// Mass, kg, from 1e-100 to 1e100. It counts while the body is dynamic.
     pub mass: f64,
-    /// Constant resultant of all forces, N.
+    /// Constant resultant of all forces, N. It counts while the body is dynamic.
     pub force: DVec3,
     /// Part of the approaching speed with which it leaves an impact, 0 to 1. Of two bodies the
     /// lesser one counts.
@@ -29,13 +69,23 @@ pub struct Body {
     ///
     /// Of two bodies the geometric mean `sqrt(µ1 µ2)` counts; where one is smooth it is 0, whatever
     /// the other is (0 times infinity is 0).
+    #[cfg_attr(feature = "serde", serde(with = "crate::serde_number"))]
     pub friction: f64,
+    /// Who it collides with.
+    pub groups: Groups,
+    /// A number for who uses the world, which does not read it.
+    pub user_data: u64,
     /// How it is turned and turns; `None` for a body that translates, and pays nothing for this.
     pub turn: Option<Turn>,
 }
 
 /// How a body is turned, how it turns, and what resists.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Turn {
     /// Turns the shape's frame into the world; of unit length.
     pub rotation: DQuat,
@@ -44,7 +94,7 @@ pub struct Turn {
     /// Constant torque about the centre of mass in the world, N m.
     pub torque: DVec3,
     /// Centre of mass, principal moments and axes in the shape's frame. `None` takes those of a body
-    /// that is the same everywhere within its closed mesh, or ball; a body of infinite mass, whose
+    /// that is the same everywhere within its closed mesh, or ball; a body that is not dynamic, whose
     /// spin nothing changes, takes any, about its centre.
     pub inertia: Option<Inertia>,
 }
@@ -62,16 +112,19 @@ impl Default for Turn {
 }
 
 impl Default for Body {
-    /// An elastic, smooth point of 1 kg at rest at the origin.
+    /// An elastic, smooth, dynamic point of 1 kg at rest at the origin.
     fn default() -> Body {
         Body {
             shape: None,
+            kind: BodyKind::Dynamic,
             position: DVec3::ZERO,
             velocity: DVec3::ZERO,
             mass: 1.0,
             force: DVec3::ZERO,
             restitution: 1.0,
             friction: 0.0,
+            groups: Groups::ALL,
+            user_data: 0,
             turn: None,
         }
     }

@@ -17,6 +17,11 @@ use crate::Jacobians;
 
 /// A force of a world.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Force {
     /// Weight: every body falls with the same acceleration.
     Gravity {
@@ -79,14 +84,16 @@ pub enum Force {
         /// `G`, m³/(kg s²), from 0.
         constant: f64,
     },
-    /// A law of one body's motion from outside.
+    /// A law of one body's motion from outside. It is code: `serde` refuses it.
+    #[cfg_attr(feature = "serde", serde(skip))]
     Body {
         /// The body it acts on; `None`: every body.
         body: Option<usize>,
         /// The law.
         law: Law<dyn BodyLaw>,
     },
-    /// A law of two bodies' relative motion from outside.
+    /// A law of two bodies' relative motion from outside. It is code: `serde` refuses it.
+    #[cfg_attr(feature = "serde", serde(skip))]
     Pair {
         /// The bodies it acts on, two different ones; `None`: every two.
         bodies: Option<[usize; 2]>,
@@ -113,7 +120,7 @@ pub struct BodyMotion {
 pub struct PairMotion {
     /// Time, s.
     pub time: f64,
-    /// Masses, kg.
+    /// Masses, kg; infinite of a body that is not dynamic.
     pub mass: [f64; 2],
     /// From the first to the second, m.
     pub position: DVec3,

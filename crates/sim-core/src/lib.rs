@@ -61,6 +61,23 @@
 //! Without bodies: a [`Stepper`] lets any method step any [`System`] `x'' = a(t, x, v)`, and
 //! [`Dopri5`] and [`Dop853`] solve `y' = f(t, y)` to a tolerance.
 //!
+//! # Bodies
+//!
+//! A body is dynamic, kinematic or static ([`BodyKind`]); groups and pairs tell who collides with whom
+//! ([`Groups`], [`World::ignore_pair`]). [`World::bodies`] shows all of each ([`BodyView`]).
+//! Bodies are named by index; where some are removed ([`World::remove`]) a [`BodyHandle`] goes on
+//! naming the same one.
+//!
+//! # Features
+//!
+//! | Feature | What it brings |
+//! |---|---|
+//! | `std` | Asks the processor at run time for wider vectors than the crate was compiled for. |
+//! | `rayon` | Seeks impacts on many threads; the same bits at any number of them. Needs `std`. |
+//! | `serde` | Writes and reads [`Body`], [`Settings`], [`Mesh`], [`Force`] and a whole [`World`], which goes on to the bit. |
+//!
+//! None is on by default. None changes a result.
+//!
 //! # Limits
 //!
 //! - Bodies turn where they have a [`Turn`], in the continuous mode and without friction. In contact they drift, which
@@ -80,6 +97,9 @@
 #![deny(unsafe_code)]
 
 extern crate alloc;
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
@@ -99,6 +119,8 @@ pub mod ode;
 mod pieces;
 pub mod query;
 pub mod rotation;
+#[cfg(feature = "serde")]
+mod serde_number;
 mod shape;
 #[cfg(test)]
 mod test_meshes;
@@ -107,7 +129,7 @@ mod test_random;
 mod world;
 
 pub use aabb::Aabb;
-pub use body::{Body, Turn};
+pub use body::{Body, BodyKind, Turn};
 pub use bvh::{Bvh, RayHit};
 pub use clock::{ClockError, FixedStep};
 pub use collide::Feature;
@@ -122,6 +144,7 @@ pub use ode::{Dop853, Dopri5, SolveError, Tolerance};
 pub(crate) use shape::Extent;
 pub use shape::Shape;
 pub use world::{
-    Bundled, Collision, ContactEvent, ContactEventKind, ContactFeature, Impact, Overlap, Phase,
-    Profile, RestingContact, SeparateError, Settings, StepError, Touching, World, WorldError,
+    BodyHandle, BodyView, Bundled, Collision, ContactEvent, ContactEventKind, ContactFeature,
+    Groups, Impact, Overlap, Phase, Profile, RestingContact, SeparateError, Settings, StepError,
+    Touching, World, WorldError,
 };

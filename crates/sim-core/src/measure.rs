@@ -1,11 +1,11 @@
-//! Quantities that a force-free world conserves. Immovable bodies, of infinite mass, do not count.
+//! Quantities that a force-free world conserves. Only dynamic bodies count.
 
 use glam::DVec3;
 
 use crate::World;
 
 impl World {
-    /// Kinetic energy of all bodies, J, with that of turning.
+    /// Kinetic energy of all dynamic bodies, J, with that of turning.
     pub fn kinetic_energy(&self) -> f64 {
         let moving: f64 = self
             .movable()
@@ -17,7 +17,7 @@ impl World {
     /// Kinetic energy of all bodies that is in how they turn about their centres of mass, J.
     pub fn turning_energy(&self) -> f64 {
         self.turning_bodies()
-            .filter(|&i| self.mass(i).is_finite())
+            .filter(|&i| self.kind(i).is_movable())
             .map(|i| 0.5 * self.angular_momentum(i).dot(self.spin(i)))
             .sum()
     }
@@ -32,15 +32,15 @@ impl World {
             .sum()
     }
 
-    /// Momentum of all bodies, kg m/s.
+    /// Momentum of all dynamic bodies, kg m/s.
     pub fn momentum(&self) -> DVec3 {
         self.movable()
             .map(|i| self.mass(i) * self.velocity(i))
             .sum()
     }
 
-    /// The bodies of finite mass.
+    /// The dynamic bodies.
     pub(crate) fn movable(&self) -> impl Iterator<Item = usize> + Clone + '_ {
-        (0..self.len()).filter(|&i| self.mass(i).is_finite())
+        (0..self.len()).filter(|&i| self.kind(i).is_movable())
     }
 }

@@ -7,9 +7,14 @@ use crate::Mesh;
 
 /// The shape of a body about its position.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Shape {
     /// A surface of triangles, open or closed.
-    Mesh(Arc<Mesh>),
+    Mesh(#[cfg_attr(feature = "serde", serde(with = "crate::mesh::data::shared"))] Arc<Mesh>),
     /// A solid ball about the position.
     Sphere {
         /// Its radius, m, from 0 (a point that collides) to 1e100.

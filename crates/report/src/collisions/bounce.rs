@@ -4,7 +4,7 @@
 //! floor, not where a chord of it does. So the error of an impact's time is the method's own, and
 //! nothing but rounding where a method is exact for parabolas.
 
-use sim_core::{Body, DVec3, Force, METHODS, Method, Settings, Shape, World};
+use sim_core::{Body, BodyKind, DVec3, Force, METHODS, Method, Settings, Shape, World};
 
 use crate::scope::Scope;
 
@@ -43,7 +43,7 @@ fn run(method: &'static Method, dt: f64) -> anyhow::Result<Bounce> {
     })?;
     world.add(Body {
         shape: Some(Shape::HalfSpace { normal: DVec3::Y }),
-        mass: f64::INFINITY,
+        kind: BodyKind::Static,
         ..Body::default()
     })?;
     world.add(Body {

@@ -1,6 +1,6 @@
 //! Scenes of collisions in a world of ours.
 
-use sim_core::{Body, Collision, DVec3, Force, Method, Settings, Shape, World};
+use sim_core::{Body, BodyKind, Collision, DVec3, Force, Method, Settings, Shape, World};
 
 use super::scenes::{End, Form, Scene};
 use crate::stopwatch;
@@ -42,7 +42,11 @@ fn world(scene: &Scene, rate: u32, collision: Collision) -> World {
             shape: Some(shape),
             position: item.position,
             velocity: item.velocity,
-            mass: if is_floor { f64::INFINITY } else { 1.0 },
+            kind: if is_floor {
+                BodyKind::Static
+            } else {
+                BodyKind::Dynamic
+            },
             ..Body::default()
         };
         let added = world.add(body).map(drop);

@@ -45,8 +45,7 @@ pub(super) fn test() -> Finding {
             world.add_force(acceleration).map(drop)
         });
     }
-    // An infinite mass is one that nothing moves.
-    for bad in [0.0, -1.0, f64::NAN, f64::NEG_INFINITY] {
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let body = Body {
             mass: bad,
             ..Body::default()

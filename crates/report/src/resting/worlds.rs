@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use rapier3d_f64::prelude::*;
-use sim_core::{Body, Bundled, DVec3, Force, Mesh, Settings, Shape, Vec3, World};
+use sim_core::{Body, BodyKind, Bundled, DVec3, Force, Mesh, Settings, Shape, Vec3, World};
 
 use super::scenes::{End, Form, Scene};
 
@@ -35,7 +35,11 @@ impl Ours {
                 shape: Some(shape),
                 position: item.position,
                 velocity: item.velocity,
-                mass: if is_wall { f64::INFINITY } else { 1.0 },
+                kind: if is_wall {
+                    BodyKind::Kinematic
+                } else {
+                    BodyKind::Dynamic
+                },
                 restitution: 0.0,
                 friction: scene.friction,
                 ..Body::default()

@@ -60,7 +60,7 @@ pub(super) fn parse(
         body.mass = mass(&place, &value)?;
     }
     if text.immovable.is_some_and(|value| *value.get_ref()) {
-        body.mass = f64::INFINITY;
+        body.immovable = true;
     }
     if let Some(value) = text.restitution {
         body.restitution = value.get_ref().0;
@@ -82,6 +82,8 @@ pub(super) fn parse(
             return Err(place.error(value.span(), "friction", what));
         }
     }
+    body.groups = group_names(&place, "groups", text.groups)?;
+    body.collides_with = group_names(&place, "collides_with", text.collides_with)?;
     if let Some(value) = text.colour {
         body.colour = colour::parse(value.get_ref());
         if body.colour.is_none() {
@@ -95,6 +97,24 @@ pub(super) fn parse(
     match copies {
         Some(copies) => copies.place(&place, &body, before, obstacles),
         None => Ok(vec![body]),
+    }
+}
+
+/// Names of groups, none of them empty.
+fn group_names(
+    place: &Place,
+    field: &str,
+    names: Option<Vec<Spanned<String>>>,
+) -> Result<Option<Vec<String>>, SceneError> {
+    let Some(names) = names else {
+        return Ok(None);
+    };
+    let empty = names.iter().find(|name| name.get_ref().trim().is_empty());
+    match empty {
+        Some(empty) => {
+            Err(place.error(empty.span(), field, "the name of a group must not be empty"))
+        }
+        None => Ok(Some(names.into_iter().map(Spanned::into_inner).collect())),
     }
 }
 

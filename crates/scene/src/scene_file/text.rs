@@ -37,6 +37,8 @@ pub(super) struct Body {
     pub(super) immovable: Option<Spanned<bool>>,
     pub(super) restitution: Option<Spanned<Number>>,
     pub(super) friction: Option<Spanned<Number>>,
+    pub(super) groups: Option<Vec<Spanned<String>>>,
+    pub(super) collides_with: Option<Vec<Spanned<String>>>,
     pub(super) colour: Option<Spanned<String>>,
     #[serde(skip_serializing)]
     pub(super) copies: Option<Spanned<usize>>,

@@ -39,7 +39,6 @@ pub(crate) fn write(scene: &Scene) -> String {
 
 fn body(body: &SceneBody) -> Body {
     let is_half_space = matches!(body.shape, SceneShape::HalfSpace { .. });
-    let is_immovable = body.mass.is_infinite();
     let mut text = Body {
         name: spanned(body.name.clone()),
         mesh: None,
@@ -50,10 +49,12 @@ fn body(body: &SceneBody) -> Body {
         scale: None,
         velocity: Some(spanned(Triple(body.velocity))),
         force: Some(spanned(Triple(body.force))),
-        mass: (!is_half_space && !is_immovable).then(|| spanned(Number(body.mass))),
-        immovable: (!is_half_space && is_immovable).then(|| spanned(true)),
+        mass: (!is_half_space && !body.immovable).then(|| spanned(Number(body.mass))),
+        immovable: (!is_half_space && body.immovable).then(|| spanned(true)),
         restitution: (body.restitution != 1.0).then(|| spanned(Number(body.restitution))),
         friction: (body.friction != 0.0).then(|| spanned(Number(body.friction))),
+        groups: body.groups.as_deref().map(names),
+        collides_with: body.collides_with.as_deref().map(names),
         colour: body.colour.map(|c| spanned(colour::format(c))),
         copies: None,
         inside: None,
@@ -70,6 +71,10 @@ fn body(body: &SceneBody) -> Body {
         SceneShape::HalfSpace { normal } => text.half_space = Some(spanned(Triple(*normal))),
     }
     text
+}
+
+fn names(groups: &[String]) -> Vec<Spanned<String>> {
+    groups.iter().cloned().map(spanned).collect()
 }
 
 /// A value that stands in no text yet.

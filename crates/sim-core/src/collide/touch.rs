@@ -39,6 +39,7 @@ use crate::bvh::Bvh;
 
 /// What touches what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Feature {
     /// A vertex of the first mesh in a face of the second.
     VertexFace {

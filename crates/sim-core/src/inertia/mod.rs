@@ -21,10 +21,34 @@ use eigen::diagonalised;
 /// Where the mass of a body is: its centre, and how hard it is to turn about each of three axes
 /// through it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Unchecked")
+)]
 pub struct Inertia {
     moments: DVec3,
     axes: DQuat,
     centre: DVec3,
+}
+
+/// An inertia as it is read.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Unchecked {
+    moments: DVec3,
+    axes: DQuat,
+    centre: DVec3,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Inertia {
+    type Error = InertiaError;
+
+    fn try_from(read: Unchecked) -> Result<Inertia, InertiaError> {
+        Inertia::new(read.moments, read.axes, read.centre)
+    }
 }
 
 /// Why something has no inertia of a body. Whoever knows a name for it puts that in front.

@@ -7,6 +7,8 @@
 mod adaptive;
 mod backward_euler;
 pub(crate) mod ballistic;
+#[cfg(feature = "serde")]
+pub(crate) mod by_name;
 mod dop853;
 mod dopri5;
 mod forward_euler;

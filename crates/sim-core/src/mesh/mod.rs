@@ -1,5 +1,7 @@
 //! Validated triangle meshes.
 
+#[cfg(feature = "serde")]
+pub(crate) mod data;
 mod error;
 mod repair;
 mod topology;
@@ -17,6 +19,11 @@ pub(crate) use topology::Topology;
 /// Vertices are finite and in metres, every triangle has three different corners, and there is
 /// at least one triangle. Seen from outside, corners of a closed mesh run counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize),
+    serde(try_from = "data::MeshData")
+)]
 pub struct Mesh {
     vertices: Vec<Vec3>,
     bounds: Aabb,

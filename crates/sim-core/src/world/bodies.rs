@@ -4,25 +4,31 @@ use alloc::{boxed::Box, collections::BTreeMap, sync::Arc, vec::Vec};
 use glam::DVec3;
 use once_cell::race::OnceBox;
 
-use super::turning::Turners;
+use super::{column::Column, filter::Filter, turning::Turners};
 use crate::{
-    Bvh, Extent, Mesh, Shape,
+    Body, BodyKind, Bvh, Extent, Mesh, Shape,
     collide::{self, Form, snap},
 };
 
 /// The bodies of a world, by index.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Bodies {
-    /// kg; infinite for an immovable body.
+    /// kg, as impulses and forces find it: infinite for a body that is not dynamic.
     pub(super) mass: Vec<f64>,
+    pub(super) kind: Column<BodyKind>,
+    /// The masses, kg, that bodies which are not dynamic would have if they were.
+    pub(super) idle_mass: Column<f64>,
     /// Constant resultant, N.
     pub(super) force: Vec<DVec3>,
     /// What constant forces and weight do to each body, m/s².
     pub(super) acceleration: Vec<DVec3>,
-    /// What bodies keep of an approaching speed; empty while all are elastic.
-    pub(super) restitution: Vec<f64>,
-    /// Coefficients of friction; empty while all bodies are smooth.
-    pub(super) friction: Vec<f64>,
+    /// What bodies keep of an approaching speed.
+    pub(super) restitution: Column<f64>,
+    /// Coefficients of friction.
+    pub(super) friction: Column<f64>,
+    pub(super) user_data: Column<u64>,
+    /// Who never collides with whom, if anybody.
+    pub(super) filter: Option<Box<Filter>>,
     /// The shape of each body, as an index of `shapes`; `None` is a point that meets nothing.
     shape: Vec<Option<u32>>,
     shapes: Vec<SharedShape>,
@@ -61,27 +67,108 @@ impl ShapeKey {
     }
 }
 
+impl Default for Bodies {
+    /// None.
+    fn default() -> Bodies {
+        Bodies {
+            mass: Vec::new(),
+            kind: Column::new(BodyKind::Dynamic),
+            idle_mass: Column::new(1.0),
+            force: Vec::new(),
+            acceleration: Vec::new(),
+            restitution: Column::new(1.0),
+            friction: Column::new(0.0),
+            user_data: Column::new(0),
+            filter: None,
+            shape: Vec::new(),
+            shapes: Vec::new(),
+            known_shapes: BTreeMap::new(),
+            solid: Vec::new(),
+            turners: Turners::default(),
+        }
+    }
+}
+
 impl Bodies {
     pub(super) fn len(&self) -> usize {
         self.mass.len()
     }
 
     /// Adds a body, of which numbers have been checked.
-    pub(super) fn push(
-        &mut self,
-        (mass, force): (f64, DVec3),
-        (restitution, friction): (f64, f64),
-        shape: Option<Shape>,
-    ) {
-        let body = self.len();
-        let shape = shape.map(|shape| self.share(shape));
-        self.mass.push(mass);
-        self.force.push(force);
+    pub(super) fn push(&mut self, body: Body) {
+        let index = self.len();
+        let shape = body.shape.map(|shape| self.share(shape));
+        self.mass.push(body.mass);
+        self.set_kind(index, body.kind);
+        self.force.push(body.force);
         self.acceleration.push(DVec3::ZERO);
-        self.set_restitution(body, restitution);
-        self.set_friction(body, friction);
-        self.solid.extend(shape.map(|_| body));
+        self.restitution.set(index, body.restitution);
+        self.friction.set(index, body.friction);
+        self.user_data.set(index, body.user_data);
+        self.set_groups(index, body.groups);
+        self.solid.extend(shape.map(|_| index));
         self.shape.push(shape);
+    }
+
+    /// Takes out a body; those after it move up.
+    pub(super) fn remove(&mut self, body: usize) {
+        self.mass.remove(body);
+        self.kind.remove(body);
+        self.idle_mass.remove(body);
+        self.force.remove(body);
+        self.acceleration.remove(body);
+        self.restitution.remove(body);
+        self.friction.remove(body);
+        self.user_data.remove(body);
+        self.remove_from_filter(body);
+        self.solid.retain(|&other| other != body);
+        for other in self.solid.iter_mut().filter(|other| **other > body) {
+            *other -= 1;
+        }
+        if let Some(shape) = self.shape.remove(body)
+            && !self.shape.contains(&Some(shape))
+        {
+            self.forget_shape(shape);
+        }
+    }
+
+    /// Takes out a shape that no body has.
+    fn forget_shape(&mut self, gone: u32) {
+        self.shapes.remove(gone as usize);
+        self.known_shapes.retain(|_, shape| *shape != gone);
+        let known = self.known_shapes.values_mut();
+        for shape in known.chain(self.shape.iter_mut().flatten()) {
+            *shape -= u32::from(*shape > gone);
+        }
+    }
+
+    /// Makes a body one of another kind, with the mass that it has.
+    pub(super) fn set_kind(&mut self, body: usize, kind: BodyKind) {
+        let mass = self.own_mass(body);
+        self.kind.set(body, kind);
+        self.idle_mass
+            .set(body, if kind.is_movable() { 1.0 } else { mass });
+        self.mass[body] = if kind.is_movable() {
+            mass
+        } else {
+            f64::INFINITY
+        };
+    }
+
+    /// The mass of a body, kg: of one that is not dynamic the one that it would have if it were.
+    #[inline]
+    pub(super) fn own_mass(&self, body: usize) -> f64 {
+        match self.is_movable(body) {
+            true => self.mass[body],
+            false => self.idle_mass.get(body),
+        }
+    }
+
+    pub(super) fn set_own_mass(&mut self, body: usize, mass: f64) {
+        match self.is_movable(body) {
+            true => self.mass[body] = mass,
+            false => self.idle_mass.set(body, mass),
+        }
     }
 
     /// The index of a shape among the shapes, which bodies with the same one share.
@@ -101,20 +188,6 @@ impl Bodies {
         place
     }
 
-    pub(super) fn set_restitution(&mut self, body: usize, restitution: f64) {
-        if !self.restitution.is_empty() || restitution != 1.0 {
-            self.restitution.resize(self.len(), 1.0);
-            self.restitution[body] = restitution;
-        }
-    }
-
-    pub(super) fn set_friction(&mut self, body: usize, friction: f64) {
-        if !self.friction.is_empty() || friction != 0.0 {
-            self.friction.resize(self.len(), 0.0);
-            self.friction[body] = friction;
-        }
-    }
-
     /// Whether impulses and forces change the motion of a body.
     #[inline]
     pub(super) fn is_movable(&self, body: usize) -> bool {
@@ -123,7 +196,7 @@ impl Bodies {
 
     #[inline]
     pub(super) fn restitution(&self, body: usize) -> f64 {
-        self.restitution.get(body).copied().unwrap_or(1.0)
+        self.restitution.get(body)
     }
 
     #[inline]
@@ -132,7 +205,7 @@ impl Bodies {
     }
 
     pub(super) fn friction(&self, body: usize) -> f64 {
-        self.friction.get(body).copied().unwrap_or(0.0)
+        self.friction.get(body)
     }
 
     /// The coefficient of friction between two bodies: the geometric mean of theirs, and 0 where one
@@ -148,7 +221,7 @@ impl Bodies {
 
     /// Whether some body is not smooth.
     pub(super) fn is_rough(&self) -> bool {
-        !self.friction.is_empty()
+        !self.friction.is_usual()
     }
 
     #[inline]
@@ -164,6 +237,18 @@ impl Bodies {
     #[inline]
     pub(super) fn shape(&self, body: usize) -> Option<&Shape> {
         self.shared_shape(body).map(|shared| &shared.shape)
+    }
+
+    /// Every shape once, and the place of each body's among them.
+    #[cfg(feature = "serde")]
+    pub(super) fn all_shapes(&self) -> impl Iterator<Item = &Shape> {
+        self.shapes.iter().map(|shared| &shared.shape)
+    }
+
+    #[cfg(feature = "serde")]
+    pub(super) fn shape_places(&self) -> impl Iterator<Item = Option<usize>> {
+        let places = self.shape.iter();
+        places.map(|place| place.map(|place| place as usize))
     }
 
     pub(super) fn mesh(&self, body: usize) -> Option<&Arc<Mesh>> {

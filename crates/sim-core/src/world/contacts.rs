@@ -31,6 +31,7 @@ pub struct RestingContact {
 /// are none. Distances shrink with the step: from 60 to 960 Hz by a factor of 12 to 70 in `wall`, `funnel` and `bin`
 /// of the gallery (example `heap_energy` of the crate `scene`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Bundled {
     /// Bodies concerned.

@@ -500,7 +500,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        Body, Collision, Settings, Shape,
+        Body, BodyKind, Collision, Settings, Shape,
         test_meshes::{cube, sphere},
         test_random::Random,
     };
@@ -520,7 +520,7 @@ mod tests {
             let wall = Body {
                 shape: Some(Shape::HalfSpace { normal }),
                 position: -(half as f64 + 0.5) * normal,
-                mass: f64::INFINITY,
+                kind: BodyKind::Static,
                 ..Body::default()
             };
             world.add(wall).unwrap();
@@ -541,10 +541,11 @@ mod tests {
                     }),
                     position: 1e-2 * random.vector(100 * half),
                     velocity: speed * random.vector(100),
-                    mass: if is_immovable {
-                        f64::INFINITY
+                    mass: 1.0 + (i % 4) as f64,
+                    kind: if is_immovable {
+                        BodyKind::Static
                     } else {
-                        1.0 + (i % 4) as f64
+                        BodyKind::Dynamic
                     },
                     restitution: if i % 5 == 0 { 0.5 } else { 1.0 },
                     ..Body::default()

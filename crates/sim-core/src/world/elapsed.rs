@@ -7,7 +7,7 @@ use super::Settings;
 pub(super) struct Elapsed {
     pub(super) steps: u64,
     /// Time and step at which `dt` was last set: time since is steps times `dt`, without drift.
-    since: (f64, u64),
+    pub(super) since: (f64, u64),
 }
 
 impl Elapsed {

@@ -3,10 +3,12 @@
 use alloc::{format, string::String};
 use glam::DVec3;
 
-use crate::{Force, Shape, force::ForceError};
+use super::BodyHandle;
+use crate::{Body, BodyKind, Force, Shape, force::ForceError};
 
-/// A value that no body or setting can have.
+/// What a world refuses.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum WorldError {
     /// A vector with a component that is NaN, infinite or huge.
     #[error("{field} of body {body} is {value}: every component must be a number within ±1e100")]
@@ -18,13 +20,23 @@ pub enum WorldError {
         /// The value refused.
         value: DVec3,
     },
-    /// A mass that is not positive.
-    #[error("mass of body {body} is {value} kg: it must be between 1e-100 and 1e100, or infinite")]
+    /// A mass that is not positive, or huge.
+    #[error("mass of body {body} is {value} kg: it must be between 1e-100 and 1e100{}", mass_remedy(*value))]
     Mass {
         /// Index of the body.
         body: usize,
         /// The value refused, kg.
         value: f64,
+    },
+    /// A static body that is to move.
+    #[error(
+        "velocity of body {body} is {value}: a static body has none; one that keeps it is kinematic"
+    )]
+    StaticVelocity {
+        /// Index of the body.
+        body: usize,
+        /// The velocity refused, m/s.
+        value: DVec3,
     },
     /// A restitution that is no part of a speed.
     #[error("restitution of body {body} is {value}: it must be between 0 and 1")]
@@ -78,9 +90,9 @@ pub enum WorldError {
         /// Index of the body.
         body: usize,
     },
-    /// A mass that leaves the inertia of a body that turns unknown.
-    #[error("body {body} turns: its mass stays finite, or infinite, as it was added")]
-    TurningMass {
+    /// A kind that leaves the inertia of a body that turns unknown.
+    #[error("body {body} turns: it stays dynamic, or not, as it was added")]
+    TurningKind {
         /// Index of the body.
         body: usize,
     },
@@ -97,6 +109,18 @@ pub enum WorldError {
         body: usize,
         /// How many bodies there are.
         bodies: usize,
+    },
+    /// A handle of a body that has been removed, or of another world.
+    #[error("the body of this handle is not in the world: it has been removed, or never was")]
+    Stale {
+        /// The handle.
+        handle: BodyHandle,
+    },
+    /// A pair of a body and itself.
+    #[error("the pair is body {body} and itself: name two different ones")]
+    SameBody {
+        /// The body.
+        body: usize,
     },
     /// A number that a force cannot have.
     #[error("force {index} ({kind}): {error}")]
@@ -133,6 +157,7 @@ pub enum WorldError {
 /// A step that could not be done. Every variant names the body, the step (from 1) and the title
 /// of the method.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepError {
     /// A position or velocity beyond ±1e100, or not a number.
     #[error(
@@ -222,7 +247,7 @@ pub enum StepError {
     /// A body between two immovable ones that move towards each other has no room left.
     #[error(
         "step {step}: body {body} is squeezed between bodies {} and {}, which nothing stops: stop \
-         one of them, give it a finite mass, or, should there be room for it, lower dt",
+         one of them, make it dynamic, or, should there be room for it, lower dt",
         between.0, between.1
     )]
     Squeezed {
@@ -293,8 +318,36 @@ pub(super) fn check_vector(
     }
 }
 
+fn mass_remedy(mass: f64) -> &'static str {
+    match mass == f64::INFINITY {
+        true => "; what nothing moves is static or kinematic",
+        false => "",
+    }
+}
+
+pub(super) fn check_kind(body: usize, kind: BodyKind, velocity: DVec3) -> Result<(), WorldError> {
+    match kind == BodyKind::Static && velocity != DVec3::ZERO {
+        true => Err(WorldError::StaticVelocity {
+            body,
+            value: velocity,
+        }),
+        false => Ok(()),
+    }
+}
+
+/// All of a body but its shape.
+pub(super) fn check_body(index: usize, body: &Body) -> Result<(), WorldError> {
+    check_vector(index, "position", body.position)?;
+    check_vector(index, "velocity", body.velocity)?;
+    check_vector(index, "force", body.force)?;
+    check_mass(index, body.mass)?;
+    check_kind(index, body.kind, body.velocity)?;
+    check_restitution(index, body.restitution)?;
+    check_friction(index, body.friction)
+}
+
 pub(super) fn check_mass(body: usize, value: f64) -> Result<(), WorldError> {
-    if POSITIVE.contains(&value) || value == f64::INFINITY {
+    if POSITIVE.contains(&value) {
         Ok(())
     } else {
         Err(WorldError::Mass { body, value })

@@ -11,6 +11,7 @@ use crate::{
 
 /// An exchange of an impulse between two bodies.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Impact {
     /// The step in which it happened, from 1.
     pub step: u64,

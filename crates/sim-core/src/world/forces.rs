@@ -1,6 +1,7 @@
 //! The forces of a world: adding, changing, removing them.
 
 use alloc::vec::Vec;
+use core::cmp::Ordering;
 use glam::DVec3;
 
 use super::{World, WorldError, error, order, plan::Plan};
@@ -31,6 +32,10 @@ impl Forces {
 impl World {
     /// Adds a force beside the constant resultants of the bodies, and returns its place in
     /// [`World::forces`].
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::Force`] of a number out of range, [`WorldError::NoBody`] of a body that it names.
     pub fn add_force(&mut self, force: Force) -> Result<usize, WorldError> {
         let index = self.forces.list.len();
         self.check_force(index, &force)?;
@@ -41,6 +46,10 @@ impl World {
     }
 
     /// Puts another force in the place of one.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`World::add_force`], and [`WorldError::NoForce`].
     pub fn replace_force(&mut self, index: usize, force: Force) -> Result<(), WorldError> {
         self.check_force(index, &force)?;
         let forces = self.forces.list.len();
@@ -53,6 +62,10 @@ impl World {
     }
 
     /// Removes a force; those after it move up by one place.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::NoForce`].
     pub fn remove_force(&mut self, index: usize) -> Result<Force, WorldError> {
         let forces = self.forces.list.len();
         if index >= forces {
@@ -88,7 +101,7 @@ impl World {
                 Reach::Weight | Reach::EachBody => {
                     bodies.clone().map(|i| of_body(force, i)).sum::<f64>()
                 }
-                Reach::Body(i) if self.mass(i).is_infinite() => 0.0,
+                Reach::Body(i) if !self.bodies.is_movable(i) => 0.0,
                 Reach::Body(i) => of_body(force, i),
                 Reach::Pair([i, j]) => of_pair(force, i, j),
                 Reach::EachPair => bodies
@@ -109,12 +122,11 @@ impl World {
     /// 0 on an immovable one. For one body after the other: time grows with the number of forces, and
     /// under gravitation with that of bodies.
     pub fn applied_force(&self, body: usize) -> DVec3 {
-        let mass = self.mass(body);
-        if mass.is_infinite() {
+        if !self.bodies.is_movable(body) {
             return DVec3::ZERO;
         }
         let on_first = |force: &Force, i, j| force.on_pair(&self.pair_motion(i, j));
-        let mut sum = mass * self.constant_acceleration(body);
+        let mut sum = self.bodies.mass[body] * self.constant_acceleration(body);
         for force in &self.forces.list {
             sum += match force.reach() {
                 // In the constant acceleration.
@@ -136,7 +148,7 @@ impl World {
 
     /// What constant forces and weight do to a body, m/s²; nothing to an immovable one.
     pub(super) fn constant_acceleration(&self, body: usize) -> DVec3 {
-        if self.bodies.mass[body].is_infinite() {
+        if !self.bodies.is_movable(body) {
             return DVec3::ZERO;
         }
         self.bodies.force[body] / self.bodies.mass[body] + self.forces.weight
@@ -179,6 +191,43 @@ impl World {
         self.forces.is_planned = true;
     }
 
+    /// The order in which bodies that forces couple are stepped, if there is a plan and their motion
+    /// has had a say in it: it stays while neither bodies nor forces are added.
+    pub(super) fn planned_order(&self) -> Option<Vec<usize>> {
+        let plan = self.forces.is_planned.then_some(&self.forces.plan)?;
+        if plan.each_pair.is_empty() {
+            return None;
+        }
+        let groups = plan.sections.iter().flat_map(|section| &section.groups);
+        Some(groups.flat_map(|group| &group.bodies).copied().collect())
+    }
+
+    /// Makes a plan with bodies in an order that was planned before: those that are not in it come last.
+    pub(super) fn plan_in_order(&mut self, order: &[usize]) {
+        let mut places = alloc::vec![i64::MAX; self.len()];
+        for (place, &body) in (0..).zip(order) {
+            places[body] = place;
+        }
+        let key = |body: usize| [places[body], 0, 0, 0, 0, 0, 0, 0, 0, 0];
+        self.forces.plan = Plan::new(&self.forces.list, self.len(), key);
+        self.forces.is_planned = true;
+    }
+
+    /// Removes the forces that name a body, which is gone; those on others follow them to their new
+    /// places.
+    pub(super) fn remove_forces_of(&mut self, gone: usize) {
+        let renumber = |body: usize| match body.cmp(&gone) {
+            Ordering::Less => Some(body),
+            Ordering::Equal => None,
+            Ordering::Greater => Some(body - 1),
+        };
+        let forces = self.forces.list.drain(..);
+        self.forces.list = forces
+            .filter_map(|force| force.renumbered(renumber))
+            .collect();
+        self.forces_changed(false);
+    }
+
     fn check_force(&self, index: usize, force: &Force) -> Result<(), WorldError> {
         error::check_force(index, force)?;
         for body in force.bodies() {
@@ -190,7 +239,7 @@ impl World {
     fn body_motion(&self, i: usize) -> BodyMotion {
         BodyMotion {
             time: self.time(),
-            mass: self.mass(i),
+            mass: self.bodies.mass[i],
             position: self.position(i),
             velocity: self.velocity(i),
         }
@@ -199,7 +248,7 @@ impl World {
     fn pair_motion(&self, i: usize, j: usize) -> PairMotion {
         PairMotion {
             time: self.time(),
-            mass: [self.mass(i), self.mass(j)],
+            mass: [self.bodies.mass[i], self.bodies.mass[j]],
             position: self.position(j) - self.position(i),
             velocity: self.velocity(j) - self.velocity(i),
         }

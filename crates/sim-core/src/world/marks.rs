@@ -4,6 +4,8 @@ use alloc::vec::Vec;
 use core::ops::Range;
 use glam::DVec3;
 
+#[cfg(feature = "serde")]
+use super::error::LARGEST;
 use super::state::State;
 
 /// Growth of the greatest speed after which the motion is kept again.
@@ -20,6 +22,60 @@ pub(super) struct Marks {
     marks: Vec<Mark>,
     /// What is kept of all of them, one after the other.
     motion: State,
+}
+
+/// A mark as data.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KeptMotion {
+    time: f64,
+    speed: f64,
+    first: usize,
+    /// Position and velocity of that body, and of those after it.
+    motion: Vec<(DVec3, DVec3)>,
+}
+
+#[cfg(feature = "serde")]
+impl Marks {
+    pub(super) fn kept(&self) -> Vec<KeptMotion> {
+        let kept = |mark: &Mark| {
+            let all = mark.start..mark.start + mark.bodies.len();
+            let (x, v) = (&self.motion.position, &self.motion.velocity);
+            KeptMotion {
+                time: mark.time,
+                speed: mark.speed,
+                first: mark.bodies.start,
+                motion: all.map(|place| (x[place], v[place])).collect(),
+            }
+        };
+        self.marks.iter().map(kept).collect()
+    }
+
+    /// Of so many bodies; `None` if it is no motion of theirs.
+    pub(super) fn of_kept(kept: Vec<KeptMotion>, bodies: usize) -> Option<Marks> {
+        let mut marks = Marks::default();
+        for mark in kept {
+            let end = mark.first.checked_add(mark.motion.len())?;
+            let start = marks.motion.position.len();
+            for (position, velocity) in mark.motion {
+                marks.motion.push(position, velocity);
+            }
+            let all = start..marks.motion.position.len();
+            let is_number = |number: f64| number.abs() <= LARGEST;
+            let is_sound = end <= bodies
+                && marks.motion.beyond(all, LARGEST).is_none()
+                && is_number(mark.time)
+                && is_number(mark.speed);
+            marks.marks.push(is_sound.then_some(Mark {
+                time: mark.time,
+                speed: mark.speed,
+                bodies: mark.first..end,
+                start,
+            })?);
+        }
+        Some(marks)
+    }
 }
 
 #[derive(Clone, Debug)]

@@ -1,6 +1,8 @@
 //! The running state of a scene.
 
 mod bodies;
+mod body_view;
+mod column;
 mod contact_features;
 mod contacts;
 mod continuous;
@@ -9,8 +11,11 @@ mod elapsed;
 mod error;
 mod events;
 mod exchange;
+mod filter;
 mod forces;
+mod handle;
 mod hash;
+mod kind;
 mod layout;
 mod marks;
 mod near;
@@ -21,8 +26,11 @@ mod plan;
 mod profile;
 mod query;
 mod record;
+mod remove;
 mod scene;
 mod separate;
+#[cfg(feature = "serde")]
+mod snapshot;
 mod state;
 mod stepping;
 mod system;
@@ -37,6 +45,7 @@ use glam::DVec3;
 
 use crate::{Body, Bvh, Mesh, Shape, integrate::Method};
 use bodies::Bodies;
+pub use body_view::BodyView;
 pub use contact_features::{ContactFeature, Touching};
 pub use contacts::{Bundled, RestingContact};
 use continuous::{ContactSet, Continuous};
@@ -45,7 +54,10 @@ use elapsed::Elapsed;
 pub use error::{StepError, WorldError};
 pub use events::{ContactEvent, ContactEventKind};
 pub use exchange::Impact;
+pub use filter::Groups;
 use forces::Forces;
+pub use handle::BodyHandle;
+use handle::Handles;
 use layout::Layout;
 use overlap::Overlaps;
 pub use penetration::Overlap;
@@ -59,7 +71,8 @@ use stepping::{Cause, Integrator, Way};
 /// Bodies, their motion, and how it goes on.
 ///
 /// Bodies are named by the index that [`World::add`] returned. Methods that read one panic on an
-/// index that does not exist, as slices do; methods that change one return an error.
+/// index that does not exist, as slices do; methods that change one return an error. Where bodies are
+/// removed ([`World::remove`]) indices change, and a [`BodyHandle`] goes on naming the same body.
 ///
 /// ```
 /// use sim_core::{Body, DVec3, Settings, World};
@@ -77,10 +90,16 @@ use stepping::{Cause, Integrator, Way};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Deserialize),
+    serde(try_from = "snapshot::Snapshot")
+)]
 pub struct World {
     settings: Settings,
     elapsed: Elapsed,
     bodies: Bodies,
+    handles: Handles,
     forces: Forces,
     /// Motion after the last step, before it, and before the step before that.
     current: State,
@@ -101,10 +120,16 @@ pub struct World {
 
 /// How a world steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(default, deny_unknown_fields)
+)]
 pub struct Settings {
     /// Length of a step, s; positive.
     pub dt: f64,
-    /// Time integration.
+    /// Time integration. `serde` writes its name.
+    #[cfg_attr(feature = "serde", serde(with = "crate::integrate::by_name"))]
     pub method: &'static Method,
     /// How collisions are found.
     pub collision: Collision,
@@ -115,6 +140,11 @@ pub struct Settings {
 
 /// How collisions are found, and what follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Collision {
     /// At the end of each step, by every edge of one mesh against every triangle of the other.
     /// Bodies that meet exchange an impulse and go back to where the step began.
@@ -146,6 +176,10 @@ impl Default for Settings {
 
 impl World {
     /// An empty world at time 0.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::Dt`] or [`WorldError::Tolerance`] out of range.
     pub fn new(settings: Settings) -> Result<World, WorldError> {
         error::check_dt(settings.dt)?;
         error::check_tolerance(settings.tolerance)?;
@@ -153,6 +187,7 @@ impl World {
             settings,
             elapsed: Elapsed::default(),
             bodies: Bodies::default(),
+            handles: Handles::default(),
             forces: Forces::default(),
             current: State::default(),
             previous: State::default(),
@@ -167,32 +202,37 @@ impl World {
         })
     }
 
-    /// Adds a body and returns its index: 0 for the first, and so on.
-    pub fn add(&mut self, body: Body) -> Result<usize, WorldError> {
+    /// Adds a body and returns its index: the number of bodies before. [`World::handle`] gives a name
+    /// that stays its own when others are removed.
+    ///
+    /// # Errors
+    ///
+    /// A field out of the range that [`Body`] tells, by its name; the world stays as it was.
+    pub fn add(&mut self, mut body: Body) -> Result<usize, WorldError> {
         let index = self.len();
-        error::check_vector(index, "position", body.position)?;
-        error::check_vector(index, "velocity", body.velocity)?;
-        error::check_vector(index, "force", body.force)?;
-        error::check_mass(index, body.mass)?;
-        error::check_restitution(index, body.restitution)?;
-        error::check_friction(index, body.friction)?;
+        error::check_body(index, &body)?;
         let shape = body.shape.map(|shape| error::check_shape(index, shape));
-        let shape = shape.transpose()?;
-        if let Some(turn) = body.turn {
-            self.add_turn(index, turn, (body.mass, shape.as_ref()))?;
+        body.shape = shape.transpose()?;
+        let turn = body.turn.map(|turn| turning::prepared(index, turn, &body));
+        let turn = turn.transpose()?;
+        self.push(body);
+        if let Some(turn) = turn {
+            self.push_turn(index, turn);
         }
+        Ok(index)
+    }
+
+    /// Adds a body that has been checked.
+    fn push(&mut self, body: Body) {
+        let index = self.len();
         self.current.push(body.position, body.velocity);
         self.previous.push(body.position, body.velocity);
-        self.bodies.push(
-            (body.mass, body.force),
-            (body.restitution, body.friction),
-            shape,
-        );
+        self.bodies.push(body);
         self.bodies.acceleration[index] = self.constant_acceleration(index);
+        self.handles.push();
         self.forces.forget_plan();
         self.integrator.forget_growth();
         self.note_placed(index);
-        Ok(index)
     }
 
     /// Steps by `dt`: moves every body, and lets those that meet bounce, as [`Settings::collision`]
@@ -311,11 +351,6 @@ impl World {
         self.current.velocity[body]
     }
 
-    /// Mass of a body, kg.
-    pub fn mass(&self, body: usize) -> f64 {
-        self.bodies.mass[body]
-    }
-
     /// Constant resultant force on a body, N.
     pub fn force(&self, body: usize) -> DVec3 {
         self.bodies.force[body]
@@ -366,6 +401,10 @@ impl World {
     }
 
     /// Places a body, m. It starts afresh from there: its previous position is the same.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::NoBody`], or a component beyond ±1e100.
     pub fn set_position(&mut self, body: usize, position: DVec3) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_vector(body, "position", position)?;
@@ -378,9 +417,14 @@ impl World {
     }
 
     /// Sets a velocity, m/s.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::NoBody`], a component beyond ±1e100, or any but zero of a static body.
     pub fn set_velocity(&mut self, body: usize, velocity: DVec3) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_vector(body, "velocity", velocity)?;
+        error::check_kind(body, self.bodies.kind.get(body), velocity)?;
         self.current.velocity[body] = velocity;
         self.integrator.forget_growth();
         self.continuous.wake_all();
@@ -388,6 +432,10 @@ impl World {
     }
 
     /// Sets a constant resultant force, N.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::NoBody`], or a component beyond ±1e100.
     pub fn set_force(&mut self, body: usize, force: DVec3) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_vector(body, "force", force)?;
@@ -397,34 +445,28 @@ impl World {
         Ok(())
     }
 
-    /// Sets a mass, kg.
-    pub fn set_mass(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
-        self.check_body(body)?;
-        error::check_mass(body, mass)?;
-        self.scale_inertia(body, mass)?;
-        self.forget_contacts_of(body);
-        self.bodies.mass[body] = mass;
-        // Immovable bodies may be in each other.
-        self.note_placed(body);
-        self.bodies.acceleration[body] = self.constant_acceleration(body);
-        self.integrator.forget_growth();
-        Ok(())
-    }
-
     /// Sets the restitution of a body, 0 to 1.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::NoBody`], or [`WorldError::Restitution`] out of range.
     pub fn set_restitution(&mut self, body: usize, restitution: f64) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_restitution(body, restitution)?;
-        self.bodies.set_restitution(body, restitution);
+        self.bodies.restitution.set(body, restitution);
         self.continuous.wake_all();
         Ok(())
     }
 
     /// Sets the coefficient of friction of a body, 0 to infinity.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::NoBody`], or [`WorldError::Friction`] out of range.
     pub fn set_friction(&mut self, body: usize, friction: f64) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_friction(body, friction)?;
-        self.bodies.set_friction(body, friction);
+        self.bodies.friction.set(body, friction);
         Ok(())
     }
 
@@ -434,6 +476,10 @@ impl World {
     }
 
     /// Changes how the world steps, from the next step on.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::Dt`] or [`WorldError::Tolerance`] out of range.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), WorldError> {
         error::check_dt(settings.dt)?;
         error::check_tolerance(settings.tolerance)?;

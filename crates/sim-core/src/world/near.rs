@@ -41,7 +41,7 @@ impl Bodies {
         })
     }
 
-    /// Pairs of which one may move whose boxes, each widened by a length, meet.
+    /// Pairs that may meet whose boxes, each widened by a length, meet.
     pub(super) fn near_pairs(
         &self,
         at: &[DVec3],
@@ -65,7 +65,7 @@ impl Bodies {
         broad.fill(&self.solid, swept, front);
         let mut pairs = Vec::new();
         broad.each_pair(|i, j| {
-            if self.is_movable(i) || self.is_movable(j) {
+            if self.may_meet(i, j) {
                 pairs.push((i, j));
             }
         });

@@ -23,6 +23,19 @@ pub(super) struct Overlaps {
 }
 
 impl Overlaps {
+    /// Pairs in order, and how deep some of them were where they were placed, m.
+    #[cfg(feature = "serde")]
+    pub(super) fn known(
+        pairs: Vec<(usize, usize)>,
+        depth_at_start: BTreeMap<(usize, usize), f64>,
+    ) -> Overlaps {
+        Overlaps {
+            pairs,
+            depth_at_start,
+            placed: Placed::default(),
+        }
+    }
+
     /// How deep two bodies in overlap were in each other where they were placed, m.
     pub(super) fn depth_at_start(&self, pair: (usize, usize)) -> Option<f64> {
         self.depth_at_start.get(&pair).copied()
@@ -39,6 +52,27 @@ impl Overlaps {
         let pairs = &self.pairs;
         self.depth_at_start
             .retain(|pair, _| pairs.binary_search(pair).is_ok());
+    }
+
+    /// Takes out a body of which no overlap is known; those after it move up.
+    pub(super) fn remove_body(&mut self, body: usize) {
+        let moved = |other: usize| other - usize::from(other > body);
+        for (i, j) in &mut self.pairs {
+            (*i, *j) = (moved(*i), moved(*j));
+        }
+        let depths = core::mem::take(&mut self.depth_at_start).into_iter();
+        self.depth_at_start = depths
+            .map(|((i, j), depth)| ((moved(i), moved(j)), depth))
+            .collect();
+        let placed = &mut self.placed;
+        placed.bodies.retain(|&other| other != body);
+        placed
+            .bodies
+            .iter_mut()
+            .for_each(|other| *other = moved(*other));
+        if body < placed.is_listed.len() {
+            placed.is_listed.remove(body);
+        }
     }
 }
 
@@ -125,8 +159,7 @@ impl World {
     fn all_overlapping(&self) -> Vec<(usize, usize)> {
         let mut pairs = self.overlaps.pairs.clone();
         let mut ask = |i: usize, j: usize| {
-            let is_movable = self.bodies.is_movable(i) || self.bodies.is_movable(j);
-            if is_movable && self.bodies.meet_in(&self.current, i, j) {
+            if self.bodies.may_meet(i, j) && self.bodies.meet_in(&self.current, i, j) {
                 pairs.push((i, j));
             }
         };
@@ -188,13 +221,13 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::{Body, Settings, Shape, test_meshes::cube, test_random::Random};
+    use crate::{Body, BodyKind, Settings, Shape, test_meshes::cube, test_random::Random};
 
     /// All pairs in overlap, one by one.
     fn brute_force(world: &World) -> Vec<(usize, usize)> {
         let pairs = (0..world.len()).flat_map(|i| (i + 1..world.len()).map(move |j| (i, j)));
         let is_overlap = |&(i, j): &(usize, usize)| {
-            let is_movable = world.mass(i).is_finite() || world.mass(j).is_finite();
+            let is_movable = world.kind(i).is_movable() || world.kind(j).is_movable();
             is_movable
                 && world
                     .bodies
@@ -213,7 +246,10 @@ mod tests {
             let mut pick = |most: usize| (random.up_to(1 << 30) + (1 << 30)) as usize % most;
             for _ in 0..120 {
                 let place = 0.25 * DVec3::from([pick(16), pick(16), pick(16)].map(|x| x as f64));
-                let heavy = if pick(4) == 0 { f64::INFINITY } else { 1.0 };
+                let kind = match pick(4) {
+                    0 => BodyKind::Static,
+                    _ => BodyKind::Dynamic,
+                };
                 match (pick(8), world.len()) {
                     (0, 1..) => {
                         let body = pick(world.len());
@@ -221,7 +257,7 @@ mod tests {
                     }
                     (1, 1..) => {
                         let body = pick(world.len());
-                        world.set_mass(body, heavy).unwrap();
+                        world.set_kind(body, kind).unwrap();
                     }
                     (2, _) if pick(8) == 0 => {
                         let expected = brute_force(&world);
@@ -247,7 +283,7 @@ mod tests {
                             .add(Body {
                                 shape,
                                 position: place,
-                                mass: heavy,
+                                kind,
                                 ..Body::default()
                             })
                             .unwrap();

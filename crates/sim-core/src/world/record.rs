@@ -40,6 +40,16 @@ impl Record {
         self.last_impact = Some(impact);
     }
 
+    /// Forgets what is known of a body; those after it move up.
+    pub(super) fn remove_body(&mut self, body: usize) {
+        let is_gone = |impact: &mut Impact| impact.bodies.0 == body || impact.bodies.1 == body;
+        self.last_impact.take_if(is_gone);
+        if let Some(Impact { bodies: (i, j), .. }) = &mut self.last_impact {
+            *i -= usize::from(*i > body);
+            *j -= usize::from(*j > body);
+        }
+    }
+
     pub(super) fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             impacts: self.impacts,

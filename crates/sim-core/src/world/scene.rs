@@ -43,13 +43,12 @@ pub(super) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Whether two bodies with shapes can have an impact: not if nothing moves either, nor if they
-    /// began in overlap and have not parted since.
+    /// Whether two bodies with shapes can have an impact: not if nothing moves either, nor if they are
+    /// filtered, nor if they began in overlap and have not parted since.
     #[inline]
     pub(super) fn may_collide(&self, i: usize, j: usize) -> bool {
-        let is_movable = self.bodies.is_movable(i) || self.bodies.is_movable(j);
         let pair = (i.min(j), i.max(j));
-        is_movable && self.overlaps.pairs.binary_search(&pair).is_err()
+        self.bodies.may_meet(i, j) && self.overlaps.pairs.binary_search(&pair).is_err()
     }
 
     /// What tells a body from others: its motion where the step begins.

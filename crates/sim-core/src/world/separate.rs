@@ -256,7 +256,8 @@ impl Separation<'_> {
                     .max(self.layout.bodies.extent(j).half)
                     == f64::INFINITY;
                 let swept = |body: usize, at: DVec3| self.layout.bodies.swept_box(body, at, at);
-                (is_wall || swept(body, at).meets(&swept(other, place[other])))
+                self.layout.bodies.may_meet(i, j)
+                    && (is_wall || swept(body, at).meets(&swept(other, place[other])))
                     && self.layout.bodies.meet_built(i, j, offset)
             };
             there.iter().filter(meets).copied().collect()
@@ -268,7 +269,7 @@ impl Separation<'_> {
                 matches!(
                     self.layout.bodies.shape(other),
                     Some(Shape::HalfSpace { .. })
-                )
+                ) && self.layout.bodies.may_meet(body, other)
             })
             .collect();
         let inside = |at: DVec3| self.out_of_walls(body, at, &walls, place);

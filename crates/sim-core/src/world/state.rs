@@ -47,6 +47,12 @@ impl State {
         self.velocity.push(velocity);
     }
 
+    /// Takes out a body; those after it move up.
+    pub(super) fn remove(&mut self, body: usize) {
+        self.position.remove(body);
+        self.velocity.remove(body);
+    }
+
     /// Has room for as many bodies as another state.
     pub(super) fn match_len(&mut self, other: &State) {
         self.position.resize(other.position.len(), DVec3::ZERO);

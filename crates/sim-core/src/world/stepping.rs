@@ -48,6 +48,19 @@ pub(super) struct Way<'a> {
     pub(super) horizons: &'a mut Horizons,
 }
 
+#[cfg(feature = "serde")]
+impl Integrator {
+    /// What growth is counted from, once something is.
+    pub(super) fn growth(&self) -> Option<(f64, &Marks)> {
+        self.speed_scale.map(|scale| (scale, &self.marks))
+    }
+
+    /// Goes on counting.
+    pub(super) fn resume_growth(&mut self, scale: f64, marks: Marks) {
+        (self.speed_scale, self.marks) = (Some(scale), marks);
+    }
+}
+
 impl Integrator {
     /// Forgets what growth is counted from: bodies or forces have been set.
     pub(super) fn forget_growth(&mut self) {

@@ -12,7 +12,7 @@ use super::{
     stepping::Cause,
 };
 use crate::{
-    Extent, Inertia, Shape, Turn,
+    Body, Extent, Inertia, Shape, Turn,
     collide::{
         self, Placement,
         turning::{Figure, Moving, Turning},
@@ -50,13 +50,34 @@ impl Turners {
         (slot != NONE).then_some(slot as usize)
     }
 
-    fn push(&mut self, body: usize, inertia: Inertia, torque: DVec3, radius: f64) {
+    fn push(&mut self, body: usize, turn: Prepared) {
         self.slot.resize(body, NONE);
         self.slot.push(self.body.len() as u32);
         self.body.push(body);
-        self.inertia.push(inertia);
-        self.torque.push(torque);
-        self.radius.push(radius);
+        self.inertia.push(turn.inertia);
+        self.torque.push(turn.torque);
+        self.radius.push(turn.radius);
+    }
+
+    /// Forgets a body, whose followers have an index less from then on; tells its slot, if it had one.
+    pub(super) fn remove(&mut self, body: usize) -> Option<usize> {
+        let slot = self.slot(body);
+        if body < self.slot.len() {
+            self.slot.remove(body);
+        }
+        if let Some(slot) = slot {
+            self.body.remove(slot);
+            self.inertia.remove(slot);
+            self.torque.remove(slot);
+            self.radius.remove(slot);
+            for other in self.slot.iter_mut().filter(|other| **other != NONE) {
+                *other -= u32::from(*other as usize > slot);
+            }
+        }
+        for other in &mut self.body {
+            *other -= usize::from(*other > body);
+        }
+        slot
     }
 }
 
@@ -236,53 +257,65 @@ impl Turned {
     }
 }
 
+/// What turns of a body, checked.
+pub(super) struct Prepared {
+    inertia: Inertia,
+    torque: DVec3,
+    radius: f64,
+    turned: Turned,
+}
+
+/// Checks what turns of a body that has been checked otherwise.
+pub(super) fn prepared(index: usize, turn: Turn, body: &Body) -> Result<Prepared, WorldError> {
+    error::check_vector(index, "spin", turn.spin)?;
+    error::check_vector(index, "torque", turn.torque)?;
+    if !turn.rotation.is_finite() || !turn.rotation.is_normalized() {
+        return Err(WorldError::Rotation { body: index });
+    }
+    if let Some(Shape::HalfSpace { .. }) = body.shape {
+        return Err(WorldError::TurningHalfSpace { body: index });
+    }
+    let is_movable = body.kind.is_movable();
+    let of_shape = || match &body.shape {
+        _ if !is_movable => Inertia::new(DVec3::ONE, DQuat::IDENTITY, DVec3::ZERO),
+        Some(Shape::Mesh(mesh)) => Inertia::solid(mesh, body.mass),
+        &Some(Shape::Sphere { radius }) => Inertia::ball(radius, body.mass),
+        Some(Shape::HalfSpace { .. }) | None => Err(crate::InertiaError::Shapeless),
+    };
+    let refused = |error| WorldError::Inertia { body: index, error };
+    let mut inertia = turn.inertia.map_or_else(of_shape, Ok).map_err(refused)?;
+    let mut torque = turn.torque;
+    if !is_movable {
+        // Nothing changes its spin, whatever its moments are.
+        let steady = Inertia::new(DVec3::ONE, DQuat::IDENTITY, inertia.centre());
+        inertia = steady.map_err(refused)?;
+        torque = DVec3::ZERO;
+    }
+    let centre = inertia.centre();
+    let radius = match &body.shape {
+        Some(Shape::Mesh(mesh)) => mesh
+            .vertices()
+            .iter()
+            .map(|v| (v.as_dvec3() - centre).length())
+            .fold(0.0, f64::max),
+        &Some(Shape::Sphere { radius }) => radius + centre.length(),
+        Some(Shape::HalfSpace { .. }) | None => 0.0,
+    };
+    let rotation = (turn.rotation.normalize() * inertia.axes()).normalize();
+    Ok(Prepared {
+        turned: Turned::spinning(&inertia, rotation, turn.spin),
+        inertia,
+        torque,
+        radius,
+    })
+}
+
 impl World {
-    /// Adds what turns of a body that is about to be the next one.
-    pub(super) fn add_turn(
-        &mut self,
-        body: usize,
-        turn: Turn,
-        (mass, shape): (f64, Option<&Shape>),
-    ) -> Result<(), WorldError> {
-        error::check_vector(body, "spin", turn.spin)?;
-        error::check_vector(body, "torque", turn.torque)?;
-        if !turn.rotation.is_finite() || !turn.rotation.is_normalized() {
-            return Err(WorldError::Rotation { body });
-        }
-        if let Some(Shape::HalfSpace { .. }) = shape {
-            return Err(WorldError::TurningHalfSpace { body });
-        }
-        let of_shape = || match shape {
-            _ if mass.is_infinite() => Inertia::new(DVec3::ONE, DQuat::IDENTITY, DVec3::ZERO),
-            Some(Shape::Mesh(mesh)) => Inertia::solid(mesh, mass),
-            Some(&Shape::Sphere { radius }) => Inertia::ball(radius, mass),
-            Some(Shape::HalfSpace { .. }) | None => Err(crate::InertiaError::Shapeless),
-        };
-        let inertia = turn.inertia.map_or_else(of_shape, Ok);
-        let mut inertia = inertia.map_err(|error| WorldError::Inertia { body, error })?;
-        let mut torque = turn.torque;
-        if mass.is_infinite() {
-            // Nothing changes its spin, whatever its moments are.
-            let steady = Inertia::new(DVec3::ONE, DQuat::IDENTITY, inertia.centre());
-            inertia = steady.map_err(|error| WorldError::Inertia { body, error })?;
-            torque = DVec3::ZERO;
-        }
-        let centre = inertia.centre();
-        let radius = match shape {
-            Some(Shape::Mesh(mesh)) => mesh
-                .vertices()
-                .iter()
-                .map(|v| (v.as_dvec3() - centre).length())
-                .fold(0.0, f64::max),
-            Some(&Shape::Sphere { radius }) => radius + centre.length(),
-            Some(Shape::HalfSpace { .. }) | None => 0.0,
-        };
-        let rotation = (turn.rotation.normalize() * inertia.axes()).normalize();
-        let turned = Turned::spinning(&inertia, rotation, turn.spin);
-        self.current.turned.push(turned);
-        self.previous.turned.push(turned);
-        self.bodies.turners.push(body, inertia, torque, radius);
-        Ok(())
+    /// Lets a body turn that has just been added.
+    pub(super) fn push_turn(&mut self, body: usize, turn: Prepared) {
+        self.current.turned.push(turn.turned);
+        self.previous.turned.push(turn.turned);
+        self.bodies.turners.push(body, turn);
     }
 
     /// The bodies that turn.
@@ -351,13 +384,10 @@ impl World {
         let Some(slot) = self.bodies.turners.slot(body) else {
             return Ok(());
         };
-        let ratio = mass / self.bodies.mass[body];
-        if !(ratio.is_finite() && ratio > 0.0) {
-            return match mass == self.bodies.mass[body] {
-                true => Ok(()),
-                false => Err(WorldError::TurningMass { body }),
-            };
+        if !self.bodies.is_movable(body) {
+            return Ok(());
         }
+        let ratio = mass / self.mass(body);
         let old = self.bodies.turners.inertia[slot];
         let new = Inertia::new(ratio * old.moments(), old.axes(), old.centre());
         self.bodies.turners.inertia[slot] =
@@ -366,6 +396,17 @@ impl World {
             state.turned[slot].momentum *= ratio;
         }
         Ok(())
+    }
+
+    /// How a body is turned and turns, if it does.
+    pub fn turn(&self, body: usize) -> Option<Turn> {
+        let slot = self.bodies.turners.slot(body)?;
+        Some(Turn {
+            rotation: self.rotation(body),
+            spin: self.spin(body),
+            torque: self.bodies.turners.torque[slot],
+            inertia: Some(self.bodies.turners.inertia[slot]),
+        })
     }
 
     /// Whether a body turns.

@@ -360,7 +360,7 @@ impl<'a> RunReport<'a> {
                 .enumerate()
                 .map(|(i, body)| BodyReport {
                     name: &body.name,
-                    mass: Some(world.mass(i)).filter(|mass| mass.is_finite()),
+                    mass: world.kind(i).is_movable().then(|| world.mass(i)),
                     position: world.position(i).to_array(),
                     velocity: world.velocity(i).to_array(),
                 })

@@ -39,20 +39,22 @@ impl Session {
         );
     }
 
-    /// Gives the selected body a mass, kg; positive, infinite for an immovable one.
+    /// Gives the selected body a mass, kg; positive. It is movable then.
     pub fn set_mass(&mut self, mass: f64) {
-        self.edit("mass", |i| Input::Mass(i, mass), |body| body.mass = mass);
+        self.edit(
+            "mass",
+            |i| Input::Mass(i, mass),
+            |body| (body.mass, body.immovable) = (mass, false),
+        );
     }
 
-    /// Makes the selected body immovable, or gives it back the mass it had, or 1 kg.
+    /// Makes the selected body immovable, or movable again with the mass it had.
     pub fn set_immovable(&mut self, immovable: bool) {
         let Some(i) = self.selection else { return };
-        let name = self.scene.bodies[i].name.clone();
         if immovable {
-            self.masses.insert(name, self.world.mass(i));
-            self.set_mass(f64::INFINITY);
+            self.edit("mass", Input::Immovable, |body| body.immovable = true);
         } else {
-            self.set_mass(self.masses.get(&name).copied().unwrap_or(1.0));
+            self.set_mass(self.world.mass(i));
         }
     }
 
@@ -108,9 +110,6 @@ impl Session {
         }
         if self.hidden.remove(&before) {
             self.hidden.insert(name.to_owned());
-        }
-        if let Some(mass) = self.masses.remove(&before) {
-            self.masses.insert(name.to_owned(), mass);
         }
         name.clone_into(&mut self.scene.bodies[i].name);
         self.notices.dismiss("rename");

@@ -142,7 +142,7 @@ impl Reference {
         // One rough body among smooth ones slides freely.
         let rough = has_met && bodies.clone().filter(|&i| world.friction(i) > 0.0).count() > 1;
         let pushed = has_met && bodies.clone().any(|i| is_driven(world, i));
-        let closed = !has_met || bodies.all(|i| world.mass(i).is_finite());
+        let closed = !has_met || bodies.all(|i| world.kind(i).is_movable());
         let kept = |force| is_weight(force) || is_internal(world, force);
         let momentum = (world.momentum() - impulse - self.momentum).length();
         let momentum = (closed && forces.iter().all(kept)).then_some(momentum);
@@ -193,7 +193,7 @@ fn relative_and_absolute(relative: Option<f64>, absolute: f64, unit: &str) -> St
 }
 
 fn movable(world: &World) -> impl Iterator<Item = usize> {
-    (0..world.len()).filter(|&i| world.mass(i).is_finite())
+    (0..world.len()).filter(|&i| world.kind(i).is_movable())
 }
 
 /// Kinetic and potential energy together, J; 0 where it is no more than the rounding of its parts,
@@ -239,7 +239,7 @@ fn is_internal(world: &World, force: &Force) -> bool {
         // It leaves out immovable bodies, as does a law for every two.
         Force::Gravitation { .. } | Force::Pair { bodies: None, .. } => true,
         Force::Spring { .. } | Force::Pair { .. } => {
-            force.bodies().all(|i| world.mass(i).is_finite())
+            force.bodies().all(|i| world.kind(i).is_movable())
         }
         _ => false,
     }
@@ -268,7 +268,7 @@ fn drives(world: &World, force: &Force) -> bool {
 
 /// Whether a body keeps a velocity, whatever it meets.
 fn is_driven(world: &World, i: usize) -> bool {
-    world.mass(i).is_infinite() && world.velocity(i) != DVec3::ZERO
+    !world.kind(i).is_movable() && world.velocity(i) != DVec3::ZERO
 }
 
 /// `error / scale`, where there is a scale.

@@ -105,7 +105,7 @@ impl Session {
 
     /// Whether a body stands still for ever.
     pub(super) fn is_static(&self, i: usize) -> bool {
-        self.world.mass(i).is_infinite() && self.world.velocity(i) == DVec3::ZERO
+        !self.world.kind(i).is_movable() && self.world.velocity(i) == DVec3::ZERO
     }
 
     pub(super) fn is_half_space(&self, i: usize) -> bool {

@@ -70,7 +70,7 @@ impl Session {
             };
             let along = self.normal_length(impact) * impact.normal;
             // On what can move: from an immovable second body back to the first.
-            let along = match self.world.mass(impact.bodies.1).is_finite() {
+            let along = match self.world.kind(impact.bodies.1).is_movable() {
                 true => along,
                 false => -along,
             };

@@ -63,8 +63,11 @@ fn way(world: &World, i: usize) -> DVec3 {
     world.position(i) - world.previous_position(i)
 }
 
-/// Whether the boxes swept in the last step meet.
+/// Whether two bodies collide, and the boxes that they swept in the last step meet.
 fn may_touch(world: &World, i: usize, j: usize) -> bool {
+    if !world.groups(i).collide(world.groups(j)) {
+        return false;
+    }
     let swept = |i: usize| {
         let (low, high) = extent(world, i)?;
         let (from, to) = (world.previous_position(i), world.position(i));

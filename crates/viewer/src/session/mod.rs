@@ -136,8 +136,6 @@ pub struct Session {
     history: history::History,
     /// Simulated seconds in a real one.
     speed: f64,
-    /// Masses of bodies made immovable, kg, by name: what they get back.
-    masses: std::collections::BTreeMap<String, f64>,
     /// Names of the bodies that are left out of the picture.
     hidden: std::collections::BTreeSet<String>,
     selection: Option<usize>,
@@ -192,7 +190,6 @@ impl Session {
             variants: Variants::default(),
             view: view::View::default(),
             speed: 1.0,
-            masses: std::collections::BTreeMap::new(),
             hidden: std::collections::BTreeSet::new(),
             selection: None,
             pull: None,

@@ -34,7 +34,7 @@ impl Session {
             return false;
         };
         let mass = self.world.mass(body);
-        if mass.is_infinite() {
+        if !self.world.kind(body).is_movable() {
             let name = &self.scene.bodies[body].name;
             let text = format!("{name} is immovable, so nothing pulls it.");
             self.notices.info("pull", text);

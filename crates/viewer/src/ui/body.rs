@@ -21,6 +21,7 @@ pub(super) fn show(ui: &mut egui::Ui, handles: &mut Handles, session: &mut Sessi
     let world = session.world();
     let (position, velocity) = (world.position(i), world.velocity(i));
     let (force, mass) = (world.force(i), world.mass(i));
+    let immovable = !world.kind(i).is_movable();
     let (restitution, friction) = (world.restitution(i), world.friction(i));
     let layout = session.state() == State::Layout;
     let place = match shape {
@@ -62,7 +63,7 @@ pub(super) fn show(ui: &mut egui::Ui, handles: &mut Handles, session: &mut Sessi
     {
         session.set_force(value);
     }
-    mass_and_restitution(ui, session, mass, restitution);
+    mass_and_restitution(ui, session, (mass, immovable), restitution);
     let meaning = "Coefficient of friction µ from 0, smooth, to inf, which never slips: the force \
                    along a contact is at most µ times that across it, |F_t| ≤ µ F_n; of two bodies \
                    √(µ₁ µ₂) counts, 0 where one is smooth";
@@ -105,19 +106,23 @@ fn turned(ui: &mut egui::Ui, session: &mut Session, rotation: DVec3, scale: DVec
     }
 }
 
-fn mass_and_restitution(ui: &mut egui::Ui, session: &mut Session, mass: f64, restitution: f64) {
+fn mass_and_restitution(
+    ui: &mut egui::Ui,
+    session: &mut Session,
+    (mass, mut immovable): (f64, bool),
+    restitution: f64,
+) {
     let is_half_space = session
         .selected()
         .is_some_and(|body| matches!(body.shape, SceneShape::HalfSpace { .. }));
     ui.horizontal(|ui| {
-        if mass.is_finite() {
+        if !immovable {
             if let Some(value) = field::scalar(ui, "Mass", "kg", "Mass, above 0", mass) {
                 session.set_mass(value);
             }
         } else {
-            field::label(ui, "Mass", "An immovable body has an infinite one");
+            field::label(ui, "Mass", "An immovable body needs none");
         }
-        let mut immovable = mass.is_infinite();
         let changed = ui
             .add_enabled(
                 !is_half_space,

@@ -210,7 +210,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("Constant force on the body, F = m a", "作用在物体上的恒力，F = m a"),
     ("Mass", "质量"),
     ("Mass, above 0", "质量，大于 0"),
-    ("An immovable body has an infinite one", "不动的物体质量为无穷大"),
+    ("An immovable body needs none", "不动的物体不需要质量"),
     ("Immovable", "不动"),
     ("Nothing moves it: it stands still or keeps its velocity", "什么也推不动它：它静止或保持速度"),
     ("Half-spaces always are: they stand still or keep their velocity", "半空间总是不动：静止或保持速度"),
@@ -630,7 +630,8 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("The rate goes from {} to {} Hz, not {}.", "频率从 {0} 到 {1} Hz，不能是 {2}。"),
     ("No font of the system has Chinese characters: install one, such as fonts-noto-cjk.", "系统没有中文字体：请安装一种，例如 fonts-noto-cjk。"),
     ("{} of body {} is {}: every component must be a number within ±1e100", "物体 {1} 的 {0} 是 {2}：每个分量必须是 ±1e100 之内的数"),
-    ("mass of body {} is {} kg: it must be between 1e-100 and 1e100, or infinite", "物体 {0} 的质量是 {1} kg：必须在 1e-100 与 1e100 之间，或为无穷大"),
+    ("mass of body {} is {} kg: it must be between 1e-100 and 1e100", "物体 {0} 的质量是 {1} kg：必须在 1e-100 与 1e100 之间"),
+    ("mass of body {} is {} kg: it must be between 1e-100 and 1e100; what nothing moves is static or kinematic", "物体 {0} 的质量是 {1} kg：必须在 1e-100 与 1e100 之间；不受任何作用的物体是静止的或按给定速度运动的"),
     ("restitution of body {} is {}: it must be between 0 and 1", "物体 {0} 的恢复系数是 {1}：必须在 0 与 1 之间"),
     ("friction of body {} is {}: it must be between 0 and infinity", "物体 {0} 的摩擦系数是 {1}：必须在 0 与无穷大之间"),
     ("radius of body {} is {} m: it must be between 0 and 1e100", "物体 {0} 的半径是 {1} m：必须在 0 与 1e100 之间"),
@@ -644,7 +645,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("scene `{}`: step {}: the motion of body {} under {} left the range of ±1e100; lower dt, the force or the velocity",
      "场景 `{0}`：第 {1} 步：物体 {2} 在 {3} 下的运动超出了 ±1e100；请减小 dt、力或速度"),
     ("scene `{}`: step {}: {} found no motion of body {} in {} iterations; lower dt", "场景 `{0}`：第 {1} 步：{2} 迭代 {4} 次没有找到物体 {3} 的运动；请减小 dt"),
-    ("scene `{}`: step {}: body {} is squeezed between bodies {} and {}, which nothing stops: stop one of them, give it a finite mass, or, should there be room for it, lower dt",
+    ("scene `{}`: step {}: body {} is squeezed between bodies {} and {}, which nothing stops: stop one of them, make it dynamic, or, should there be room for it, lower dt",
      "场景 `{0}`：第 {1} 步：物体 {2} 被夹在不可阻挡的 {3} 与 {4} 之间：停住其中一个，给它有限的质量，或者在有空间时减小 dt"),
 
     // The labs.

@@ -135,15 +135,7 @@ pub(in super::super) fn grazing() -> Tried {
         (DVec3::new(-1.0, 4.0, 4.0), DVec3::new(3.0, -3.0, -3.0)),
     ] {
         let mut in_order = passing(&cube, aside, velocity)?;
-        let bodies: Vec<Body> = [1, 2, 0]
-            .map(|i| Body {
-                shape: in_order.shape(i).cloned(),
-                position: in_order.position(i),
-                velocity: in_order.velocity(i),
-                mass: in_order.mass(i),
-                ..Body::default()
-            })
-            .into();
+        let bodies: Vec<Body> = [1, 2, 0].map(|i| in_order.body(i).to_body()).into();
         let mut reordered = world(settings(DT), &bodies)?;
         let energy = in_order.kinetic_energy();
         let impacts = run(&mut in_order, 240)?;

@@ -10,8 +10,8 @@ pub(super) mod symmetry;
 use std::sync::Arc;
 
 use sim_core::{
-    Body, Collision, DVec3, Impact, Mesh, Method, Settings, Shape, StepError, Vec3, World,
-    WorldError,
+    Body, BodyKind, Collision, DVec3, Impact, Mesh, Method, Settings, Shape, StepError, Vec3,
+    World, WorldError,
 };
 
 pub(super) use super::Finding;
@@ -67,7 +67,7 @@ fn mesh(mesh: &Arc<Mesh>, position: DVec3, velocity: DVec3) -> Body {
 
 fn immovable(body: Body) -> Body {
     Body {
-        mass: f64::INFINITY,
+        kind: BodyKind::Kinematic,
         ..body
     }
 }
@@ -108,7 +108,7 @@ fn worst(figures: impl IntoIterator<Item = f64>) -> f64 {
 /// Relative change of the kinetic energy, and change of the momentum, of the sum of momenta.
 fn lost(world: &World, start: &World) -> f64 {
     let energy = world.kinetic_energy() / start.kinetic_energy() - 1.0;
-    let all = (0..start.len()).filter(|&i| start.mass(i).is_finite());
+    let all = (0..start.len()).filter(|&i| start.kind(i).is_movable());
     let momenta: f64 = all
         .map(|i| start.mass(i) * start.velocity(i).length())
         .sum();

@@ -110,6 +110,11 @@ impl Broad {
         }
     }
 
+    /// Whether it holds nobody: it has not been filled.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.bodies.is_empty() && self.walls.is_empty()
+    }
+
     /// Begins with other bodies.
     fn forget(&mut self, bodies: &[usize], front: impl Fn(usize) -> Option<Front>) {
         self.bodies.clear();

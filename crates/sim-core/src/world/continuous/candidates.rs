@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::mem;
 
 use super::super::{profile::Phase, stepping::Cause};
-use super::{event_loop::EventLoop, view::View};
+use super::{event_loop::EventLoop, solver::ContactSolver, view::View};
 use crate::{
     Extent,
     collide::{Broad, Front, Swept},
@@ -67,6 +67,23 @@ impl View<'_> {
         let deviation = self.motion().chord_deviation(wall);
         front.level += deviation.dot(front.normal.abs());
         Some(front)
+    }
+}
+
+impl ContactSolver<'_> {
+    /// Whether it is known what is near bodies where they are. A copy of a world has to find it out again.
+    pub(super) fn knows_near(&mut self) -> bool {
+        if self.near.knows_near && self.near.broad.is_empty() {
+            let mut broad = mem::take(&mut self.near.broad);
+            let view = self.view();
+            broad.fill(
+                &view.scene.bodies.solid,
+                |body| view.swept(body),
+                |body| view.front(body),
+            );
+            self.near.broad = broad;
+        }
+        self.near.knows_near
     }
 }
 

@@ -9,6 +9,7 @@ use super::super::bodies::Bodies;
 /// A plane that keeps two bodies apart: the second one may not move against the normal faster than
 /// the target, nor be accelerated against it by more than the surface recedes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::world) struct ContactConstraint {
     /// The lower body first.
     pub(in crate::world) bodies: (usize, usize),
@@ -24,6 +25,7 @@ pub(in crate::world) struct ContactConstraint {
     pub(in crate::world) load_speed: f64,
     /// When in the step its surface ends or begins to turn, s from the step's start; infinite where
     /// it does not.
+    #[cfg_attr(feature = "serde", serde(with = "crate::serde_number"))]
     pub(super) ends_at: f64,
     /// Where it was touched, from the first body, m.
     pub(in crate::world) point: DVec3,
@@ -64,6 +66,19 @@ impl ContactConstraint {
             is_overlap: false,
             is_hold: false,
         }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl ContactConstraint {
+    /// Whether all of its numbers are numbers within the range of a world.
+    pub(in crate::world) fn is_sound(&self) -> bool {
+        let vectors = [self.normal, self.point, self.friction];
+        let numbers = [self.gap, self.target, self.load_speed, self.impulse];
+        let all = vectors.iter().flat_map(|vector| vector.to_array());
+        all.chain(numbers)
+            .all(|number| number.abs() <= super::super::error::LARGEST)
+            && self.ends_at >= 0.0
     }
 }
 
@@ -170,6 +185,23 @@ impl ContactSet {
         }
     }
 
+    /// Takes out a body that has no constraint; those after it move up.
+    pub(in crate::world) fn remove_body(&mut self, body: usize) {
+        for constraint in &mut self.all {
+            let (i, j) = &mut constraint.bodies;
+            *i -= usize::from(*i > body);
+            *j -= usize::from(*j > body);
+        }
+        if body < self.of_body.len() {
+            self.of_body.remove(body);
+        }
+        for flags in [&mut self.bundled, &mut self.bundled_next] {
+            if body < flags.len() {
+                flags.remove(body);
+            }
+        }
+    }
+
     /// Removes a constraint; the last one takes its index.
     pub(super) fn remove(&mut self, index: usize) {
         let (gone, last) = (self.all.swap_remove(index), self.all.len());
@@ -226,6 +258,41 @@ impl ContactSet {
         }
         mem::swap(&mut self.bundled, &mut self.bundled_next);
         self.bundled_next.clear();
+    }
+
+    /// The constraints by body, and the bodies whose constraints are bundled.
+    #[cfg(feature = "serde")]
+    pub(in crate::world) fn places(&self) -> (&[Vec<u32>], Vec<usize>) {
+        let bundled = (0..self.bundled.len()).filter(|&body| self.bundled[body]);
+        (&self.of_body, bundled.collect())
+    }
+
+    /// A set of constraints that are in these places, each in those of its movable bodies; `None` if they are
+    /// not.
+    #[cfg(feature = "serde")]
+    pub(in crate::world) fn in_places(
+        all: Vec<ContactConstraint>,
+        of_body: Vec<Vec<u32>>,
+        bundled: &[usize],
+        bodies: &Bodies,
+    ) -> Option<ContactSet> {
+        let mut expected = alloc::vec![Vec::new(); of_body.len()];
+        for (index, constraint) in (0..).zip(&all) {
+            for body in [constraint.bodies.0, constraint.bodies.1] {
+                if bodies.is_movable(body) {
+                    expected.get_mut(body)?.push(index);
+                }
+            }
+        }
+        let mut sorted = of_body.clone();
+        sorted.iter_mut().for_each(|list| list.sort_unstable());
+        let mut set = ContactSet {
+            all,
+            of_body,
+            ..ContactSet::default()
+        };
+        set.bundle(bundled);
+        (sorted == expected && set.bundled.len() <= bodies.len()).then_some(set)
     }
 
     pub(in crate::world) fn clear(&mut self) {

@@ -39,7 +39,7 @@ impl ContactSolver<'_> {
     /// are level with it.
     pub(super) fn hand_over(&mut self, ended: &ContactConstraint) -> Result<(), (usize, Cause)> {
         // Where bodies have just been placed all contacts are new.
-        if ended.is_overlap || !self.near.knows_near {
+        if ended.is_overlap || !self.knows_near() {
             return Ok(());
         }
         let (i, j) = ended.bodies;

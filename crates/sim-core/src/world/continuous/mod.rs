@@ -61,6 +61,8 @@ use core::mem;
 
 use super::{Bundled, World, profile::Phase, scene::scene, stepping::Cause};
 use candidates::Neighbours;
+#[cfg(feature = "serde")]
+pub(super) use contact_set::ContactConstraint;
 pub(super) use contact_set::ContactSet;
 use event::EventQueue;
 use event_loop::EventLoop;
@@ -94,6 +96,26 @@ pub(super) struct Continuous {
     turning: TurningRest,
     /// What bundling has changed in the step.
     pub(super) bundled: Bundled,
+}
+
+impl Continuous {
+    /// One that keeps nothing yet to save time.
+    pub(super) fn resumed(placed: bool, knows_near: bool, bundled: Bundled) -> Continuous {
+        Continuous {
+            placed,
+            bundled,
+            near: Neighbours {
+                knows_near,
+                ..Neighbours::default()
+            },
+            ..Continuous::default()
+        }
+    }
+
+    /// Whether it is known what is near bodies where they are: they have not been placed since.
+    pub(super) fn knows_near(&self) -> bool {
+        self.near.knows_near
+    }
 }
 
 impl World {

@@ -302,10 +302,11 @@ impl ContactSolver<'_> {
         way: DVec3,
         time: f64,
     ) -> Result<f64, (usize, Cause)> {
+        let knows_near = self.knows_near();
         let mut partners = mem::take(&mut self.near.partners);
         let mut probe = mem::take(&mut self.paths.probe);
         partners.clear();
-        match self.near.knows_near {
+        match knows_near {
             true => self
                 .near
                 .broad

@@ -173,7 +173,7 @@ impl EventLoop<'_> {
     pub(super) fn count(&mut self, group: &[Event]) {
         for event in group {
             let is_counted = event.outcome != Outcome::Bounce
-                || !self.solver.scene.bodies.restitution.is_empty();
+                || !self.solver.scene.bodies.restitution.is_usual();
             let closing = self.view().closing(event);
             for body in [event.bodies.0, event.bodies.1] {
                 if !is_counted

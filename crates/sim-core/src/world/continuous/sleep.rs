@@ -3,6 +3,8 @@
 //! An island that is at rest and has nothing to accelerate it stays as it is: the same input gives the
 //! same answer, so its constraints need not be solved again. This is a memo, and changes no answer.
 
+#[cfg(feature = "serde")]
+use alloc::vec::Vec;
 use glam::DVec3;
 
 use super::{Continuous, solver::ContactSolver, view::View};
@@ -11,6 +13,20 @@ impl Continuous {
     /// Wakes all bodies: something has changed from outside.
     pub(in crate::world) fn wake_all(&mut self) {
         self.asleep.clear();
+    }
+
+    /// The bodies that are asleep.
+    #[cfg(feature = "serde")]
+    pub(in crate::world) fn sleepers(&self) -> Vec<usize> {
+        let bodies = 0..self.asleep.len();
+        bodies.filter(|&body| self.asleep[body]).collect()
+    }
+
+    /// Lets some of so many bodies be asleep.
+    #[cfg(feature = "serde")]
+    pub(in crate::world) fn put_to_sleep(&mut self, these: &[usize], bodies: usize) {
+        self.asleep.resize(bodies, false);
+        these.iter().for_each(|&body| self.asleep[body] = true);
     }
 }
 

@@ -4,7 +4,9 @@ use alloc::{sync::Arc, vec::Vec};
 use glam::DVec3;
 
 use super::{super::scene::scene, position_correction::Correction};
-use crate::{Body, Force, METHODS, Method, Settings, Shape, StepError, World, test_meshes::cube};
+use crate::{
+    Body, BodyKind, Force, METHODS, Method, Settings, Shape, StepError, World, test_meshes::cube,
+};
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -38,7 +40,7 @@ fn ball(radius: f64) -> Shape {
 
 fn floor() -> Body {
     Body {
-        mass: f64::INFINITY,
+        kind: BodyKind::Kinematic,
         ..body(
             Shape::HalfSpace { normal: DVec3::Y },
             DVec3::ZERO,
@@ -57,7 +59,7 @@ fn bodies_in_overlap_may_become_immovable() {
     world.step().unwrap();
     assert_eq!(world.overlapping(), [(0, 1)]);
     for (body, speed) in [(0, 1.0), (1, -1.0)] {
-        world.set_mass(body, f64::INFINITY).unwrap();
+        world.set_kind(body, BodyKind::Kinematic).unwrap();
         world.set_velocity(body, v(speed, 0.0, 0.0)).unwrap();
     }
     for _ in 0..90 {
@@ -66,7 +68,7 @@ fn bodies_in_overlap_may_become_immovable() {
     assert!((world.position(0).x + 0.25 - 1.5).abs() < 0.01);
     // And movable again while they are in each other, where they may part.
     world.set_position(1, v(1.5, 0.25, 0.0)).unwrap();
-    world.set_mass(1, 1.0).unwrap();
+    world.set_kind(1, BodyKind::Dynamic).unwrap();
     world.set_velocity(1, v(9.0, 0.0, 0.0)).unwrap();
     assert_eq!(world.overlapping(), [(0, 1)]);
     for _ in 0..60 {
@@ -188,7 +190,7 @@ fn no_method_loses_height_at_a_bounce() {
 fn squeezed(restitution: f64) -> World {
     let cube = Arc::new(cube());
     let slab = |side: f64| Body {
-        mass: f64::INFINITY,
+        kind: BodyKind::Kinematic,
         ..body(cube.clone(), v(1.25 * side, 0.0, 0.0), v(-side, 0.0, 0.0))
     };
     let caught = Body {
@@ -218,7 +220,7 @@ fn what_is_squeezed_is_named_soon() {
 fn what_is_put_back_leaves_immovable_bodies_where_they_are() {
     let cube = Arc::new(cube());
     let lift = Body {
-        mass: f64::INFINITY,
+        kind: BodyKind::Kinematic,
         ..body(cube.clone(), v(0.0, 0.0, 0.0), v(0.0, 1.0, 0.0))
     };
     let on_it =
@@ -248,7 +250,7 @@ fn what_is_put_back_leaves_immovable_bodies_where_they_are() {
 #[test]
 fn who_moves_elsewhere_squeezes_nobody() {
     let immovable = |body| Body {
-        mass: f64::INFINITY,
+        kind: BodyKind::Kinematic,
         ..body
     };
     let mut blocks = world([
@@ -279,7 +281,7 @@ fn who_moves_elsewhere_squeezes_nobody() {
 #[test]
 fn a_row_is_squeezed_too() {
     let wall = |side: f64| Body {
-        mass: f64::INFINITY,
+        kind: BodyKind::Kinematic,
         ..body(
             Shape::HalfSpace {
                 normal: v(-side, 0.0, 0.0),
@@ -302,7 +304,7 @@ fn a_row_is_squeezed_too() {
 #[test]
 fn what_has_no_room_stops_the_step_soon() {
     let wall = |normal: DVec3, far: f64| Body {
-        mass: f64::INFINITY,
+        kind: BodyKind::Kinematic,
         ..body(Shape::HalfSpace { normal }, far * normal, DVec3::ZERO)
     };
     let directions = |count: i32| {

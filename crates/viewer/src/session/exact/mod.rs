@@ -171,7 +171,7 @@ impl Exact {
             }
         }
         let mut error: Option<f64> = None;
-        for i in (0..world.len()).filter(|&i| world.mass(i).is_finite()) {
+        for i in (0..world.len()).filter(|&i| world.kind(i).is_movable()) {
             if let Some((place, _)) = self.at(i, world.time()) {
                 let away = (world.position(i) - place).length();
                 error = Some(error.map_or(away, |most| most.max(away)));
@@ -204,7 +204,7 @@ impl Exact {
 impl Path {
     fn of(world: &World, i: usize) -> Path {
         let (place, velocity, mass) = (world.position(i), world.velocity(i), world.mass(i));
-        if mass.is_infinite() {
+        if !world.kind(i).is_movable() {
             return Path::Driven(place, velocity);
         }
         let mut push = world.force(i) / mass;
@@ -269,12 +269,17 @@ impl Path {
 
 /// Whether there is no other movable body.
 fn alone(world: &World, i: usize) -> bool {
-    (0..world.len()).all(|j| j == i || world.mass(j).is_infinite())
+    (0..world.len()).all(|j| j == i || !world.kind(j).is_movable())
+}
+
+/// Whether two bodies are in groups that collide.
+fn collide(world: &World, i: usize, j: usize) -> bool {
+    world.groups(i).collide(world.groups(j))
 }
 
 /// Whether body `i`, which moves freely, is followed through its impacts on `j`.
 fn is_face(world: &World, i: usize, j: usize) -> bool {
-    if world.mass(i).is_infinite() || world.mass(j).is_finite() {
+    if !world.kind(i).is_movable() || world.kind(j).is_movable() || !collide(world, i, j) {
         return false;
     }
     let box_like = |body: usize| match world.shape(body) {
@@ -290,7 +295,7 @@ fn is_face(world: &World, i: usize, j: usize) -> bool {
 
 /// Whether `i` could meet `j` in a way that no path knows.
 fn may_answer(world: &World, i: usize, j: usize) -> bool {
-    if world.mass(i).is_infinite() {
+    if !world.kind(i).is_movable() || !collide(world, i, j) {
         return false;
     }
     // Two points never meet.

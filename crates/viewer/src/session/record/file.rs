@@ -64,6 +64,8 @@ struct InputText {
     #[serde(skip_serializing_if = "Option::is_none")]
     mass: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    immovable: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     restitution: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     friction: Option<f64>,
@@ -140,6 +142,10 @@ impl Record {
             &Input::Mass(body, value) => {
                 name(body);
                 text.mass = Some(value);
+            }
+            &Input::Immovable(body) => {
+                name(body);
+                text.immovable = Some(true);
             }
             &Input::Restitution(body, value) => {
                 name(body);
@@ -258,7 +264,14 @@ impl InputText {
             found.push(Input::Force(body()?, DVec3::from(force)));
         }
         if let Some(mass) = self.mass {
-            found.push(Input::Mass(body()?, mass));
+            // Recorded before bodies had kinds, an infinite one is that of an immovable body.
+            found.push(match mass == f64::INFINITY {
+                true => Input::Immovable(body()?),
+                false => Input::Mass(body()?, mass),
+            });
+        }
+        if self.immovable == Some(true) {
+            found.push(Input::Immovable(body()?));
         }
         if let Some(restitution) = self.restitution {
             found.push(Input::Restitution(body()?, restitution));

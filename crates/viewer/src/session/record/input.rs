@@ -1,6 +1,6 @@
 //! What a person can do to a world that runs.
 
-use sim_core::{DVec3, Force, SeparateError, Settings, World, WorldError};
+use sim_core::{BodyKind, DVec3, Force, SeparateError, Settings, World, WorldError};
 
 /// One change, the same whether it is made the first time or in a replay.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,8 +13,10 @@ pub enum Input {
     Velocity(usize, DVec3),
     /// The constant force on it, N.
     Force(usize, DVec3),
-    /// Its mass, kg.
+    /// Its mass, kg; it is movable then.
     Mass(usize, f64),
+    /// That nothing moves it.
+    Immovable(usize),
     /// What it keeps of an approaching speed.
     Restitution(usize, f64),
     /// Its coefficient of friction.
@@ -46,9 +48,13 @@ impl Input {
         match *self {
             Self::Settings(settings) => world.set_settings(settings)?,
             Self::Position(body, position) => world.set_position(body, position)?,
-            Self::Velocity(body, velocity) => world.set_velocity(body, velocity)?,
+            Self::Velocity(body, velocity) => set_velocity(world, body, velocity)?,
             Self::Force(body, force) => world.set_force(body, force)?,
-            Self::Mass(body, mass) => world.set_mass(body, mass)?,
+            Self::Mass(body, mass) => {
+                world.set_mass(body, mass)?;
+                world.set_kind(body, BodyKind::Dynamic)?;
+            }
+            Self::Immovable(body) => world.set_kind(body, BodyKind::Kinematic)?,
             Self::Restitution(body, part) => world.set_restitution(body, part)?,
             Self::Friction(body, friction) => world.set_friction(body, friction)?,
             Self::Forces(ref forces) => *world = with_forces(world, forces)?,
@@ -56,6 +62,19 @@ impl Input {
         }
         Ok(Vec::new())
     }
+}
+
+/// Gives a body a velocity: what is immovable stands still until then.
+fn set_velocity(world: &mut World, body: usize, velocity: DVec3) -> Result<(), WorldError> {
+    let stands = body < world.len() && world.kind(body) == BodyKind::Static;
+    if stands {
+        world.set_kind(body, BodyKind::Kinematic)?;
+    }
+    let done = world.set_velocity(body, velocity);
+    if stands && done.is_err() {
+        world.set_kind(body, BodyKind::Static)?;
+    }
+    done
 }
 
 /// The same world under other forces.

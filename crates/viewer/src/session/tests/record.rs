@@ -19,7 +19,7 @@ fn eventful() -> Session {
     go_on(&mut session);
     session.set_velocity(DVec3::new(2.0, 0.2, 0.0));
     go_on(&mut session);
-    session.set_mass(f64::INFINITY);
+    session.set_immovable(true);
     session.set_mass(2.5);
     go_on(&mut session);
     session.set_rate(90.0);

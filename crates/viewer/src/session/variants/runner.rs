@@ -76,7 +76,7 @@ impl Runner {
     /// The exact solution from the present state of `world`, if it is known for every body.
     pub fn exact(world: &World) -> Option<Self> {
         let mut exact = Exact::of(world);
-        let movable = (0..world.len()).any(|i| world.mass(i).is_finite());
+        let movable = (0..world.len()).any(|i| world.kind(i).is_movable());
         let dt = world.settings().dt;
         let known = movable && exact.knows_all(world.time());
         known.then(|| Self {

@@ -1,0 +1,98 @@
+//! What moves a body, and how heavy it is.
+
+use glam::DVec3;
+
+use super::{World, WorldError, error};
+use crate::BodyKind;
+
+impl World {
+    /// What moves a body.
+    ///
+    /// # Panics
+    ///
+    /// If there is no body of that index.
+    #[inline]
+    #[must_use]
+    pub fn kind(&self, body: usize) -> BodyKind {
+        match self.bodies.mass[body].is_finite() {
+            true => BodyKind::Dynamic,
+            false => self.bodies.kind.get(body),
+        }
+    }
+
+    /// Makes a body one of another kind. It keeps its mass, and its velocity unless it becomes static.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::NoBody`], or [`WorldError::TurningKind`] of a body that turns and would become one that nothing
+    /// moves, or cease to be.
+    pub fn set_kind(&mut self, body: usize, kind: BodyKind) -> Result<(), WorldError> {
+        self.check_body(body)?;
+        let before = self.kind(body);
+        if self.turns(body) && before.is_movable() != kind.is_movable() {
+            return Err(WorldError::TurningKind { body });
+        }
+        if kind == BodyKind::Static {
+            self.current.velocity[body] = DVec3::ZERO;
+        }
+        self.integrator.forget_growth();
+        self.continuous.wake_all();
+        if before.is_movable() != kind.is_movable() {
+            self.forget_contacts_of(body);
+            self.bodies.set_kind(body, kind);
+            // Bodies that nothing moves may be in each other.
+            self.note_placed(body);
+            self.bodies.acceleration[body] = self.constant_acceleration(body);
+        } else {
+            self.bodies.set_kind(body, kind);
+        }
+        Ok(())
+    }
+
+    /// Mass of a body, kg. While it is not dynamic it does not count: nothing moves it.
+    ///
+    /// # Panics
+    ///
+    /// If there is no body of that index.
+    #[inline]
+    #[must_use]
+    pub fn mass(&self, body: usize) -> f64 {
+        self.bodies.own_mass(body)
+    }
+
+    /// Sets a mass, kg, from 1e-100 to 1e100; of a body that is not dynamic the one that it has once it is.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::NoBody`], or [`WorldError::Mass`] out of that range.
+    pub fn set_mass(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
+        self.check_body(body)?;
+        error::check_mass(body, mass)?;
+        self.scale_inertia(body, mass)?;
+        if !self.bodies.is_movable(body) {
+            self.bodies.set_own_mass(body, mass);
+            return Ok(());
+        }
+        self.forget_contacts_of(body);
+        self.bodies.set_own_mass(body, mass);
+        self.note_placed(body);
+        self.bodies.acceleration[body] = self.constant_acceleration(body);
+        self.integrator.forget_growth();
+        Ok(())
+    }
+
+    /// Gives a body an impulse, N s: its velocity changes by that over its mass, at once. Nothing happens to
+    /// a body that is not dynamic, as in an impact.
+    ///
+    /// # Errors
+    ///
+    /// [`WorldError::NoBody`]; an impulse, or the velocity after it, with a component beyond ±1e100.
+    pub fn apply_impulse(&mut self, body: usize, impulse: DVec3) -> Result<(), WorldError> {
+        self.check_body(body)?;
+        error::check_vector(body, "impulse", impulse)?;
+        if !self.bodies.is_movable(body) {
+            return Ok(());
+        }
+        self.set_velocity(body, self.velocity(body) + impulse / self.mass(body))
+    }
+}

@@ -1,0 +1,164 @@
+//! A world as data, from which it goes on to the bit.
+//!
+//! What is kept only to save time is not in it. Meshes that bodies share are in it once.
+
+mod read;
+
+use alloc::{format, vec::Vec};
+use glam::DVec3;
+use serde::{Deserialize, Serialize, Serializer, ser};
+
+use super::{
+    Bundled, Groups, Impact, Settings, World, continuous::ContactConstraint, handle::Slot,
+    marks::KeptMotion,
+};
+use crate::{BodyKind, Force, Shape};
+
+/// Grows where the format changes: a world of another version is refused.
+const VERSION: u32 = 1;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Snapshot {
+    version: u32,
+    settings: Settings,
+    steps: u64,
+    /// Time and step at which `dt` was last set.
+    since: (f64, u64),
+    shapes: Vec<Shape>,
+    bodies: Vec<BodyState>,
+    /// Pairs that never collide.
+    ignored: Vec<(usize, usize)>,
+    forces: Vec<Force>,
+    /// The order in which bodies are stepped that forces couple.
+    order: Option<Vec<usize>>,
+    slots: Vec<Slot>,
+    free_slots: Vec<u32>,
+    overlaps: Vec<KnownOverlap>,
+    contacts: Vec<ContactConstraint>,
+    /// By body, indices of contacts.
+    contacts_of: Vec<Vec<u32>>,
+    /// Bodies whose contacts are solved once a step.
+    bundled: Vec<usize>,
+    bundled_in_step: Bundled,
+    /// Bodies at rest, whose contacts are not solved anew.
+    asleep: Vec<usize>,
+    placed: bool,
+    knows_near: bool,
+    impacts: u64,
+    last_impact: Option<Impact>,
+    contact_steps: u64,
+    growth: Option<Growth>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BodyState {
+    /// Its place among the shapes.
+    shape: Option<usize>,
+    kind: BodyKind,
+    mass: f64,
+    position: DVec3,
+    velocity: DVec3,
+    previous_position: DVec3,
+    force: DVec3,
+    restitution: f64,
+    #[serde(with = "crate::serde_number")]
+    friction: f64,
+    groups: Groups,
+    user_data: u64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KnownOverlap {
+    bodies: (usize, usize),
+    /// How deep it was where the two were placed, m, once that has been found.
+    depth_at_start: Option<f64>,
+}
+
+/// What growth of the motion is counted from.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Growth {
+    speed: f64,
+    kept: Vec<KeptMotion>,
+}
+
+/// A world is written with all that its further way depends on: read again, it goes on to the bit, and
+/// the handles of its bodies name the same ones. Numbers must not be rounded on the way; of `serde_json` use
+/// the feature `float_roundtrip`.
+///
+/// # Errors
+///
+/// Where a force is a law from outside ([`Force::Body`], [`Force::Pair`]), or the method is not in
+/// [`METHODS`](crate::METHODS): they are code. And where a body turns, which has no text yet.
+impl Serialize for World {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let mut forces = self.forces().iter();
+        let law = |force: &&Force| matches!(force, Force::Body { .. } | Force::Pair { .. });
+        if let Some(index) = forces.position(|force| law(&force)) {
+            return Err(ser::Error::custom(format!(
+                "force {index} is a law from outside: it is code, which has no text"
+            )));
+        }
+        if let Some(body) = self.turning_bodies().next() {
+            return Err(ser::Error::custom(format!(
+                "body {body} turns: worlds with bodies that turn cannot be written yet"
+            )));
+        }
+        Snapshot::of(self).serialize(to)
+    }
+}
+
+impl Snapshot {
+    fn of(world: &World) -> Snapshot {
+        let (contacts_of, bundled) = world.contacts.places();
+        let (slots, free_slots) = world.handles.slots();
+        let overlap = |&bodies: &(usize, usize)| KnownOverlap {
+            bodies,
+            depth_at_start: world.overlaps.depth_at_start(bodies),
+        };
+        let body = |(i, shape): (usize, Option<usize>)| BodyState {
+            shape,
+            kind: world.kind(i),
+            mass: world.mass(i),
+            position: world.position(i),
+            velocity: world.velocity(i),
+            previous_position: world.previous_position(i),
+            force: world.force(i),
+            restitution: world.restitution(i),
+            friction: world.friction(i),
+            groups: world.groups(i),
+            user_data: world.user_data(i),
+        };
+        Snapshot {
+            version: VERSION,
+            settings: world.settings,
+            steps: world.elapsed.steps,
+            since: world.elapsed.since,
+            shapes: world.bodies.all_shapes().cloned().collect(),
+            bodies: (0..).zip(world.bodies.shape_places()).map(body).collect(),
+            ignored: world.ignored_pairs().collect(),
+            forces: world.forces().to_vec(),
+            order: world.planned_order(),
+            slots: slots.to_vec(),
+            free_slots: free_slots.to_vec(),
+            overlaps: world.overlapping().iter().map(overlap).collect(),
+            contacts: world.contacts.all().to_vec(),
+            contacts_of: contacts_of.to_vec(),
+            bundled,
+            bundled_in_step: world.continuous.bundled,
+            asleep: world.continuous.sleepers(),
+            placed: world.continuous.placed,
+            knows_near: world.continuous.knows_near(),
+            impacts: world.record.impacts,
+            last_impact: world.record.last_impact.clone(),
+            contact_steps: world.record.contact_steps,
+            growth: world.integrator.growth().map(|(speed, marks)| Growth {
+                speed,
+                kept: marks.kept(),
+            }),
+        }
+    }
+}
