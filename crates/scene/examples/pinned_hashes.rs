@@ -3,14 +3,16 @@
 //!
 //! A line of the table is the name of a scene, how collisions are found, and the hash after 600 steps.
 
+use std::error::Error;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use scene::Scene;
 use sim_core::Collision;
 
 const STEPS: u32 = 600;
 
-fn hash(name: &str, mode: &str) -> Result<String, Box<dyn std::error::Error>> {
+fn hash(name: &str, mode: &str) -> Result<String, Box<dyn Error>> {
     let mut scene = Scene::load(name)?;
     scene.collision = match mode {
         "continuous" => Collision::Continuous,
@@ -25,28 +27,46 @@ fn hash(name: &str, mode: &str) -> Result<String, Box<dyn std::error::Error>> {
     Ok(format!("{:016x}", world.state_hash()))
 }
 
-fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
+/// Whether the state of a line of the table is the pinned one.
+fn is_pinned(line: &str) -> Result<bool, Box<dyn Error>> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let [name, mode, expected] = words[..] else {
+        return Err(format!("{line:?} is not a scene, a mode and a hash").into());
+    };
+    let found = hash(name, mode)?;
+    if found != expected {
+        println!("{name} {mode}: {found}, not {expected}");
+    }
+    Ok(found == expected)
+}
+
+fn main() -> Result<ExitCode, Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("give the table of hashes")?;
     let table = std::fs::read_to_string(path)?;
-    let (mut right, mut wrong) = (0, 0);
-    for line in table.lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let [name, mode, expected] = words[..] else {
-            return Err(format!("{line:?} is not a scene, a mode and a hash").into());
-        };
-        let found = hash(name, mode)?;
-        if found == expected {
-            right += 1;
-        } else {
-            wrong += 1;
-            println!("{name} {mode}: {found}, not {expected}");
+    let lines: Vec<&str> = table.lines().collect();
+    let (next, wrong) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let work = || {
+        while let Some(line) = lines.get(next.fetch_add(1, Relaxed)) {
+            match is_pinned(line) {
+                Ok(true) => continue,
+                Ok(false) => {}
+                Err(error) => println!("{line}: {error}"),
+            }
+            wrong.fetch_add(1, Relaxed);
         }
-    }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(work);
+        }
+    });
+    let (wrong, arch) = (wrong.into_inner(), std::env::consts::ARCH);
     println!(
-        "{right} states are the pinned ones on {}, {wrong} are not",
-        std::env::consts::ARCH
+        "{} states are the pinned ones on {arch}, {wrong} are not",
+        lines.len() - wrong
     );
-    Ok(if wrong == 0 && right > 0 {
+    let is_right = wrong == 0 && !lines.is_empty();
+    Ok(if is_right {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE

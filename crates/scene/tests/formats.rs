@@ -414,6 +414,11 @@ fn collada_forgives_rounding_and_empty_elements() {
     for row in ["0 0.1 0 1", "0 0 0 2", "0 0 0 0"] {
         assert!(moved(row).is_err(), "{row}");
     }
+    // Elements of faces that list none, as some exporters write them for unused materials.
+    for kind in ["triangles", "polylist", "polygons"] {
+        let faces = format!("<{kind} count='0' material='unused'/>{BOX}");
+        is_the_box(&read("a.dae", dae("", "g", &faces, ONCE).as_bytes()).expect(kind));
+    }
     let asset = "<unit meter='0.5'/><up_axis>Z_UP</up_axis>";
     let report = read("a.dae", dae(asset, "g", BOX, ONCE).as_bytes())
         .expect("a box")
