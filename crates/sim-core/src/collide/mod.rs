@@ -24,8 +24,8 @@ pub mod tree;
 mod triple;
 pub mod turning;
 
-pub(crate) use ball::nearest;
 pub use ball::{BallTouch, ball_meets, ball_touch};
+pub(crate) use ball::{is_told_by_axis, nearest};
 pub(crate) use broad::{Broad, Front, Swept};
 pub(crate) use form::{Contact, Form, first_contact, is_turned, meet, parting_normals, reach};
 pub use hit::{Hit, Side};
