@@ -167,6 +167,9 @@ fn sweep(bytes: &[u8]) {
         return;
     };
     let (offset, motion) = (source.vector(), source.vector());
+    let size = |v: DVec3| v.abs().max_element();
+    let vertices = a.vertices().iter().chain(b.vertices());
+    let largest = vertices.fold(1e3, |most, v| size(v.as_dvec3()).max(most));
     let (a, b) = (Bvh::build(&a), Bvh::build(&b));
     if tree::intersect(&a, &b, offset) {
         return;
@@ -179,8 +182,7 @@ fn sweep(bytes: &[u8]) {
             "{time:?} {touch:?}"
         );
     }
-    let size = |v: DVec3| v.abs().max_element();
-    let rounding = 64.0 * f64::EPSILON * (size(offset) + size(motion) + 1e3);
+    let rounding = 64.0 * f64::EPSILON * (size(offset) + size(motion) + largest);
     for part in 0..=32 {
         let part = f64::from(part) / 32.0;
         // Where vertices are placed is rounded, so that only what is clearly before counts.

@@ -10,103 +10,103 @@ use crate::scene_file::{self, MeshSource};
 pub static SCENES: &[GalleryScene] = &[
     GalleryScene {
         name: "cube-cow",
-        text: include_str!("../../../assets/scenes/cube-cow.toml"),
+        text: include_str!("../assets/scenes/cube-cow.toml"),
     },
     GalleryScene {
         name: "parabola",
-        text: include_str!("../../../assets/scenes/parabola.toml"),
+        text: include_str!("../assets/scenes/parabola.toml"),
     },
     GalleryScene {
         name: "five-hertz",
-        text: include_str!("../../../assets/scenes/five-hertz.toml"),
+        text: include_str!("../assets/scenes/five-hertz.toml"),
     },
     GalleryScene {
         name: "two-cubes",
-        text: include_str!("../../../assets/scenes/two-cubes.toml"),
+        text: include_str!("../assets/scenes/two-cubes.toml"),
     },
     GalleryScene {
         name: "bounce",
-        text: include_str!("../../../assets/scenes/bounce.toml"),
+        text: include_str!("../assets/scenes/bounce.toml"),
     },
     GalleryScene {
         name: "bullet",
-        text: include_str!("../../../assets/scenes/bullet.toml"),
+        text: include_str!("../assets/scenes/bullet.toml"),
     },
     GalleryScene {
         name: "cradle",
-        text: include_str!("../../../assets/scenes/cradle.toml"),
+        text: include_str!("../assets/scenes/cradle.toml"),
     },
     GalleryScene {
         name: "galperin",
-        text: include_str!("../../../assets/scenes/galperin.toml"),
+        text: include_str!("../assets/scenes/galperin.toml"),
     },
     GalleryScene {
         name: "closing-walls",
-        text: include_str!("../../../assets/scenes/closing-walls.toml"),
+        text: include_str!("../assets/scenes/closing-walls.toml"),
     },
     GalleryScene {
         name: "u-channel",
-        text: include_str!("../../../assets/scenes/u-channel.toml"),
+        text: include_str!("../assets/scenes/u-channel.toml"),
     },
     GalleryScene {
         name: "hundred-cubes",
-        text: include_str!("../../../assets/scenes/hundred-cubes.toml"),
+        text: include_str!("../assets/scenes/hundred-cubes.toml"),
     },
     GalleryScene {
         name: "herd",
-        text: include_str!("../../../assets/scenes/herd.toml"),
+        text: include_str!("../assets/scenes/herd.toml"),
     },
     GalleryScene {
         name: "stack",
-        text: include_str!("../../../assets/scenes/stack.toml"),
+        text: include_str!("../assets/scenes/stack.toml"),
     },
     GalleryScene {
         name: "slope",
-        text: include_str!("../../../assets/scenes/slope.toml"),
+        text: include_str!("../assets/scenes/slope.toml"),
     },
     GalleryScene {
         name: "dominoes",
-        text: include_str!("../../../assets/scenes/dominoes.toml"),
+        text: include_str!("../assets/scenes/dominoes.toml"),
     },
     GalleryScene {
         name: "conveyor",
-        text: include_str!("../../../assets/scenes/conveyor.toml"),
+        text: include_str!("../assets/scenes/conveyor.toml"),
     },
     GalleryScene {
         name: "wall",
-        text: include_str!("../../../assets/scenes/wall.toml"),
+        text: include_str!("../assets/scenes/wall.toml"),
     },
     GalleryScene {
         name: "funnel",
-        text: include_str!("../../../assets/scenes/funnel.toml"),
+        text: include_str!("../assets/scenes/funnel.toml"),
     },
     GalleryScene {
         name: "bin",
-        text: include_str!("../../../assets/scenes/bin.toml"),
+        text: include_str!("../assets/scenes/bin.toml"),
     },
     GalleryScene {
         name: "spring",
-        text: include_str!("../../../assets/scenes/spring.toml"),
+        text: include_str!("../assets/scenes/spring.toml"),
     },
     GalleryScene {
         name: "stiff-spring",
-        text: include_str!("../../../assets/scenes/stiff-spring.toml"),
+        text: include_str!("../assets/scenes/stiff-spring.toml"),
     },
     GalleryScene {
         name: "oscillator",
-        text: include_str!("../../../assets/scenes/oscillator.toml"),
+        text: include_str!("../assets/scenes/oscillator.toml"),
     },
     GalleryScene {
         name: "drag",
-        text: include_str!("../../../assets/scenes/drag.toml"),
+        text: include_str!("../assets/scenes/drag.toml"),
     },
     GalleryScene {
         name: "kepler",
-        text: include_str!("../../../assets/scenes/kepler.toml"),
+        text: include_str!("../assets/scenes/kepler.toml"),
     },
     GalleryScene {
         name: "pleiades",
-        text: include_str!("../../../assets/scenes/pleiades.toml"),
+        text: include_str!("../assets/scenes/pleiades.toml"),
     },
 ];
 

@@ -67,6 +67,37 @@ fn stl_is_read_as_text_and_binary() {
     is_the_tetrahedron(&read("a.stl", &longer).expect("binary"));
 }
 
+/// Blanks of any kind stand between the words of a text, so a facet may take one line, or all of them.
+#[test]
+fn stl_text_has_no_lines_but_for_names() {
+    let text = text_stl();
+    let facets = text.replace("\r\n", " ").replace("\n outer", " outer");
+    let facets = facets.replace("endloop\n", "endloop ");
+    let one_line = text.replace("\r\n", " ").replace('\n', "\t");
+    let two_solids = text.replacen("endfacet\n", "endfacet\nendsolid a\nsolid b\n", 1);
+    for (what, text) in [
+        ("a facet a line", facets),
+        ("all in one line", one_line),
+        (
+            "ends of lines of old systems",
+            text.replace("\r\n", "\n").replace('\n', "\r"),
+        ),
+        ("two solids", two_solids),
+        (
+            "a name like a word of the format",
+            text.replace("a name with words", "facet solid"),
+        ),
+        (
+            "no numbers for a normal",
+            text.replace("normal 0 0 0", "normal nan -nan(ind) 0"),
+        ),
+        ("no normals", text.replace("normal 0 0 0", "")),
+    ] {
+        let loaded = read("a.stl", text.as_bytes());
+        is_the_tetrahedron(&loaded.unwrap_or_else(|error| panic!("{what}: {error}")));
+    }
+}
+
 #[test]
 fn bad_stl_is_refused_with_a_reason() {
     let whole = binary_stl(b"");
@@ -94,7 +125,19 @@ fn bad_stl_is_refused_with_a_reason() {
         ),
         (
             "solid\nvertex 0 0 0\n",
-            "a.stl:2: the line starts with `vertex`",
+            "a.stl:2: `vertex` stands where `facet`",
+        ),
+        (
+            "solid\rfacet normal 0 0 1\router\rvertex 0 0 0\r",
+            "a.stl:4: `vertex` stands where `loop`",
+        ),
+        (
+            "solid\r\nfacet\r\nouter loop\r\nvertex 0 0\r\nvertex 0 0 0\r\n",
+            "a.stl:4: the vertex has no z",
+        ),
+        (
+            "solid\nouter loop vertex 0 0 0\n vertex 1 1 1 1\n",
+            "a.stl:3: `1` stands where `vertex` or `endloop`",
         ),
         ("solid\nouter loop\nvertex 0 0 0\n", "cut off"),
         ("solid\nendsolid\n", "no facets"),
@@ -103,12 +146,9 @@ fn bad_stl_is_refused_with_a_reason() {
         assert!(message.contains(reason), "{message}");
     }
     let all = text_stl();
-    for length in 0..all.len() - "endsolid".len() - 20 {
+    for length in 0..all.len() - "\n".len() {
         let cut = read("a.stl", &all.as_bytes()[..length]);
-        assert!(
-            cut.map_or(true, |loaded| loaded.mesh.triangles().len() < 4),
-            "{length}"
-        );
+        assert!(cut.is_err(), "{length}");
     }
 }
 
@@ -163,6 +203,13 @@ fn ply_is_read_as_text_and_in_both_byte_orders() {
     is_the_tetrahedron(&read("a.ply", crlf.as_bytes()).expect("text"));
     is_the_tetrahedron(&read("a.ply", &binary_ply(false)).expect("little"));
     is_the_tetrahedron(&read("a.ply", &binary_ply(true)).expect("big"));
+    let old = text_ply().replace('\n', "\r");
+    is_the_tetrahedron(&read("a.ply", old.as_bytes()).expect("ends of lines of old systems"));
+    let message = refusal(
+        "a.ply",
+        old.replacen("2 0 255 0", "2 nan 255 0", 1).as_bytes(),
+    );
+    assert!(message.contains("a.ply:16: vertex 1"), "{message}");
     let box_text = "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar uint vertex_index\n\
                     element vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
                     end_header\n4 0 1 2 3\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
@@ -366,6 +413,11 @@ fn collada_forgives_rounding_and_empty_elements() {
     }
     for row in ["0 0.1 0 1", "0 0 0 2", "0 0 0 0"] {
         assert!(moved(row).is_err(), "{row}");
+    }
+    // Elements of faces that list none, as some exporters write them for unused materials.
+    for kind in ["triangles", "polylist", "polygons"] {
+        let faces = format!("<{kind} count='0' material='unused'/>{BOX}");
+        is_the_box(&read("a.dae", dae("", "g", &faces, ONCE).as_bytes()).expect(kind));
     }
     let asset = "<unit meter='0.5'/><up_axis>Z_UP</up_axis>";
     let report = read("a.dae", dae(asset, "g", BOX, ONCE).as_bytes())

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use scene::mesh_file::{self, Format};
 use scene::{FORMATS, SCENES, Scene};
 
-const CUBE: &str = include_str!("../../../assets/meshes/cube.obj");
+const CUBE: &str = include_str!("../assets/meshes/cube.obj");
 
 /// A bit of everything that the COLLADA reader knows.
 const DOCUMENT: &str = r##"<?xml version="1.0"?>

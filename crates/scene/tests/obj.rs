@@ -23,6 +23,7 @@ fn the_same_tetrahedron_in_many_spellings() {
         ("plain", tetrahedron(FACES).into()),
         ("no newline at the end", tetrahedron(FACES.trim_end()).into()),
         ("CRLF", tetrahedron(FACES).replace('\n', "\r\n").into()),
+        ("CR alone", tetrahedron(&format!("# f 9 9 9\n{FACES}")).replace('\n', "\r").into()),
         ("byte order mark", format!("\u{feff}{}", tetrahedron(FACES)).into()),
         (
             "indices from the last vertex back",

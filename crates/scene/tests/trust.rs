@@ -218,6 +218,22 @@ mod unix {
         }
     }
 
+    /// Some of them, such as `/proc/kmsg`, end only when the machine does.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn files_that_the_kernel_makes_up_are_empty() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for (ending, why) in [("toml", "the step is missing"), ("stl", "has 0 bytes")] {
+            let link = folder.path().join(format!("link.{ending}"));
+            symlink("/proc/self/status", &link).expect("a link");
+            let message = match ending {
+                "toml" => Scene::load(&link).expect_err("empty").to_string(),
+                _ => mesh_file::load(&link).expect_err("empty").to_string(),
+            };
+            assert!(message.contains(why), "{message}");
+        }
+    }
+
     #[test]
     fn a_path_is_bytes_and_meshes_may_lie_anywhere() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -326,8 +326,36 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// Starts a command that draws again, without the layer of Mesa that asks Wayland which adapter to take: where
+/// there is no Wayland it says so in lines that begin with `error:`. Nothing can be set safely in the
+/// environment of a program that runs.
+#[cfg(target_os = "linux")]
+fn silence_mesa() {
+    use std::os::unix::process::CommandExt;
+    const LAYER_OFF: &str = "NODEVICE_SELECT";
+    let is_set = |name| std::env::var_os(name).is_some();
+    if is_set("XDG_RUNTIME_DIR") || is_set(LAYER_OFF) {
+        return;
+    }
+    if let Ok(program) = std::env::current_exe() {
+        let mut again = std::process::Command::new(program);
+        again.args(std::env::args_os().skip(1)).env(LAYER_OFF, "1");
+        // Comes back only where it cannot start; then the lines are printed.
+        let _ = again.exec();
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn silence_mesa() {}
+
 /// Runs a command; the answer is the text for stdout.
 fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
+    if matches!(
+        cli.command,
+        Some(Command::Shot { .. } | Command::Gif { .. })
+    ) {
+        silence_mesa();
+    }
     match cli.command {
         None => {
             let session = match is_run_file(&cli.scene) {

@@ -877,6 +877,35 @@ fn a_scene_becomes_a_moving_picture() {
     }
 }
 
+/// A picture that is made is made without a word on stderr, also of the libraries that draw it.
+#[cfg(target_os = "linux")]
+#[test]
+fn pictures_are_drawn_in_silence() {
+    let (png, gif) = (file("s.png", ""), file("s.gif", ""));
+    for (command, path) in [("shot", png), ("gif", gif)] {
+        let name = path.to_str().expect("UTF-8");
+        let mut command = cowbell(&[command, "parabola", "-o", name, "--size", "64x64"]);
+        if command
+            .get_args()
+            .next()
+            .is_some_and(|first| first == "gif")
+        {
+            command.args(["--time", "0.1"]);
+        }
+        command
+            .env_remove("XDG_RUNTIME_DIR")
+            .env_remove("NODEVICE_SELECT");
+        let output = command.output().expect("the program starts");
+        if output.status.code() == Some(3) {
+            skip_without_adapter();
+            continue;
+        }
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!((output.status.code(), &*stderr), (Some(0), ""));
+        fs::remove_file(path).expect("removed");
+    }
+}
+
 /// Without a graphics adapter a test of pictures says nothing; where CI has one that is a failure.
 fn skip_without_adapter() {
     assert!(

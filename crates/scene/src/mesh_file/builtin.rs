@@ -11,22 +11,22 @@ use super::{Format, read};
 pub static BUILTIN_MESHES: [BuiltinMesh; 4] = [
     BuiltinMesh {
         name: "cube.obj",
-        bytes: include_bytes!("../../../../assets/meshes/cube.obj"),
+        bytes: include_bytes!("../../assets/meshes/cube.obj"),
         mesh: OnceLock::new(),
     },
     BuiltinMesh {
         name: "cow.obj",
-        bytes: include_bytes!("../../../../assets/meshes/cow.obj"),
+        bytes: include_bytes!("../../assets/meshes/cow.obj"),
         mesh: OnceLock::new(),
     },
     BuiltinMesh {
         name: "u-channel.obj",
-        bytes: include_bytes!("../../../../assets/meshes/u-channel.obj"),
+        bytes: include_bytes!("../../assets/meshes/u-channel.obj"),
         mesh: OnceLock::new(),
     },
     BuiltinMesh {
         name: "funnel.obj",
-        bytes: include_bytes!("../../../../assets/meshes/funnel.obj"),
+        bytes: include_bytes!("../../assets/meshes/funnel.obj"),
         mesh: OnceLock::new(),
     },
 ];

@@ -19,6 +19,20 @@ pub(super) fn by_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
     }
 }
 
+/// How many lines end in a stretch of a text: at a line feed, or, on old systems, at a carriage return alone.
+pub(super) fn line_ends(text: &[u8]) -> usize {
+    let ends = text
+        .iter()
+        .enumerate()
+        .filter(|&(i, &byte)| byte == b'\n' || byte == b'\r' && text.get(i + 1) != Some(&b'\n'));
+    ends.count()
+}
+
+/// What ends the lines of a text: a line feed, or a carriage return where there is none.
+pub(super) fn line_end(text: &[u8]) -> u8 {
+    if text.contains(&b'\n') { b'\n' } else { b'\r' }
+}
+
 /// The text of an XML document: by its byte order mark, by the zeros in its first characters, by
 /// what it declares, or else UTF-8.
 pub(super) fn xml(bytes: &[u8]) -> Result<Cow<'_, str>, ReadError> {

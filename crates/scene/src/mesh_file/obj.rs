@@ -113,6 +113,7 @@ fn goes_on(line: &[u8]) -> bool {
 /// A reader that turns an OBJ file into checked `v x y z` and `f i j k ...` lines.
 struct Sieve<'a> {
     rest: &'a [u8],
+    line_end: u8,
     /// The line last taken from `rest`, from 1.
     line: usize,
     /// The statement to hand out, and how much of it is gone.
@@ -129,6 +130,7 @@ impl<'a> Sieve<'a> {
     fn new(bytes: &'a [u8]) -> Sieve<'a> {
         Sieve {
             rest: bytes,
+            line_end: encoding::line_end(bytes),
             line: 0,
             statement: Vec::new(),
             consumed: 0,
@@ -138,13 +140,13 @@ impl<'a> Sieve<'a> {
         }
     }
 
-    /// Takes one line without its end; a lone carriage return ends no line.
+    /// Takes one line without its end.
     fn take_line(&mut self) -> Option<&'a [u8]> {
         if self.rest.is_empty() {
             return None;
         }
         self.line += 1;
-        let end = self.rest.iter().position(|&byte| byte == b'\n');
+        let end = self.rest.iter().position(|&byte| byte == self.line_end);
         let line = &self.rest[..end.unwrap_or(self.rest.len())];
         self.rest = end.map_or(&[], |end| &self.rest[end + 1..]);
         Some(line.strip_suffix(b"\r").unwrap_or(line))

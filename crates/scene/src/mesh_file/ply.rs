@@ -6,9 +6,9 @@
 
 use glam::DVec3;
 
-use super::Format;
 use super::polygon::{MAX_CONCAVE_CORNERS, triangulate};
 use super::soup::{MAX_TRIANGLES, MAX_VERTICES, ReadError, Soup};
+use super::{Format, encoding};
 use crate::shown;
 
 /// PLY.
@@ -27,7 +27,7 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
         line: header.lines + 1,
     };
     let mut soup = Soup::default();
-    let mut faces: Vec<Face> = Vec::new();
+    let mut faces = Faces::default();
     for element in &header.elements {
         match element.name.as_str() {
             "vertex" => vertices(element, &mut values, &mut soup)?,
@@ -36,8 +36,10 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
         }
     }
     // Faces may stand before the vertices.
-    for face in &faces {
-        append(&mut soup, face)?;
+    let mut start = 0;
+    for &(end, line) in &faces.ends {
+        append(&mut soup, &faces.corners[start..end], line)?;
+        start = end;
     }
     if soup.triangles.is_empty() {
         return Err(ReadError::new(
@@ -102,21 +104,25 @@ impl Scalar {
     }
 }
 
-/// Corners of a face and the line it stands in, in a text.
-struct Face {
-    line: Option<usize>,
+/// The corners of all faces, one face after the other.
+#[derive(Default)]
+struct Faces {
     corners: Vec<f64>,
+    /// Where each face ends in `corners`, and the line it stands in, in a text.
+    ends: Vec<(usize, Option<usize>)>,
 }
 
 impl Header {
     /// Reads the header; what follows it comes back too.
     fn read(bytes: &[u8]) -> Result<(Header, &[u8]), ReadError> {
         let mut rest = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-        let (mut encoding, mut elements) = (None, Vec::<Element>::new());
+        // All lines of a header end as the first one does: what follows may be bytes of any value.
+        let line_end = encoding::line_end(&rest[..rest.len().min("ply\r\n".len())]);
+        let (mut kind, mut elements) = (None, Vec::<Element>::new());
         let mut line = 0;
         loop {
             line += 1;
-            let Some(end) = rest.iter().position(|&byte| byte == b'\n') else {
+            let Some(end) = rest.iter().position(|&byte| byte == line_end) else {
                 let what = "the header does not end: there is no line `end_header`";
                 return Err(ReadError::at(line, what));
             };
@@ -135,7 +141,7 @@ impl Header {
                 }
                 [] | ["comment" | "obj_info", ..] => {}
                 ["format", name, _] => {
-                    encoding = Some(match name {
+                    kind = Some(match name {
                         "ascii" => Encoding::Ascii,
                         "binary_little_endian" => Encoding::Little,
                         "binary_big_endian" => Encoding::Big,
@@ -167,7 +173,7 @@ impl Header {
                 _ => return Err(wrong()),
             }
         }
-        let encoding = encoding.ok_or_else(|| {
+        let encoding = kind.ok_or_else(|| {
             ReadError::new("the header has no line `format`: it must say ascii or which binary")
         })?;
         let header = Header {
@@ -240,12 +246,8 @@ impl Values<'_> {
             .rest
             .iter()
             .take_while(|byte| byte.is_ascii_whitespace());
-        let mut skipped = 0;
-        for &blank in blanks {
-            skipped += 1;
-            self.line += usize::from(blank == b'\n');
-        }
-        let rest = &self.rest[skipped..];
+        let (blanks, rest) = self.rest.split_at(blanks.count());
+        self.line += encoding::line_ends(blanks);
         let end = rest.iter().position(u8::is_ascii_whitespace);
         let (word, rest) = rest.split_at(end.unwrap_or(rest.len()));
         if word.is_empty() {
@@ -344,11 +346,7 @@ fn vertices(element: &Element, values: &mut Values, soup: &mut Soup) -> Result<(
     Ok(())
 }
 
-fn read_faces(
-    element: &Element,
-    values: &mut Values,
-    faces: &mut Vec<Face>,
-) -> Result<(), ReadError> {
+fn read_faces(element: &Element, values: &mut Values, faces: &mut Faces) -> Result<(), ReadError> {
     let is_corners = |property: &Property| {
         property.list.is_some()
             && matches!(property.name.as_str(), "vertex_indices" | "vertex_index")
@@ -357,20 +355,27 @@ fn read_faces(
         return Err(ReadError::new("its faces have no list `vertex_indices`"));
     }
     for _ in 0..element.count {
-        let mut corners = Vec::new();
+        let start = faces.corners.len();
         for property in &element.properties {
             let wanted = is_corners(property);
             values.property(property, element, |value| {
-                if wanted {
-                    corners.push(value);
+                if wanted && faces.corners.len() <= 3 * MAX_TRIANGLES {
+                    faces.corners.push(value);
                 }
             })?;
         }
-        if faces.len() == MAX_TRIANGLES {
+        // A face of n corners is n - 2 triangles, so there are at most three corners to each.
+        let corners = faces.corners.len();
+        if corners > 3 * MAX_TRIANGLES {
             return Err(too_many());
         }
         let line = values.line();
-        faces.push(Face { line, corners });
+        if corners - start < 3 {
+            let n = corners - start;
+            let what = format!("a face has {n} corners: it needs at least three");
+            return Err(ReadError { line, what });
+        }
+        faces.ends.push((corners, line));
     }
     Ok(())
 }
@@ -389,19 +394,11 @@ fn skip(element: &Element, values: &mut Values) -> Result<(), ReadError> {
 }
 
 /// Adds a face, cut into triangles.
-fn append(soup: &mut Soup, face: &Face) -> Result<(), ReadError> {
-    let wrong = |what: String| ReadError {
-        line: face.line,
-        what,
-    };
-    let n = face.corners.len();
-    if n < 3 {
-        return Err(wrong(format!(
-            "a face has {n} corners: it needs at least three"
-        )));
-    }
+fn append(soup: &mut Soup, face: &[f64], line: Option<usize>) -> Result<(), ReadError> {
+    let wrong = |what: String| ReadError { line, what };
+    let n = face.len();
     let count = soup.vertices.len();
-    let corners = face.corners.iter().map(|&index| {
+    let corners = face.iter().map(|&index| {
         let known = index >= 0.0 && index < count as f64 && index.fract() == 0.0;
         known.then_some(index as u32).ok_or_else(|| {
             let index = shown::number(index);

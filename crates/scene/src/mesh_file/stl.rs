@@ -86,64 +86,151 @@ fn binary(bytes: &[u8], count: usize) -> Result<Soup, ReadError> {
 
 fn text(bytes: &[u8]) -> Result<Soup, ReadError> {
     let decoded = encoding::by_mark(bytes);
+    let mut words = Words {
+        rest: &decoded,
+        line: 1,
+    };
     let mut soup = Soup::default();
-    // Corners of the loop that is being read, from `outer loop` to `endloop`.
-    let mut corners: Option<usize> = None;
-    for (i, line) in decoded.split(|&byte| byte == b'\n').enumerate() {
-        let line_number = i + 1;
-        let text = String::from_utf8_lossy(line);
-        let mut words = text.split_ascii_whitespace();
-        let Some(keyword) = words.next() else {
-            continue;
-        };
-        match (keyword.to_ascii_lowercase().as_str(), corners) {
-            ("outer", None) => corners = Some(0),
-            ("vertex", Some(count)) => {
-                soup.vertices.push(vertex(line_number, words)?);
-                corners = Some(count + 1);
+    let mut is_ended = false;
+    while let Some(word) = words.next() {
+        match word.to_ascii_lowercase().as_slice() {
+            b"solid" => {
+                is_ended = false;
+                words.skip_name();
             }
-            ("endloop", Some(3)) => corners = None,
-            ("endloop", Some(count)) => {
-                let what = format!("the facet has {count} corners: it must have three");
-                return Err(ReadError::at(line_number, what));
+            b"endsolid" => {
+                is_ended = true;
+                words.skip_name();
             }
-            ("solid" | "endsolid" | "facet" | "endfacet", None) => {}
-            (_, inside) => {
-                let expected = match inside {
-                    None => "`facet`, `outer loop`, `endfacet` or `endsolid`",
-                    Some(_) => "`vertex` or `endloop`",
-                };
-                let word = shown::name(keyword);
-                let what = format!("the line starts with `{word}`: expected {expected}");
-                return Err(ReadError::at(line_number, what));
+            // Normals are not read, so that they may be no numbers.
+            b"facet" => words.skip_normal(),
+            b"endfacet" => {}
+            b"outer" => corners(&mut words, &mut soup)?,
+            _ => {
+                let expected = "`facet`, `outer loop`, `endfacet` or `endsolid`";
+                return Err(words.unexpected(word, expected));
             }
         }
         check_count(soup.vertices.len() / 3)?;
     }
-    if corners.is_some() {
+    if !is_ended {
         return Err(ReadError::new(
-            "ends within a facet: it is cut off, export it again",
+            "ends without `endsolid`: it is cut off, export it again",
         ));
     }
     number_corners(&mut soup);
     Ok(soup)
 }
 
-fn vertex<'w>(line: usize, mut words: impl Iterator<Item = &'w str>) -> Result<Vec3, ReadError> {
+/// The corners of a facet, after `outer`.
+fn corners(words: &mut Words, soup: &mut Soup) -> Result<(), ReadError> {
+    let first = soup.vertices.len();
+    let word = words.next().unwrap_or_default();
+    if !word.eq_ignore_ascii_case(b"loop") {
+        return Err(words.unexpected(word, "`loop`"));
+    }
+    loop {
+        let word = words.next().unwrap_or_default();
+        match word.to_ascii_lowercase().as_slice() {
+            b"vertex" => soup.vertices.push(vertex(words)?),
+            b"endloop" => break,
+            b"" => {
+                return Err(ReadError::new(
+                    "ends within a facet: it is cut off, export it again",
+                ));
+            }
+            _ => return Err(words.unexpected(word, "`vertex` or `endloop`")),
+        }
+    }
+    match soup.vertices.len() - first {
+        3 => Ok(()),
+        count => {
+            let what = format!("the facet has {count} corners: it must have three");
+            Err(ReadError::at(words.line, what))
+        }
+    }
+}
+
+fn vertex(words: &mut Words) -> Result<Vec3, ReadError> {
     let mut corner = Vec3::ZERO;
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        let word = words.next().ok_or_else(|| {
+        let line = words.line;
+        let word = words.next().filter(|word| {
+            !word.eq_ignore_ascii_case(b"vertex") && !word.eq_ignore_ascii_case(b"endloop")
+        });
+        let word = word.ok_or_else(|| {
             let what = format!("the vertex has no {name}: it needs three coordinates");
             ReadError::at(line, what)
         })?;
+        let word = String::from_utf8_lossy(word);
         let number = word.parse().ok().filter(|number: &f32| number.is_finite());
         corner[axis] = number.ok_or_else(|| {
-            let word = shown::name(word);
+            let word = shown::name(&word);
             let what = format!("{name} is `{word}`: it must be a finite number below 3.4e38");
-            ReadError::at(line, what)
+            ReadError::at(words.line, what)
         })?;
     }
     Ok(corner)
+}
+
+/// The words of a text: any blanks may stand between them, ends of lines too, of every system.
+struct Words<'a> {
+    rest: &'a [u8],
+    /// The line that the last word is in, from 1.
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let blanks = self.rest.iter().take_while(|b| b.is_ascii_whitespace());
+        let (blanks, rest) = self.rest.split_at(blanks.count());
+        self.line += encoding::line_ends(blanks);
+        let length = rest.iter().take_while(|b| !b.is_ascii_whitespace()).count();
+        let (word, rest) = rest.split_at(length);
+        self.rest = rest;
+        (length > 0).then_some(word)
+    }
+
+    /// The name of a solid goes to the end of its line, or to its first facet.
+    fn skip_name(&mut self) {
+        loop {
+            let (after, line) = (self.rest, self.line);
+            let word = self.next();
+            let begins = word.is_some_and(|word| word.eq_ignore_ascii_case(b"facet"))
+                && self
+                    .peek()
+                    .is_some_and(|word| word.eq_ignore_ascii_case(b"normal"));
+            if word.is_none() || begins || self.line != line {
+                (self.rest, self.line) = (after, line);
+                return;
+            }
+        }
+    }
+
+    fn skip_normal(&mut self) {
+        for _ in 0..4 {
+            if self
+                .peek()
+                .is_none_or(|word| word.eq_ignore_ascii_case(b"outer"))
+            {
+                return;
+            }
+            self.next();
+        }
+    }
+
+    fn peek(&self) -> Option<&'a [u8]> {
+        let (rest, line) = (self.rest, self.line);
+        Words { rest, line }.next()
+    }
+
+    fn unexpected(&self, word: &[u8], expected: &str) -> ReadError {
+        let word = shown::name(&String::from_utf8_lossy(word));
+        ReadError::at(
+            self.line,
+            format!("`{word}` stands where {expected} is expected"),
+        )
+    }
 }
 
 fn number_corners(soup: &mut Soup) {

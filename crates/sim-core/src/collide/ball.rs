@@ -78,12 +78,11 @@ pub fn ball_touch(mesh: &Bvh, centre: DVec3, radius: f64, motion: DVec3) -> Opti
             let triangles = mesh.triangles(node);
             let corners = triangles.corners(lane).map(|v| v.as_dvec3());
             let latest = best.map(|best| best.time);
-            let Some((touch, is_upright)) = ball.touch(triangles.face[lane], corners, latest)
+            let Some((touch, is_upright, own)) = ball.touch(triangles.face[lane], corners, latest)
             else {
                 continue;
             };
-            let [a, b, c] = corners.map(|corner| corner.abs());
-            error = error.max(ball.error(a.max(b).max(c)));
+            error = error.max(own);
             let first = |old: Option<BallTouch>| match old {
                 Some(old) if !ball.is_before(&touch, &old) => Some(old),
                 _ => Some(touch),
@@ -131,6 +130,19 @@ struct Ball {
     motion: DVec3,
 }
 
+/// Whether an error, m, is worth to be told by axis: more than a nanometre, and than that part of the radius.
+pub(crate) fn is_told_by_axis(error: f64, radius: f64) -> bool {
+    error > 1e-9 * radius.max(1.0)
+}
+
+/// Where a centre is over a triangle: its distance from the plane along the normal, m, and the error of that.
+#[derive(Clone, Copy)]
+struct Over {
+    normal: DVec3,
+    height: f64,
+    error: f64,
+}
+
 /// Newton's method halves the distance from a double root in a step at least, and so is at the
 /// rounding of the distances after less than this.
 const MOST_STEPS: u32 = 64;
@@ -140,6 +152,36 @@ impl Ball {
     fn error(&self, corner: DVec3) -> f64 {
         let size = self.centre.abs() + self.motion.abs() + corner.abs();
         (size.element_sum() + self.radius) * 8.0 * f64::EPSILON
+    }
+
+    /// The same along a unit vector: a triangle that is long along one axis does not blur distances along another.
+    fn error_along(&self, [a, b, c]: [DVec3; 3], unit: DVec3) -> f64 {
+        let corner = a.abs().max(b.abs()).max(c.abs());
+        let size = self.centre.abs() + self.motion.abs() + corner + DVec3::splat(self.radius);
+        size.dot(unit.abs()) * 8.0 * f64::EPSILON
+    }
+
+    /// The height of a centre over a long triangle, of which it is `apart`, where it is over it but for `most`.
+    fn over(&self, apart: DVec3, centre: DVec3, corners: [DVec3; 3], most: f64) -> Option<Over> {
+        let [a, b, c] = corners;
+        let (u, v) = (b - a, c - a);
+        let across = u.cross(v);
+        let normal = unit(across)?;
+        let height = apart.dot(normal);
+        let aside = (apart - height * normal).length();
+        if aside > most && !is_inside(centre, corners) {
+            return None;
+        }
+        // What the normal may be turned by, by axis: `apart` is also what rounds along the triangle.
+        let products = |i: usize, j: usize| (u[i] * v[j]).abs() + (u[j] * v[i]).abs();
+        let turned = DVec3::new(products(1, 2), products(2, 0), products(0, 1)) / across.length();
+        let turned = 8.0 * f64::EPSILON * apart.abs().dot(turned);
+        let error = self.error_along(corners, normal) + turned;
+        Some(Over {
+            normal,
+            height,
+            error: error.min(most),
+        })
     }
 
     /// When the ball may come to what is in a box, rounded down; `None` if not by a time.
@@ -164,15 +206,17 @@ impl Ball {
     }
 
     /// The contact with a triangle on the way, if it is no later than another one, or as late but for
-    /// rounding; and whether its normal is that of the triangle.
+    /// rounding; whether its normal is that of the triangle; and the error of the distance, m.
     fn touch(
         &self,
         face: u32,
         corners: [DVec3; 3],
         other: Option<f64>,
-    ) -> Option<(BallTouch, bool)> {
+    ) -> Option<(BallTouch, bool, f64)> {
         let [a, b, c] = corners;
+        let across = (b - a).cross(c - a);
         let error = self.error(a.abs().max(b.abs()).max(c.abs()));
+        let is_long = is_told_by_axis(error, self.radius);
         let mut time = 0.0;
         let mut last = None;
         for _ in 0..MOST_STEPS {
@@ -180,20 +224,23 @@ impl Ball {
             let point = nearest(centre, corners);
             let apart = square(centre - point, (centre, point), corners);
             let distance = apart.length();
-            let gap = distance - self.radius;
             // Over a face its normal, which a small distance does not spoil, and no rounding beside it
             // either; at an edge, once there, the last one, as the direction of a point is rounding and
             // nothing else.
-            let across = (b - a).cross(c - a);
             let side = apart.dot(across);
             let upright = || {
                 let normal = unit(across)? * libm::copysign(1.0, side);
                 let aside = (apart - distance * normal).length();
                 (aside <= error || is_inside(centre, corners)).then_some(normal)
             };
-            let (normal, is_upright) = match last {
-                Some(last) if distance <= error => last,
-                None if distance <= error => (unit(across)?, true),
+            let over = is_long
+                .then(|| self.over(apart, centre, corners, error))
+                .flatten();
+            let (normal, is_upright) = match (over, last) {
+                (Some(over), Some((last, _))) if over.height.abs() <= over.error => (last, true),
+                (Some(over), _) => (over.normal * libm::copysign(1.0, over.height), true),
+                (None, Some(last)) if distance <= error => last,
+                (None, None) if distance <= error => (unit(across)?, true),
                 _ => match upright().filter(|_| side != 0.0) {
                     Some(normal) => (normal, true),
                     None => (apart / distance, false),
@@ -203,6 +250,17 @@ impl Ball {
             if speed <= 0.0 {
                 return None;
             }
+            let (gap, error, point) = match over {
+                Some(over) => {
+                    let point = centre - over.height * over.normal;
+                    (apart.dot(normal) - self.radius, over.error, point)
+                }
+                None if is_long => {
+                    let along = self.error_along(corners, normal);
+                    (distance - self.radius, error.min(along), point)
+                }
+                None => (distance - self.radius, error, point),
+            };
             if gap <= error {
                 let time = if time > 0.0 {
                     (time - error / speed).max(0.0)
@@ -215,7 +273,7 @@ impl Ball {
                     normal,
                     face,
                 };
-                return (time <= 1.0).then_some((touch, is_upright));
+                return (time <= 1.0).then_some((touch, is_upright, error));
             }
             time += gap / speed;
             let is_late = other.is_some_and(|other| time - 3.0 * error / speed > other);
@@ -413,7 +471,7 @@ mod tests {
                     radius: 0.3,
                     motion: mirror * (1.5 * aim - 1.5 * from),
                 };
-                let (touch, _) = ball.touch(0, corners, None)?;
+                let (touch, ..) = ball.touch(0, corners, None)?;
                 Some((touch.time, mirror * touch.point, mirror * touch.normal))
             };
             let plain = touch(DVec3::ONE, [0, 1, 2]);
@@ -449,6 +507,32 @@ mod tests {
             }
         }
         assert!(hits > 100);
+    }
+
+    /// Plates of a tenth of a millimetre that are up to 1e30 m long are hit when short ones are.
+    #[test]
+    fn long_plates_are_hit_no_earlier_than_short_ones() {
+        let cube = cube();
+        for (axis, along) in [(0, 1), (1, 2), (2, 0), (0, 2), (1, 0), (2, 1)] {
+            for long in [1.0, 1e6, 1e12, 1e15, 1e17, 1e30] {
+                let mut size = crate::Vec3::splat(3.0);
+                (size[axis], size[along]) = (f32::powi(0.5, 13), long as f32);
+                let corners = cube.vertices().iter().map(|&v| v * size).collect();
+                let plate = crate::Mesh::new(corners, cube.triangles().to_vec()).unwrap();
+                for radius in [0.0, 1e-3, 0.5] {
+                    let mut unit = DVec3::ZERO;
+                    unit[axis] = 1.0;
+                    let from = v(0.1, -0.2, 0.3) * (1.0 - unit) - 4.0 * unit;
+                    let touch = ball_touch(&Bvh::build(&plate), from, radius, 16.0 * unit);
+                    let exact = (4.0 - 0.5_f64.powi(14) - radius) / 16.0;
+                    let touch = touch.unwrap();
+                    assert!(touch.time <= exact, "{touch:?}, not {exact}");
+                    // A nanometre does not show.
+                    assert!(exact - touch.time < 1e-10, "{long}: {touch:?}, not {exact}");
+                    assert_eq!(touch.normal, -unit);
+                }
+            }
+        }
     }
 
     /// When a moving point comes to a distance from a triangle: from a face, which is a plane's

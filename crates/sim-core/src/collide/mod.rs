@@ -25,8 +25,8 @@ pub mod tree;
 mod triple;
 pub mod turning;
 
-pub(crate) use ball::nearest;
 pub use ball::{BallTouch, ball_meets, ball_touch};
+pub(crate) use ball::{is_told_by_axis, nearest};
 pub(crate) use broad::{BoxTree, Broad, Front, Swept};
 pub use closest::Part;
 pub(crate) use closest::{Closest, closest, closest_to_point};

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{bodies::Bodies, continuous::ContactSet, overlap::Overlaps, state::State};
-use crate::Shape;
+use crate::{Shape, collide};
 
 /// The gap of bodies in contact, in units in the last place of the largest coordinate about.
 const HOVER_ULPS: f64 = 1024.0;
@@ -51,10 +51,15 @@ impl Layout<'_> {
         let far = |body: usize| at(body) + self.bodies.extent(body).reach;
         let far = far(i) + far(j);
         match (self.bodies.shape(i), self.bodies.shape(j)) {
-            // A distance is a sum over all axes.
-            (Some(Shape::Mesh(_)), Some(Shape::Sphere { .. }))
-            | (Some(Shape::Sphere { .. }), Some(Shape::Mesh(_))) => {
-                DVec3::splat(SPHERE_MESH_ULPS * f64::EPSILON * far.max_element())
+            // A distance is a sum over all axes, and told by axis where one of them is long.
+            (Some(Shape::Mesh(_)), Some(Shape::Sphere { radius }))
+            | (Some(Shape::Sphere { radius }), Some(Shape::Mesh(_))) => {
+                let by_axis = SPHERE_MESH_ULPS * f64::EPSILON * far;
+                let most = by_axis.max_element();
+                match collide::is_told_by_axis(most, *radius) {
+                    true => by_axis,
+                    false => DVec3::splat(most),
+                }
             }
             _ => RESOLUTION_ULPS * f64::EPSILON * far,
         }

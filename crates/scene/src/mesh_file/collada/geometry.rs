@@ -64,6 +64,13 @@ impl<'d, 'x> Reader<'_, 'd, 'x> {
         ) {
             return Ok(());
         }
+        // What lists nothing needs no inputs.
+        if !element
+            .children()
+            .any(|child| matches!(tag(child), "p" | "ph" | "vcount"))
+        {
+            return Ok(());
+        }
         let layout = self.layout(element)?;
         let mut arities = match child(element, "vcount") {
             Some(vcount) if kind == "polylist" => self.document.indices(vcount)?,
