@@ -47,12 +47,12 @@ pub struct SceneBody {
     pub shape: SceneShape,
     /// Position of the shape's origin in metres.
     pub position: DVec3,
-    /// Turns of a mesh about x, then y, then z, the axes of the world, in degrees. Other shapes
-    /// have none.
+    /// Turns of a mesh about x, then y, then z, the axes of the world, in degrees; of a body that turns,
+    /// at the start. Other shapes have none.
     pub rotation: DVec3,
     /// Scale along the mesh's own axes, before the rotation; not 0. Other shapes have none.
     pub scale: DVec3,
-    /// Velocity in metres per second.
+    /// Velocity in metres per second; of a body that turns, of its centre of mass.
     pub velocity: DVec3,
     /// Constant force in newtons.
     pub force: DVec3,
@@ -64,8 +64,22 @@ pub struct SceneBody {
     /// Coefficient of friction, from 0 (smooth) to infinity (never slips); of two bodies the
     /// geometric mean counts ([`sim_core::Body::friction`]).
     pub friction: f64,
+    /// How it turns, if it does.
+    pub turn: Option<SceneTurn>,
     /// Colour as sRGB-encoded red, green and blue from 0 to 1, if the scene chooses one.
     pub colour: Option<[f32; 3]>,
+}
+
+/// How a body of a scene turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SceneTurn {
+    /// Angular velocity at the start, about the axes of the world, in radians per second.
+    pub spin: DVec3,
+    /// Constant torque about the axes of the world, in newton metres.
+    pub torque: DVec3,
+    /// Moments of inertia about the axes of the scaled mesh, kg m², with the centre of mass at its
+    /// origin. `None` takes those of a solid body, about the centre of its volume.
+    pub inertia: Option<DVec3>,
 }
 
 /// The shape of a body of a scene.
@@ -100,6 +114,7 @@ impl SceneBody {
             mass: if is_half_space { f64::INFINITY } else { 1.0 },
             restitution: 1.0,
             friction: 0.0,
+            turn: None,
             colour: None,
         }
     }

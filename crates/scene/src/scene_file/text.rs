@@ -37,6 +37,10 @@ pub(super) struct Body {
     pub(super) immovable: Option<Spanned<bool>>,
     pub(super) restitution: Option<Spanned<Number>>,
     pub(super) friction: Option<Spanned<Number>>,
+    pub(super) turns: Option<Spanned<bool>>,
+    pub(super) spin: Option<Spanned<Triple>>,
+    pub(super) torque: Option<Spanned<Triple>>,
+    pub(super) inertia: Option<Spanned<Triple>>,
     pub(super) colour: Option<Spanned<String>>,
     #[serde(skip_serializing)]
     pub(super) copies: Option<Spanned<usize>>,

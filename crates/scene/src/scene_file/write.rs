@@ -1,5 +1,6 @@
 //! A scene to TOML text.
 
+use glam::DVec3;
 use sim_core::Settings;
 use toml::Spanned;
 
@@ -54,6 +55,16 @@ fn body(body: &SceneBody) -> Body {
         immovable: (!is_half_space && is_immovable).then(|| spanned(true)),
         restitution: (body.restitution != 1.0).then(|| spanned(Number(body.restitution))),
         friction: (body.friction != 0.0).then(|| spanned(Number(body.friction))),
+        turns: body.turn.map(|_| spanned(true)),
+        spin: body.turn.map(|turn| spanned(Triple(turn.spin))),
+        torque: body
+            .turn
+            .filter(|turn| turn.torque != DVec3::ZERO)
+            .map(|turn| spanned(Triple(turn.torque))),
+        inertia: body
+            .turn
+            .and_then(|turn| turn.inertia)
+            .map(|moments| spanned(Triple(moments))),
         colour: body.colour.map(|c| spanned(colour::format(c))),
         copies: None,
         inside: None,
