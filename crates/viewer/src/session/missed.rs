@@ -4,7 +4,7 @@
 //! answered exactly, as in the continuous mode.
 
 use sim_core::collide::{ball_touch, touch};
-use sim_core::{Aabb, Collision, DVec3, Impact, Shape, World};
+use sim_core::{Aabb, Collision, DQuat, DVec3, Impact, Shape, World};
 
 use super::Session;
 use crate::number;
@@ -198,6 +198,8 @@ impl Session {
                 ghosts.extend(missed.places.map(|position| Ghost {
                     mesh: mesh.clone(),
                     position,
+                    // The discrete modes, which alone miss anything, turn nothing.
+                    rotation: DQuat::IDENTITY,
                     colour: RED,
                 }));
             }

@@ -27,7 +27,10 @@ impl Session {
     /// Where a ray meets a body, in lengths of `direction`. Half-spaces are everywhere behind
     /// something, and are selected in the list instead.
     fn ray(&self, i: usize, origin: DVec3, direction: DVec3) -> Option<f64> {
-        let origin = origin - self.shown_position(i);
+        // In the frame of the shape.
+        let back = self.shown_rotation(i).inverse();
+        let origin = back * (origin - self.shown_position(i));
+        let direction = back * direction;
         match *self.world.shape(i)? {
             Shape::Mesh(_) => Some(self.world.bvh(i)?.ray(origin, direction)?.t),
             Shape::Sphere { radius } => ray_to_sphere(origin, direction, radius),
