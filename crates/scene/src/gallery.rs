@@ -108,6 +108,14 @@ pub static SCENES: &[GalleryScene] = &[
         name: "pleiades",
         text: include_str!("../assets/scenes/pleiades.toml"),
     },
+    GalleryScene {
+        name: "tennis-racket",
+        text: include_str!("../../../assets/scenes/tennis-racket.toml"),
+    },
+    GalleryScene {
+        name: "cubes-turning",
+        text: include_str!("../../../assets/scenes/cubes-turning.toml"),
+    },
 ];
 
 /// A scene of the gallery.

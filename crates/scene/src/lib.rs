@@ -26,4 +26,4 @@ pub use error::SceneError;
 pub use gallery::{GalleryScene, SCENES};
 pub use mesh_file::{FORMATS, Format, LoadedMesh, MeshFileError, MeshReport};
 pub use mesh_ref::MeshRef;
-pub use scene::{Scene, SceneBody, SceneShape};
+pub use scene::{Scene, SceneBody, SceneShape, SceneTurn};

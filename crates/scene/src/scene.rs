@@ -47,12 +47,12 @@ pub struct SceneBody {
     pub shape: SceneShape,
     /// Position of the shape's origin in metres.
     pub position: DVec3,
-    /// Turns of a mesh about x, then y, then z, the axes of the world, in degrees. Other shapes
-    /// have none.
+    /// Turns of a mesh about x, then y, then z, the axes of the world, in degrees; of a body that turns,
+    /// at the start. Other shapes have none.
     pub rotation: DVec3,
     /// Scale along the mesh's own axes, before the rotation; not 0. Other shapes have none.
     pub scale: DVec3,
-    /// Velocity in metres per second.
+    /// Velocity in metres per second; of a body that turns, of its centre of mass.
     pub velocity: DVec3,
     /// Constant force in newtons.
     pub force: DVec3,
@@ -71,8 +71,22 @@ pub struct SceneBody {
     /// The names of the groups that it collides with; `None`: with all. Two bodies collide if each is in
     /// a group with which the other one does.
     pub collides_with: Option<Vec<String>>,
+    /// How it turns, if it does.
+    pub turn: Option<SceneTurn>,
     /// Colour as sRGB-encoded red, green and blue from 0 to 1, if the scene chooses one.
     pub colour: Option<[f32; 3]>,
+}
+
+/// How a body of a scene turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SceneTurn {
+    /// Angular velocity at the start, about the axes of the world, in radians per second.
+    pub spin: DVec3,
+    /// Constant torque about the axes of the world, in newton metres.
+    pub torque: DVec3,
+    /// Moments of inertia about the axes of the scaled mesh, kg m², with the centre of mass at its
+    /// origin. `None` takes those of a solid body, about the centre of its volume.
+    pub inertia: Option<DVec3>,
 }
 
 /// The shape of a body of a scene.
@@ -110,6 +124,7 @@ impl SceneBody {
             friction: 0.0,
             groups: None,
             collides_with: None,
+            turn: None,
             colour: None,
         }
     }

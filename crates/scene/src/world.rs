@@ -1,10 +1,13 @@
 //! A scene to a running world.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3, EulerRot};
-use sim_core::{Body, BodyKind, Groups, Mesh, MeshError, Settings, Shape, World};
+use sim_core::{
+    Body, BodyKind, Groups, Inertia, Mesh, MeshError, Settings, Shape, Solid, Turn, World,
+};
 
 use crate::scene::{Scene, SceneBody, SceneShape};
 use crate::{MeshRef, SceneError};
@@ -13,7 +16,8 @@ impl Scene {
     /// The world of this scene, at time 0, with the bodies in the same order.
     ///
     /// Rotation and scale are baked into the meshes; bodies with the same mesh, rotation and
-    /// scale share one.
+    /// scale share one. Bodies that turn start with their rotation instead, and share a mesh however
+    /// they are turned.
     pub fn world(&self) -> Result<World, SceneError> {
         let settings = Settings {
             dt: self.dt,
@@ -43,9 +47,20 @@ impl Scene {
                 &SceneShape::Sphere { radius } => Shape::Sphere { radius },
                 &SceneShape::HalfSpace { normal } => Shape::HalfSpace { normal },
             };
+            let inertia = baked.inertia(body).map_err(|error| {
+                let given = body.turn.and_then(|turn| turn.inertia);
+                let field = given.map_or("turns", |_| "inertia");
+                self.world_error(Some(body), Some(field), error)
+            })?;
+            let turn = body.turn.zip(inertia).map(|(turn, inertia)| Turn {
+                rotation: rotation(body.rotation),
+                spin: turn.spin,
+                torque: turn.torque,
+                inertia: Some(inertia),
+            });
             let added = world.add(Body {
                 shape: Some(shape),
-                position: body.position,
+                position: body.position + turn.map_or(DVec3::ZERO, to_centre),
                 velocity: body.velocity,
                 kind: kind(body),
                 mass: body.mass,
@@ -56,6 +71,7 @@ impl Scene {
                     member_of: bits(&names, body.groups.as_deref()),
                     collides_with: bits(&names, body.collides_with.as_deref()),
                 },
+                turn,
                 ..Body::default()
             });
             added.map_err(|error| self.world_error(Some(body), None, error))?;
@@ -120,26 +136,93 @@ fn kind(body: &SceneBody) -> BodyKind {
     }
 }
 
-/// Meshes that have been turned and scaled, each once.
+/// From the origin of a mesh to its centre of mass, m, at the start.
+fn to_centre(turn: Turn) -> DVec3 {
+    let centre = turn.inertia.map_or(DVec3::ZERO, |inertia| inertia.centre());
+    turn.rotation * centre
+}
+
+/// Turns about the fixed axes x, then y, then z, in degrees, as one.
+fn rotation(degrees: DVec3) -> DQuat {
+    // Fixed axes in the order x, y, z are moving axes in the order z, y, x.
+    let [x, y, z] = degrees.to_array().map(f64::to_radians);
+    DQuat::from_euler(EulerRot::ZYX, z, y, x)
+}
+
+/// Meshes that have been turned and scaled, and what they enclose, each once.
 #[derive(Default)]
 pub(crate) struct Baked {
     /// By the mesh, as a place in memory, rotation and scale.
     known: HashMap<(usize, [u64; 6]), Arc<Mesh>>,
+    /// By the mesh, turned and scaled, as a place in memory; `known` or the scene keeps it there.
+    solids: HashMap<usize, Solid>,
 }
 
 impl Baked {
-    /// The mesh of a body, turned and scaled.
+    /// The mesh of a body as its world has it: scaled, and turned unless the body turns.
     pub(crate) fn mesh(
         &mut self,
         mesh: &MeshRef,
         body: &SceneBody,
     ) -> Result<Arc<Mesh>, MeshError> {
-        if body.rotation == DVec3::ZERO && body.scale == DVec3::ONE {
+        match body.turn {
+            Some(_) => self.transformed(mesh, DVec3::ZERO, body.scale),
+            None => self.turned(mesh, body),
+        }
+    }
+
+    /// The mesh of a body, turned and scaled.
+    pub(crate) fn turned(
+        &mut self,
+        mesh: &MeshRef,
+        body: &SceneBody,
+    ) -> Result<Arc<Mesh>, MeshError> {
+        self.transformed(mesh, body.rotation, body.scale)
+    }
+
+    /// The inertia of a body that turns, or why it has none.
+    pub(crate) fn inertia(&mut self, body: &SceneBody) -> Result<Option<Inertia>, String> {
+        let Some(turn) = body.turn else {
+            return Ok(None);
+        };
+        if let Some(moments) = turn.inertia {
+            let inertia = Inertia::new(moments, DQuat::IDENTITY, DVec3::ZERO);
+            return inertia.map(Some).map_err(|error| error.to_string());
+        }
+        if body.mass.is_infinite() {
+            // Nothing changes its spin, whatever its moments are; it turns about its origin.
+            let any = Inertia::new(DVec3::ONE, DQuat::IDENTITY, DVec3::ZERO);
+            return any.map(Some).map_err(|error| error.to_string());
+        }
+        let inertia = match &body.shape {
+            SceneShape::Mesh(mesh) => {
+                let mesh = self.mesh(mesh, body).map_err(|error| error.to_string())?;
+                let solid = match self.solids.entry(Arc::as_ptr(&mesh) as usize) {
+                    Entry::Occupied(known) => Ok(*known.get()),
+                    Entry::Vacant(new) => Solid::of(&mesh).map(|solid| *new.insert(solid)),
+                };
+                solid.and_then(|solid| solid.inertia(body.mass))
+            }
+            &SceneShape::Sphere { radius } => Inertia::ball(radius, body.mass),
+            SceneShape::HalfSpace { .. } => {
+                return Err("a half-space cannot turn: leave it out".to_owned());
+            }
+        };
+        inertia.map(Some).map_err(|error| error.to_string())
+    }
+
+    fn transformed(
+        &mut self,
+        mesh: &MeshRef,
+        degrees: DVec3,
+        scale: DVec3,
+    ) -> Result<Arc<Mesh>, MeshError> {
+        if degrees == DVec3::ZERO && scale == DVec3::ONE {
             return Ok(mesh.mesh().clone());
         }
         // Zero is the same with either sign.
-        let [x, y, z] = (body.rotation + DVec3::ZERO).to_array();
-        let [u, v, w] = body.scale.to_array();
+        let [x, y, z] = (degrees + DVec3::ZERO).to_array();
+        let [u, v, w] = scale.to_array();
         let key = (
             Arc::as_ptr(mesh.mesh()) as usize,
             [x, y, z, u, v, w].map(f64::to_bits),
@@ -147,10 +230,7 @@ impl Baked {
         if let Some(known) = self.known.get(&key) {
             return Ok(known.clone());
         }
-        // Fixed axes in the order x, y, z are moving axes in the order z, y, x.
-        let [x, y, z] = body.rotation.to_array().map(f64::to_radians);
-        let rotation = DQuat::from_euler(EulerRot::ZYX, z, y, x);
-        let baked = Arc::new(mesh.mesh().transformed(rotation, body.scale)?);
+        let baked = Arc::new(mesh.mesh().transformed(rotation(degrees), scale)?);
         self.known.insert(key, baked.clone());
         Ok(baked)
     }

@@ -707,3 +707,113 @@ fn gallery_titles_are_those_of_the_scenes() {
         assert_eq!(entry.title(), whole.title);
     }
 }
+
+#[test]
+fn bodies_that_turn_are_where_their_origin_is_put() {
+    let text = r#"
+        rate = 60
+        [[body]]
+        name = "cow"
+        mesh = "cow.obj"
+        position = [1, 2, 3]
+        rotation = [0, 90, 0]
+        scale = 0.5
+        mass = 3
+        turns = true
+        spin = [1, -2, 0.5]
+        torque = [0, 0, 4]
+        [[body]]
+        name = "plate"
+        mesh = "cube.obj"
+        position = [9, 0, 0]
+        turns = true
+        inertia = [1, 2, 2.5]
+        [[body]]
+        name = "ball"
+        sphere = 2
+        position = [0, 9, 0]
+        mass = 5
+        turns = true
+        [[body]]
+        name = "still"
+        mesh = "cow.obj"
+        position = [-9, 0, 0]
+        scale = 0.5
+        turns = false
+    "#;
+    let scene = parse(text).expect("a scene");
+    let turn = scene.bodies[0].turn.expect("it turns");
+    assert_eq!(turn.spin, DVec3::new(1.0, -2.0, 0.5));
+    assert_eq!(turn.torque, DVec3::new(0.0, 0.0, 4.0));
+    assert_eq!(scene.bodies[3].turn, None);
+    let world = scene.world().expect("a world");
+    assert_eq!(
+        [0, 1, 2, 3].map(|i| world.turns(i)),
+        [true, true, true, false]
+    );
+    let near = |a: DVec3, b: DVec3| assert!((a - b).length() < 1e-12, "{a} is not {b}");
+    near(world.origin(0), DVec3::new(1.0, 2.0, 3.0));
+    // A quarter turn about y takes x to -z.
+    near(world.rotation(0) * DVec3::X, -DVec3::Z);
+    near(world.spin(0), turn.spin);
+    // The centre of mass is not the origin of the cow, and is turned with it.
+    let centre = world.inertia(0).expect("it turns").centre();
+    assert!(centre.length() > 0.01);
+    near(
+        world.position(0),
+        world.origin(0) + world.rotation(0) * centre,
+    );
+    // Meshes are shared, however they are turned.
+    let [cow, still] = [0, 3].map(|i| world.mesh(i).expect("a mesh"));
+    assert!(Arc::ptr_eq(cow, still));
+    let plate = world.inertia(1).expect("it turns");
+    assert_eq!(
+        (plate.moments(), plate.centre()),
+        (DVec3::new(1.0, 2.0, 2.5), DVec3::ZERO)
+    );
+    let ball = world.inertia(2).expect("it turns");
+    near(ball.moments(), DVec3::splat(8.0));
+    assert_eq!(parse(&scene.to_toml()).expect("the same scene"), scene);
+}
+
+#[test]
+fn what_cannot_turn_is_refused_with_its_line_and_field() {
+    let head = "rate = 60\n[[body]]\nname = 'b'\n";
+    for (body, message) in [
+        (
+            "mesh = 'cube.obj'\nspin = [0, 1, 0]",
+            ":5: body `b`, spin: is of a body that turns",
+        ),
+        (
+            "mesh = 'cube.obj'\nturns = false\ntorque = [0, 1, 0]",
+            ":6: body `b`, torque: is of a body that turns: say `turns = true`",
+        ),
+        (
+            "half-space = [0, 1, 0]\nturns = true",
+            ":5: body `b`, turns: a half-space cannot turn",
+        ),
+        (
+            "mesh = 'cube.obj'\nturns = true\ninertia = [1, 1, 3]",
+            ":6: body `b`, inertia: moments of inertia",
+        ),
+        (
+            "mesh = 'cube.obj'\nturns = true\nspin = [nan, 1, 3]",
+            ":6: body `b`, spin: must be three numbers",
+        ),
+        (
+            "sphere = 0\nturns = true",
+            ":5: body `b`, turns: a ball of radius",
+        ),
+        (
+            "mesh = 'open.obj'\nturns = true",
+            ":5: body `b`, turns: the mesh is open: close it, or give its inertia",
+        ),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let open = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        std::fs::write(folder.path().join("open.obj"), open).expect("a file");
+        let found = Scene::parse(&format!("{head}{body}\n"), &folder.path().join("s.toml"));
+        let error = found.expect_err(body).to_string();
+        assert!(error.contains(message), "{error}");
+    }
+}

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::Context;
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 use sim_core::{Bvh, Mesh};
 use viewer::camera::Camera;
 use viewer::picture::{Arrow, Line, Model, PALETTE, Picture};
@@ -111,6 +111,7 @@ fn model(mesh: &Arc<Mesh>, position: DVec3, colour: usize) -> Model {
     Model {
         mesh: Arc::clone(mesh),
         position,
+        rotation: DQuat::IDENTITY,
         colour: PALETTE[colour % PALETTE.len()],
         selected: false,
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use sim_core::Mesh;
 
 use crate::camera::Camera;
@@ -37,6 +37,8 @@ pub struct Model {
     pub mesh: Arc<Mesh>,
     /// Where the mesh's origin is, m.
     pub position: DVec3,
+    /// Turns the mesh into the world.
+    pub rotation: DQuat,
     /// Surface colour, sRGB.
     pub colour: [f32; 3],
     /// Whether the mesh's edges are drawn over it.
@@ -50,6 +52,8 @@ pub struct Ghost {
     pub mesh: Arc<Mesh>,
     /// Where the mesh's origin is, m.
     pub position: DVec3,
+    /// Turns the mesh into the world.
+    pub rotation: DQuat,
     /// Colour, sRGB.
     pub colour: [f32; 3],
 }

@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 use image::RgbaImage;
 use sim_core::Mesh;
 use viewer::camera::Camera;
@@ -90,6 +90,7 @@ fn model(mesh: &Arc<Mesh>, position: DVec3, colour: [f32; 3]) -> Model {
     Model {
         mesh: Arc::clone(mesh),
         position,
+        rotation: DQuat::IDENTITY,
         colour,
         selected: false,
     }
@@ -417,6 +418,7 @@ fn ghosts_are_seen_through_and_cast_no_shadow() {
     picture.ghosts.push(viewer::picture::Ghost {
         mesh: cube(),
         position: place,
+        rotation: DQuat::IDENTITY,
         colour: RED,
     });
     let Some(ghost) = shot(&picture) else { return };

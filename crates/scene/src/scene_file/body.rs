@@ -11,7 +11,7 @@ use super::parse::{LARGEST, Place, Source, Subject};
 use super::text::Body;
 use crate::colour;
 use crate::error::SceneError;
-use crate::scene::{SceneBody, SceneShape};
+use crate::scene::{SceneBody, SceneShape, SceneTurn};
 use crate::shown;
 use crate::world::baked_field;
 
@@ -50,7 +50,7 @@ pub(super) fn parse(
     }
     if let Some(mesh) = body.mesh() {
         // As its world will have it: here its line is known.
-        obstacles.baked.mesh(mesh, &body).map_err(|error| {
+        obstacles.baked.turned(mesh, &body).map_err(|error| {
             let field = baked_field(&error);
             let span = scale_span.or(rotation_span).unwrap_or(text.name.span());
             place.error(span, field, baked_what(&error, body.scale))
@@ -84,6 +84,12 @@ pub(super) fn parse(
     }
     body.groups = group_names(&place, "groups", text.groups)?;
     body.collides_with = group_names(&place, "collides_with", text.collides_with)?;
+    body.turn = turn(
+        &place,
+        (text.turns, text.spin, text.torque, text.inertia),
+        &body,
+        obstacles,
+    )?;
     if let Some(value) = text.colour {
         body.colour = colour::parse(value.get_ref());
         if body.colour.is_none() {
@@ -115,6 +121,55 @@ fn group_names(
             Err(place.error(empty.span(), field, "the name of a group must not be empty"))
         }
         None => Ok(Some(names.into_iter().map(Spanned::into_inner).collect())),
+    }
+}
+
+/// The fields of a table about turning.
+type TurnText = (
+    Option<Spanned<bool>>,
+    Option<Spanned<Triple>>,
+    Option<Spanned<Triple>>,
+    Option<Spanned<Triple>>,
+);
+
+/// How a body turns, if it does, once all else about it is known.
+fn turn(
+    place: &Place,
+    (turns, spin, torque, inertia): TurnText,
+    body: &SceneBody,
+    obstacles: &mut Obstacles,
+) -> Result<Option<SceneTurn>, SceneError> {
+    let Some(turns) = turns.filter(|turns| *turns.get_ref()) else {
+        let fields = [("spin", &spin), ("torque", &torque), ("inertia", &inertia)];
+        let stray = fields.into_iter().find_map(|(field, value)| {
+            let value = value.as_ref()?;
+            Some((field, value.span()))
+        });
+        return match stray {
+            Some((field, span)) => {
+                let what = "is of a body that turns: say `turns = true`, or leave it out";
+                Err(place.error(span, field, what))
+            }
+            None => Ok(None),
+        };
+    };
+    let inertia_span = inertia.as_ref().map(Spanned::span);
+    let turn = SceneTurn {
+        spin: place.vector("spin", spin)?,
+        torque: place.vector("torque", torque)?,
+        inertia: inertia.map(|value| value.get_ref().0),
+    };
+    // As its world will have it: here its line is known.
+    let turning = SceneBody {
+        turn: Some(turn),
+        ..body.clone()
+    };
+    match obstacles.baked.inertia(&turning) {
+        Ok(_) => Ok(Some(turn)),
+        Err(what) => match inertia_span {
+            Some(span) => Err(place.error(span, "inertia", what)),
+            None => Err(place.error(turns.span(), "turns", what)),
+        },
     }
 }
 
@@ -195,6 +250,12 @@ fn refuse_senseless(place: &Place, text: &Body, shape: &SceneShape) -> Result<()
         }
     }
     let is_half_space = text.half_space.is_some();
+    if let (Some(turns), true) = (&text.turns, is_half_space)
+        && *turns.get_ref()
+    {
+        let what = "a half-space cannot turn: leave it out".to_owned();
+        return wrong(turns.span(), "turns", what);
+    }
     match (&text.mass, &text.immovable) {
         (Some(mass), _) if is_half_space => {
             let what = "a half-space is always immovable: leave it out".to_owned();

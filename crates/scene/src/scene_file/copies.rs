@@ -176,7 +176,7 @@ impl Obstacles {
     fn of(&mut self, body: &SceneBody) -> Result<Obstacle, (&'static str, String)> {
         let (min, max) = match &body.shape {
             SceneShape::Mesh(mesh) => {
-                let mesh = self.baked.mesh(mesh, body);
+                let mesh = self.baked.turned(mesh, body);
                 let mesh = mesh.map_err(|error| (baked_field(&error), error.to_string()))?;
                 let bounds = mesh.bounds();
                 (bounds.min.as_dvec3(), bounds.max.as_dvec3())

@@ -39,6 +39,10 @@ pub(super) struct Body {
     pub(super) friction: Option<Spanned<Number>>,
     pub(super) groups: Option<Vec<Spanned<String>>>,
     pub(super) collides_with: Option<Vec<Spanned<String>>>,
+    pub(super) turns: Option<Spanned<bool>>,
+    pub(super) spin: Option<Spanned<Triple>>,
+    pub(super) torque: Option<Spanned<Triple>>,
+    pub(super) inertia: Option<Spanned<Triple>>,
     pub(super) colour: Option<Spanned<String>>,
     #[serde(skip_serializing)]
     pub(super) copies: Option<Spanned<usize>>,

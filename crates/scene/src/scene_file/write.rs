@@ -1,5 +1,6 @@
 //! A scene to TOML text.
 
+use glam::DVec3;
 use sim_core::Settings;
 use toml::Spanned;
 
@@ -55,6 +56,16 @@ fn body(body: &SceneBody) -> Body {
         friction: (body.friction != 0.0).then(|| spanned(Number(body.friction))),
         groups: body.groups.as_deref().map(names),
         collides_with: body.collides_with.as_deref().map(names),
+        turns: body.turn.map(|_| spanned(true)),
+        spin: body.turn.map(|turn| spanned(Triple(turn.spin))),
+        torque: body
+            .turn
+            .filter(|turn| turn.torque != DVec3::ZERO)
+            .map(|turn| spanned(Triple(turn.torque))),
+        inertia: body
+            .turn
+            .and_then(|turn| turn.inertia)
+            .map(|moments| spanned(Triple(moments))),
         colour: body.colour.map(|c| spanned(colour::format(c))),
         copies: None,
         inside: None,

@@ -18,7 +18,7 @@ use crate::errors::{NAMED, names, separate_error, step_error};
 use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
 use crate::number;
-use crate::session::{Drift, Exact, Halt, Record, Reference, Runner, csv_head, csv_line};
+use crate::session::{Drift, Exact, Halt, Record, Reference, Runner, csv_head, csv_line, turns};
 use crate::stopwatch::Stopwatch;
 
 /// Final state of a run. Numbers are f64 and survive the way through JSON bit for bit.
@@ -28,6 +28,9 @@ struct RunReport<'a> {
     steps: u64,
     impacts: u64,
     kinetic_energy: f64,
+    /// What of that is in how bodies turn, where any does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    turning_energy: Option<f64>,
     potential_energy: Option<f64>,
     total_energy: Option<f64>,
     /// Change of both together since the start, relative to what they were: none where that is 0.
@@ -98,8 +101,21 @@ struct BodyReport<'a> {
     name: &'a str,
     /// None of an immovable body.
     mass: Option<f64>,
+    /// Of its origin.
     position: [f64; 3],
     velocity: [f64; 3],
+    #[serde(flatten)]
+    turn: Option<TurnReport>,
+}
+
+/// What a body has that turns.
+#[derive(Serialize)]
+struct TurnReport {
+    /// A unit quaternion: x, y, z, w.
+    rotation: [f64; 4],
+    spin: [f64; 3],
+    /// About its centre of mass.
+    angular_momentum: [f64; 3],
 }
 
 /// Contents of a mesh file.
@@ -321,6 +337,7 @@ impl<'a> RunReport<'a> {
             steps: world.steps(),
             impacts: world.impacts(),
             kinetic_energy: world.kinetic_energy(),
+            turning_energy: turns(world).then(|| world.turning_energy()),
             potential_energy: Some(world.potential_energy()).filter(|energy| energy.is_finite()),
             total_energy: Some(world.kinetic_energy() + world.potential_energy())
                 .filter(|energy| energy.is_finite()),
@@ -361,8 +378,13 @@ impl<'a> RunReport<'a> {
                 .map(|(i, body)| BodyReport {
                     name: &body.name,
                     mass: world.kind(i).is_movable().then(|| world.mass(i)),
-                    position: world.position(i).to_array(),
+                    position: world.origin(i).to_array(),
                     velocity: world.velocity(i).to_array(),
+                    turn: world.turns(i).then(|| TurnReport {
+                        rotation: world.rotation(i).to_array(),
+                        spin: world.spin(i).to_array(),
+                        angular_momentum: world.angular_momentum(i).to_array(),
+                    }),
                 })
                 .collect(),
         }
@@ -389,7 +411,7 @@ impl<'a> RunReport<'a> {
                     .map_or_else(|| "none".to_owned(), ImpactReport::text),
             ),
             ("Contacts", self.contacts_text()),
-            ("Kinetic energy", format!("{} J", self.kinetic_energy)),
+            ("Kinetic energy", self.kinetic_text()),
             ("Potential", joules(self.potential_energy)),
             ("Total energy", joules(self.total_energy)),
             (
@@ -446,6 +468,12 @@ impl<'a> RunReport<'a> {
 }
 
 impl RunReport<'_> {
+    fn kinetic_text(&self) -> String {
+        let turning = self.turning_energy;
+        let turning = turning.map_or_else(String::new, |j| format!(", {j} J of it in turning"));
+        format!("{} J{turning}", self.kinetic_energy)
+    }
+
     fn contacts_text(&self) -> String {
         let mut pairs: Vec<_> = self.contacts.iter().map(|c| c.bodies).collect();
         pairs.sort_unstable();

@@ -22,11 +22,13 @@ struct Instance {
     offset: [f32; 3],
     radius: f32,
     colour: [f32; 3],
+    /// A unit quaternion: x, y, z, w.
+    rotation: [f32; 4],
 }
 
 const CORNER: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
-const INSTANCE: [wgpu::VertexAttribute; 3] =
-    wgpu::vertex_attr_array![2 => Float32x3, 3 => Float32, 4 => Float32x3];
+const INSTANCE: [wgpu::VertexAttribute; 4] =
+    wgpu::vertex_attr_array![2 => Float32x3, 3 => Float32, 4 => Float32x3, 5 => Float32x4];
 
 /// The layouts of the two vertex buffers that [`Meshes::draw`] sets.
 pub(super) fn layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
@@ -127,13 +129,15 @@ impl Meshes {
                 false if wireframe => Look::Edged,
                 false => Look::Plain,
             };
-            (&model.mesh, model.position, model.colour, look)
+            let pose = (model.position, model.rotation);
+            (&model.mesh, pose, model.colour, look)
         });
-        let ghosts = ghosts
-            .iter()
-            .map(|ghost| (&ghost.mesh, ghost.position, ghost.colour, Look::Ghost));
-        for (geometry, position, colour, look) in models.chain(ghosts) {
-            if !position.is_finite() {
+        let ghosts = ghosts.iter().map(|ghost| {
+            let pose = (ghost.position, ghost.rotation);
+            (&ghost.mesh, pose, ghost.colour, Look::Ghost)
+        });
+        for (geometry, (position, rotation), colour, look) in models.chain(ghosts) {
+            if !(position.is_finite() && rotation.is_finite()) {
                 continue;
             }
             let address = Arc::as_ptr(geometry).addr();
@@ -151,6 +155,7 @@ impl Meshes {
                 offset: (position - eye).as_vec3().to_array(),
                 radius: mesh.radius,
                 colour: linear(colour),
+                rotation: rotation.as_quat().to_array(),
             });
         }
         self.known.retain(|_, mesh| {

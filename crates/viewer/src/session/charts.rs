@@ -13,6 +13,9 @@ const SECOND: [f32; 3] = [0.40, 0.68, 0.95];
 const THIRD: [f32; 3] = [0.45, 0.80, 0.50];
 const FOURTH: [f32; 3] = [0.88, 0.56, 0.92];
 
+/// The part of the energy that only bodies have that turn.
+const TURNING: &str = "turning";
+
 /// A plot over simulated time.
 pub struct Chart {
     /// What it shows.
@@ -40,7 +43,8 @@ pub static CHARTS: [Chart; 5] = [
     Chart {
         title: "Energy",
         unit: "J",
-        meaning: "Kinetic energy, potential energy of the forces that have one, and both together",
+        meaning: "Kinetic energy, what of it is in turning, potential energy of the forces that have one, and kinetic \
+                  and potential together",
         logarithmic: false,
         main: Part {
             name: "total",
@@ -52,6 +56,11 @@ pub static CHARTS: [Chart; 5] = [
                 name: "kinetic",
                 colour: FIRST,
                 value: |s| Some(s.kinetic),
+            },
+            Part {
+                name: TURNING,
+                colour: THIRD,
+                value: |s| s.turning,
             },
             Part {
                 name: "potential",
@@ -174,7 +183,12 @@ impl Session {
             points: thinned(points(chart, part, samples.clone())),
         };
         if self.variants().is_empty() {
-            let parts = chart.parts.iter().chain([&chart.main]);
+            let turns = samples.clone().any(|s| s.turning.is_some());
+            let parts = chart
+                .parts
+                .iter()
+                .filter(|part| turns || part.name != TURNING);
+            let parts = parts.chain([&chart.main]);
             return parts.map(|part| curve(part.name, part)).collect();
         }
         let (own, names) = self.variant_names();

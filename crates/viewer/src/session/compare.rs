@@ -204,7 +204,8 @@ impl Session {
     pub fn contest(&self) -> Contest {
         let world = &self.world;
         let solid: Vec<usize> = (0..world.len())
-            .filter(|&i| world.mesh(i).is_some())
+            // What turns is not compared.
+            .filter(|&i| world.mesh(i).is_some() && !world.turns(i))
             .collect();
         let (mut contest, mut most, mut nearest) = (Contest::NoPair, 0, f64::INFINITY);
         for (n, &i) in solid.iter().enumerate() {

@@ -1,13 +1,13 @@
 //! Edits of bodies. In the layout state they change the set-up, later only the world.
 //! A refused value leaves everything as it was and says why.
 
-use scene::{SceneBody, SceneShape};
+use scene::{SceneBody, SceneShape, SceneTurn};
 use sim_core::DVec3;
 
 use super::{Input, Session, State};
 
 impl Session {
-    /// Moves the selected body to `position`, m.
+    /// Moves the origin of the selected body to `position`, m.
     pub fn set_position(&mut self, position: DVec3) {
         let edited = self.edit(
             "position",
@@ -30,6 +30,26 @@ impl Session {
         );
     }
 
+    /// Gives the selected body, which turns, an angular velocity, rad/s.
+    pub fn set_spin(&mut self, spin: DVec3) {
+        self.edit(
+            "spin",
+            |i| Input::Spin(i, spin),
+            |body| {
+                if let Some(turn) = &mut body.turn {
+                    turn.spin = spin;
+                }
+            },
+        );
+    }
+
+    /// Lets the selected body turn, or only translate. Layout only.
+    pub fn set_turns(&mut self, turns: bool) {
+        self.edit_shape("turns", |body| {
+            body.turn = turns.then(SceneTurn::default);
+        });
+    }
+
     /// Puts the selected body under a constant force, N.
     pub fn set_force(&mut self, force: DVec3) {
         self.edit(
@@ -41,6 +61,11 @@ impl Session {
 
     /// Gives the selected body a mass, kg; positive. It is movable then.
     pub fn set_mass(&mut self, mass: f64) {
+        let turns = self.selection.is_some_and(|i| self.world.turns(i));
+        if turns && self.state == State::Layout {
+            // Its inertia is another one.
+            return self.edit_shape("mass", |body| (body.mass, body.immovable) = (mass, false));
+        }
         self.edit(
             "mass",
             |i| Input::Mass(i, mass),

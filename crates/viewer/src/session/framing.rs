@@ -1,7 +1,7 @@
 //! The room that bodies take up, and the camera that looks at them.
 
 use scene::{SceneBody, SceneShape};
-use sim_core::{Aabb, DVec3, Shape};
+use sim_core::{Aabb, DMat3, DVec3, Shape};
 
 use super::Session;
 
@@ -94,8 +94,32 @@ impl Session {
         (middle - half, middle + half)
     }
 
-    /// Box of a body about its position.
+    /// Box of a body about its position, turned as it is drawn.
     pub(super) fn bounds(&self, i: usize) -> Bounds {
+        let Bounds { centre, half } = self.bounds_unturned(i);
+        if !self.world.turns(i) {
+            return Bounds { centre, half };
+        }
+        let turned = DMat3::from_quat(self.shown_rotation(i));
+        Bounds {
+            centre: turned * centre,
+            half: turned.abs() * half,
+        }
+    }
+
+    /// Box of a body about its position that it stays in however it turns.
+    fn bounds_however_turned(&self, i: usize) -> Bounds {
+        let bounds = self.bounds_unturned(i);
+        match self.world.turns(i) {
+            true => Bounds {
+                centre: DVec3::ZERO,
+                half: DVec3::splat(bounds.centre.length() + bounds.half.length()),
+            },
+            false => bounds,
+        }
+    }
+
+    fn bounds_unturned(&self, i: usize) -> Bounds {
         let bounds = self.world.shape(i).and_then(Shape::bounds);
         bounds.map_or_else(Bounds::default, |[low, high]| Bounds {
             centre: (low + high) * 0.5,
@@ -125,7 +149,7 @@ impl Session {
         let boxes = (0..self.world.len())
             .filter(|&i| !self.is_half_space(i))
             .map(|i| {
-                let Bounds { centre, half } = self.bounds(i);
+                let Bounds { centre, half } = self.bounds_however_turned(i);
                 (set_up(i) + centre - half, set_up(i) + centre + half)
             });
         let bodies = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));

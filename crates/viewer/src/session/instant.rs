@@ -1,7 +1,7 @@
 //! The instant that is drawn: between two states bodies go straight, and where they have impacts in the
 //! step, through the places of these at their times.
 
-use sim_core::{Collision, DVec3, Impact, World};
+use sim_core::{Collision, DQuat, DVec3, Impact, World};
 
 use super::{Session, State, clock};
 
@@ -68,8 +68,22 @@ impl Session {
         self.shown_part() < 1.0
     }
 
-    /// Where body `i` is drawn, m.
+    /// Where the origin of body `i` is drawn, m.
     pub(super) fn shown_position(&self, i: usize) -> DVec3 {
+        let centre = self.shown_centre(i);
+        match self.world.inertia(i) {
+            Some(inertia) => centre - self.shown_rotation(i) * inertia.centre(),
+            None => centre,
+        }
+    }
+
+    /// How body `i` is drawn turned.
+    pub(super) fn shown_rotation(&self, i: usize) -> DQuat {
+        self.world.interpolated_pose(i, self.shown_part()).1
+    }
+
+    /// Where what moves of body `i` is drawn, m: its centre of mass if it turns, else its origin.
+    pub(super) fn shown_centre(&self, i: usize) -> DVec3 {
         match self.shown_part() {
             1.0 => self.world.position(i),
             part => {

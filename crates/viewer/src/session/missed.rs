@@ -3,7 +3,7 @@
 //! Between two sampled states the bodies are taken to move straight; whether they touch on that way is
 //! answered exactly, as in the continuous mode.
 
-use sim_core::{Collision, DVec3, Impact, World, query};
+use sim_core::{Collision, DQuat, DVec3, Impact, World, query};
 
 use super::Session;
 use crate::number;
@@ -169,6 +169,8 @@ impl Session {
                 ghosts.extend(missed.places.map(|position| Ghost {
                     mesh: mesh.clone(),
                     position,
+                    // The discrete modes, which alone miss anything, turn nothing.
+                    rotation: DQuat::IDENTITY,
                     colour: RED,
                 }));
             }

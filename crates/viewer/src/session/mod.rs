@@ -71,7 +71,7 @@ pub use record::{
     Divergence, Input, InputError, MOST_STEPS as MOST_RECORDED, Record, RecordError, Replay,
     ReplayError, Verdict, is_run_file, verify,
 };
-pub use sample::{COLUMNS, Column, Sample, csv_head, csv_line};
+pub use sample::{COLUMNS, Column, Sample, csv_head, csv_line, turns};
 pub use shooting::{Reel, Shooting, TICKS};
 pub use touching::Part;
 pub use tour::{Attempt, BEYOND, LABS, Lab, Stop, stop, stop_count};

@@ -48,7 +48,7 @@ impl Session {
         self.disown_jobs();
         if self.state == State::Layout {
             for &body in &moved {
-                self.scene.bodies[body].position = self.world.position(body);
+                self.scene.bodies[body].position = self.world.origin(body);
             }
             self.edited();
         }

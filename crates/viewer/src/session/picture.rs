@@ -113,6 +113,7 @@ impl Session {
                 picture.models.push(Model {
                     mesh,
                     position: self.shown_position(i),
+                    rotation: self.shown_rotation(i),
                     colour: self.colour(i),
                     selected,
                 });
@@ -247,14 +248,14 @@ impl Session {
         let view = self.display.bvh;
         let levels = bvh.depth();
         let chosen = view.depth.min(levels.saturating_sub(1));
-        let origin = self.shown_position(i);
+        let (origin, rotation) = (self.shown_position(i), self.shown_rotation(i));
         for (depth, aabb) in bvh.boxes() {
             if view.every_depth || depth == chosen {
                 let colour = depth_colour(depth, levels);
-                let middle = origin + aabb.centre();
-                lines.extend(edges(middle, aabb.half_extent()).map(|(from, to)| Line {
-                    from,
-                    to,
+                let edges = edges(aabb.centre(), aabb.half_extent());
+                lines.extend(edges.map(|(from, to)| Line {
+                    from: origin + rotation * from,
+                    to: origin + rotation * to,
                     colour,
                     width: 1.5,
                 }));

@@ -54,7 +54,7 @@ impl Session {
                 self.pull = Some(Pull {
                     body,
                     force,
-                    grip: point - self.shown_position(body),
+                    grip: point - self.shown_centre(body),
                     depth: (point - self.camera.eye()).dot(self.camera.forward()),
                 });
                 self.select(Some(body));

@@ -13,6 +13,8 @@ pub struct Sample {
     pub steps: u64,
     /// Kinetic energy, J.
     pub kinetic: f64,
+    /// What of that is in how bodies turn, J; none where nothing turns.
+    pub turning: Option<f64>,
     /// Potential energy, J; not finite at a centre of attraction.
     pub potential: f64,
     /// Momentum, kg m/s.
@@ -36,6 +38,7 @@ impl Sample {
             time: world.time(),
             steps: world.steps(),
             kinetic: world.kinetic_energy(),
+            turning: turns(world).then(|| world.turning_energy()),
             potential: world.potential_energy(),
             momentum: world.momentum(),
             error,
@@ -56,6 +59,11 @@ impl Sample {
     pub fn phase(&self, phase: Phase) -> Option<f64> {
         self.phases.map(|phases| phases[phase as usize])
     }
+}
+
+/// Whether any body of a world turns.
+pub fn turns(world: &World) -> bool {
+    (0..world.len()).any(|i| world.turns(i))
 }
 
 /// A figure over time.

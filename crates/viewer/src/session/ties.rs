@@ -17,11 +17,11 @@ impl Session {
         for force in self.world.forces() {
             match *force {
                 Force::Anchor { body, anchor, .. } => {
-                    self.add_spring(anchor, self.shown_position(body), lines);
+                    self.add_spring(anchor, self.shown_centre(body), lines);
                     self.add_cross(anchor, lines);
                 }
                 Force::Spring { bodies, .. } => {
-                    let [from, to] = bodies.map(|body| self.shown_position(body));
+                    let [from, to] = bodies.map(|body| self.shown_centre(body));
                     self.add_spring(from, to, lines);
                 }
                 Force::Attraction { centre, .. } => self.add_cross(centre, lines),

@@ -94,8 +94,8 @@ impl Session {
                 continue;
             };
             let size = mesh.bounds().half_extent().max_element();
-            let place = self.shown_position(body);
-            let vertex = |v: u32| place + mesh.vertices()[v as usize].as_dvec3();
+            let (place, rotation) = (self.shown_position(body), self.shown_rotation(body));
+            let vertex = |v: u32| place + rotation * mesh.vertices()[v as usize].as_dvec3();
             let [red, green, blue] = VIOLET;
             let mut line = |from: DVec3, to: DVec3, width: f32| {
                 marks.push(Line {

@@ -69,7 +69,7 @@ impl Session {
         // The last point is yet to come where bodies are drawn between two states.
         let whole = points.len() - usize::from(self.is_between()).min(points.len());
         let [red, green, blue] = self.colour(i).map(|part| 0.8 * part);
-        let end = self.shown_position(i);
+        let end = self.shown_centre(i);
         let mut from = None;
         let passed = self.passed_places(i);
         for (n, to) in points.take(whole).chain(passed).chain([end]).enumerate() {

@@ -86,11 +86,11 @@ impl Session {
     /// Where what is followed is drawn, m.
     fn leader(&self) -> Option<DVec3> {
         if let Some(selected) = self.selection.filter(|&i| i < self.world.len()) {
-            return Some(self.shown_position(selected));
+            return Some(self.shown_centre(selected));
         }
         let moving = (0..self.world.len()).filter(|&i| !self.is_static(i));
         let (sum, count) = moving.fold((DVec3::ZERO, 0.0), |(sum, count), i| {
-            (sum + self.shown_position(i), count + 1.0)
+            (sum + self.shown_centre(i), count + 1.0)
         });
         (count > 0.0).then(|| sum / count)
     }

@@ -15,11 +15,13 @@ pub(super) fn show(ui: &mut egui::Ui, handles: &mut Handles, session: &mut Sessi
         return;
     };
     let (shape, rotation, scale) = (body.shape.clone(), body.rotation, body.scale);
+    let obstacle = cannot_turn(&shape);
     heading(ui, session, i);
     handles.choose(ui, session);
 
     let world = session.world();
-    let (position, velocity) = (world.position(i), world.velocity(i));
+    let (position, velocity) = (world.origin(i), world.velocity(i));
+    let spin = world.turns(i).then(|| world.spin(i));
     let (force, mass) = (world.force(i), world.mass(i));
     let immovable = !world.kind(i).is_movable();
     let (restitution, friction) = (world.restitution(i), world.friction(i));
@@ -52,6 +54,7 @@ pub(super) fn show(ui: &mut egui::Ui, handles: &mut Handles, session: &mut Sessi
     if let Some(value) = field::vector(ui, "Velocity", "m/s", "Velocity v = dx/dt", velocity) {
         session.set_velocity(value);
     }
+    turning(ui, session, spin, obstacle);
     if mass.is_finite()
         && let Some(value) = field::vector(
             ui,
@@ -103,6 +106,49 @@ fn turned(ui: &mut egui::Ui, session: &mut Session, rotation: DVec3, scale: DVec
     let meaning = "Stretch along the body's own axes; not 0";
     if let Some(value) = field::vector(ui, "Scale", "", meaning, scale) {
         session.set_scale(value);
+    }
+}
+
+/// Why a shape cannot turn, if it cannot.
+fn cannot_turn(shape: &SceneShape) -> Option<&'static str> {
+    match shape {
+        SceneShape::HalfSpace { .. } => Some("A half-space cannot turn"),
+        SceneShape::Mesh(mesh) if !mesh.mesh().is_closed() => {
+            Some("Its mesh is open, so that it has no inertia: give `inertia` in the scene file")
+        }
+        SceneShape::Mesh(_) | SceneShape::Sphere { .. } => None,
+    }
+}
+
+/// Whether the body turns, and how fast; or why it cannot.
+fn turning(
+    ui: &mut egui::Ui,
+    session: &mut Session,
+    spin: Option<DVec3>,
+    obstacle: Option<&'static str>,
+) {
+    let layout = session.state() == State::Layout;
+    let why = match layout {
+        true => obstacle.unwrap_or_default(),
+        false => "Part of the layout: Reset first",
+    };
+    let mut turns = spin.is_some();
+    let can = layout && (turns || obstacle.is_none());
+    let switch = egui::Checkbox::new(&mut turns, say("Turns"));
+    let changed = ui
+        .add_enabled(can, switch)
+        .on_hover_text(say(
+            "It turns about its centre of mass, and impacts turn it",
+        ))
+        .on_disabled_hover_text(say(why))
+        .changed();
+    if changed {
+        session.set_turns(turns);
+    }
+    let Some(spin) = spin else { return };
+    let meaning = "Angular velocity ω about the axes of the world";
+    if let Some(value) = field::vector(ui, "Spin", "rad/s", meaning, spin) {
+        session.set_spin(value);
     }
 }
 

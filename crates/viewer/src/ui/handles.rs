@@ -169,7 +169,7 @@ impl Handles {
         match (self.tool, body.shape.clone()) {
             (Tool::Move, _) => {
                 let way = points / f64::from(seen.length()) * length;
-                session.set_position(session.world().position(i) + way * axis);
+                session.set_position(session.world().origin(i) + way * axis);
             }
             (Tool::Turn, _) => session.set_rotation(body.rotation + TURN * points * axis),
             (Tool::Stretch, SceneShape::Sphere { radius }) => {

@@ -28,3 +28,9 @@ struct Frame {
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+
+// A vector turned by a unit quaternion.
+fn turned(v: vec3f, q: vec4f) -> vec3f {
+    let t = 2.0 * cross(q.xyz, v);
+    return v + q.w * t + cross(q.xyz, t);
+}

@@ -9,8 +9,9 @@ fn vs_main(
     @location(0) position: vec3f,
     @location(2) offset: vec3f,
     @location(3) radius: f32,
+    @location(5) rotation: vec4f,
 ) -> Varying {
-    let at = position + offset;
+    let at = turned(position, rotation) + offset;
     var out: Varying;
     out.clip = vec4f((at.xz - frame.shadow_centre) / frame.shadow_half, 0.5, 1.0);
     // In sizes of the mesh, so that small and large bodies cast alike.

@@ -6,6 +6,7 @@ struct Corner {
 struct Instance {
     @location(2) offset: vec3f,
     @location(4) colour: vec3f,
+    @location(5) rotation: vec4f,
 }
 
 struct Varying {
@@ -19,9 +20,9 @@ struct Varying {
 
 fn placed(corner: Corner, instance: Instance, parts: vec3f) -> Varying {
     var out: Varying;
-    out.position = corner.position + instance.offset;
+    out.position = turned(corner.position, instance.rotation) + instance.offset;
     out.clip = frame.view_projection * vec4f(out.position, 1.0);
-    out.normal = corner.normal;
+    out.normal = turned(corner.normal, instance.rotation);
     out.colour = instance.colour;
     out.parts = parts;
     return out;

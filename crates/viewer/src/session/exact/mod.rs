@@ -13,6 +13,8 @@ use sim_core::{Aabb, DVec3, Force, Mesh, Shape, World};
 use bounce::{Bounce, Face};
 use linear::Linear;
 
+use super::turns;
+
 /// Bodies up to which paths are followed: each is watched for each other.
 const MOST_BODIES: usize = 32;
 /// Faces that one path is followed against.
@@ -63,7 +65,8 @@ impl Exact {
     /// Followed from the present state of a world.
     pub fn of(world: &World) -> Self {
         let count = world.len();
-        let followed = count <= MOST_BODIES;
+        // What turns meets others with other features than those that it starts with.
+        let followed = count <= MOST_BODIES && (count == 1 || !turns(world));
         let paths: Vec<Path> = (0..count)
             .map(|i| match followed {
                 true => Path::of(world, i),

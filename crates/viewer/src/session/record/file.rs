@@ -60,6 +60,8 @@ struct InputText {
     #[serde(skip_serializing_if = "Option::is_none")]
     velocity: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    spin: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     force: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mass: Option<f64>,
@@ -134,6 +136,10 @@ impl Record {
             &Input::Velocity(body, value) => {
                 name(body);
                 text.velocity = Some(value.to_array());
+            }
+            &Input::Spin(body, value) => {
+                name(body);
+                text.spin = Some(value.to_array());
             }
             &Input::Force(body, value) => {
                 name(body);
@@ -259,6 +265,9 @@ impl InputText {
         }
         if let Some(velocity) = self.velocity {
             found.push(Input::Velocity(body()?, DVec3::from(velocity)));
+        }
+        if let Some(spin) = self.spin {
+            found.push(Input::Spin(body()?, DVec3::from(spin)));
         }
         if let Some(force) = self.force {
             found.push(Input::Force(body()?, DVec3::from(force)));

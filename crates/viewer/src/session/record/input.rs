@@ -7,10 +7,12 @@ use sim_core::{BodyKind, DVec3, Force, SeparateError, Settings, World, WorldErro
 pub enum Input {
     /// How the world steps.
     Settings(Settings),
-    /// Where a body is, m.
+    /// Where a body's origin is, m.
     Position(usize, DVec3),
     /// Its velocity, m/s.
     Velocity(usize, DVec3),
+    /// Its angular velocity, rad/s.
+    Spin(usize, DVec3),
     /// The constant force on it, N.
     Force(usize, DVec3),
     /// Its mass, kg; it is movable then.
@@ -47,7 +49,14 @@ impl Input {
     pub fn apply(&self, world: &mut World) -> Result<Vec<usize>, InputError> {
         match *self {
             Self::Settings(settings) => world.set_settings(settings)?,
-            Self::Position(body, position) => world.set_position(body, position)?,
+            Self::Position(body, origin) => {
+                let to_centre = match world.turns(body) {
+                    true => world.position(body) - world.origin(body),
+                    false => DVec3::ZERO,
+                };
+                world.set_position(body, origin + to_centre)?;
+            }
+            Self::Spin(body, spin) => world.set_spin(body, spin)?,
             Self::Velocity(body, velocity) => set_velocity(world, body, velocity)?,
             Self::Force(body, force) => world.set_force(body, force)?,
             Self::Mass(body, mass) => {

@@ -10,7 +10,7 @@ mod runner;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use sim_core::{Collision, DVec3, Settings, World};
+use sim_core::{Collision, DQuat, DVec3, Settings, World};
 
 pub use presets::{PRESETS, Preset};
 pub use runner::{Halt, Runner, Snapshot};
@@ -189,23 +189,26 @@ impl Variant {
         self.record.drain(..beyond);
     }
 
-    /// Where its bodies were at a time, s: between the states before and after; where it is now if it
-    /// has not come so far.
-    fn places(&self, time: f64) -> Option<Vec<DVec3>> {
+    /// Where its bodies were at a time, s, and how they were turned, if any turns: between the states
+    /// before and after; where it is now if it has not come so far.
+    fn poses(&self, time: f64) -> Option<(Vec<DVec3>, Vec<DQuat>)> {
+        let whole = |s: &Snapshot| (s.places.to_vec(), s.rotations.to_vec());
         let after = self.record.partition_point(|s| s.sample.time < time);
         let next = match self.record.get(after) {
             Some(next) => next,
-            None => return Some(self.record.back()?.places.to_vec()),
+            None => return Some(whole(self.record.back()?)),
         };
         let Some(last) = after.checked_sub(1).map(|n| &self.record[n]) else {
-            return Some(next.places.to_vec());
+            return Some(whole(next));
         };
         let part = (time - last.sample.time) / (next.sample.time - last.sample.time);
-        let both = last.places.iter().zip(&next.places);
-        Some(
-            both.map(|(a, b)| a.lerp(*b, part.clamp(0.0, 1.0)))
-                .collect(),
-        )
+        let part = part.clamp(0.0, 1.0);
+        let places = last.places.iter().zip(&next.places);
+        let rotations = last.rotations.iter().zip(&next.rotations);
+        Some((
+            places.map(|(a, b)| a.lerp(*b, part)).collect(),
+            rotations.map(|(a, b)| a.slerp(*b, part)).collect(),
+        ))
     }
 }
 
@@ -355,11 +358,11 @@ impl Session {
     pub(super) fn add_ghosts(&mut self, ghosts: &mut Vec<Ghost>, lines: &mut Vec<Line>) {
         let time = self.shown_time();
         let moves: Vec<bool> = (0..self.world.len()).map(|i| !self.is_static(i)).collect();
-        let mut taken: Vec<Vec<DVec3>> = vec![Vec::new(); moves.len()];
+        let mut taken: Vec<Vec<(DVec3, DQuat)>> = vec![Vec::new(); moves.len()];
         for n in 0..self.variants.list.len() {
             let variant = &self.variants.list[n];
             let colour = variant.colour;
-            let Some(places) = variant.places(time) else {
+            let Some((places, rotations)) = variant.poses(time) else {
                 continue;
             };
             if places.len() != moves.len() {
@@ -368,17 +371,20 @@ impl Session {
             for (i, place) in places.iter().enumerate().filter(|&(i, _)| moves[i]) {
                 // One that cannot be told from the body, or from another ghost, would only tint it.
                 let same = SAME * self.bounds(i).half.max_element();
-                let known = [self.shown_position(i)]
-                    .into_iter()
-                    .chain(taken[i].iter().copied());
-                if known.into_iter().any(|at| at.distance(*place) <= same) {
+                let rotation = rotations.get(i).copied().unwrap_or_default();
+                let known = [(self.shown_position(i), self.shown_rotation(i))];
+                let mut known = known.into_iter().chain(taken[i].iter().copied());
+                if known.any(|(at, turned)| {
+                    at.distance(*place) <= same && turned.angle_between(rotation) <= SAME
+                }) {
                     continue;
                 }
-                taken[i].push(*place);
+                taken[i].push((*place, rotation));
                 match self.body_mesh(i) {
                     Some(mesh) => ghosts.push(Ghost {
                         mesh,
                         position: *place,
+                        rotation,
                         colour,
                     }),
                     None if !self.is_half_space(i) => lines.push(Line {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use sim_core::{DVec3, Profile, Settings, StepError, World, WorldError};
+use sim_core::{DQuat, DVec3, Profile, Settings, StepError, World, WorldError};
 
 use crate::session::exact::Exact;
 use crate::session::figures::{Drift, Reference};
@@ -12,12 +12,14 @@ use crate::stopwatch::nanoseconds;
 /// The exact solution is noted at least this often in a simulated second, so that it looks smooth.
 const EXACT_RATE: f64 = 60.0;
 
-/// A state of a variant: its figures, and where its bodies are, m.
+/// A state of a variant: its figures, and where its bodies' origins are, m.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     /// The figures.
     pub sample: Sample,
     pub(super) places: Box<[DVec3]>,
+    /// How they are turned; empty where none turns.
+    pub(super) rotations: Box<[DQuat]>,
 }
 
 /// What goes from state to state.
@@ -128,7 +130,8 @@ impl Runner {
         let world = &self.world;
         Snapshot {
             sample,
-            places: (0..world.len()).map(|i| world.position(i)).collect(),
+            places: (0..world.len()).map(|i| world.origin(i)).collect(),
+            rotations: rotations(world),
         }
     }
 
@@ -167,5 +170,14 @@ impl Runner {
             apart,
         };
         Ok(self.snapshot(None, 0))
+    }
+}
+
+/// How the bodies of a world are turned; empty where none turns.
+fn rotations(world: &World) -> Box<[DQuat]> {
+    let bodies = 0..world.len();
+    match bodies.clone().any(|i| world.turns(i)) {
+        true => bodies.map(|i| world.rotation(i)).collect(),
+        false => Box::default(),
     }
 }
