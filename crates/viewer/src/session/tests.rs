@@ -20,6 +20,7 @@ mod playback;
 mod pull;
 mod record;
 mod shapes;
+mod turning;
 mod variants;
 mod view;
 

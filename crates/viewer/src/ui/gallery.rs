@@ -54,6 +54,8 @@ static PICTURES: &[(&str, &[u8])] = pictures![
     "drag",
     "kepler",
     "pleiades",
+    "tennis-racket",
+    "cubes-turning",
 ];
 
 pub(super) fn show(ctx: &egui::Context, gallery: &mut Gallery, session: &mut Session) {
