@@ -3,7 +3,7 @@
 
 use kit::bodies::body;
 use kit::random::Random;
-use sim_core::{Body, DVec3, Vec3};
+use sim_core::{Body, BodyKind, DVec3, Vec3};
 
 use crate::scenes::{judge, step, world};
 use crate::shapes::sheet;
@@ -84,7 +84,15 @@ fn pair(random: &mut Random, hit: f64, dt: f64) -> Option<Pair> {
         ..body(&upper, place, common + relative)
     };
     let second = Body {
-        mass: masses[1],
+        mass: if masses[1].is_finite() {
+            masses[1]
+        } else {
+            1.0
+        },
+        kind: match masses[1].is_finite() {
+            true => BodyKind::Dynamic,
+            false => BodyKind::Kinematic,
+        },
         ..body(&lower, far, common)
     };
     let scene = format!("{p} {q} by {by}, {place} {far}, {relative} + {common}, masses {masses:?}");

@@ -185,6 +185,11 @@ fn what_has_begun_and_not_ended_is_in_contact() {
         for collision in [Collision::Continuous, Collision::Bvh] {
             let mut scene = entry.scene().expect("a gallery scene");
             scene.collision = collision;
+            // The discrete modes turn nothing.
+            let turns = scene.bodies.iter().any(|body| body.turn.is_some());
+            if turns && collision != Collision::Continuous {
+                continue;
+            }
             let mut world = scene.world().expect("a world");
             let mut unlisted = world.clone();
             world.list_contact_events(true);

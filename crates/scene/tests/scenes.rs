@@ -140,7 +140,7 @@ fn groups_of_a_file_tell_who_collides_with_whom() {
     let empty = text.replace("\"walls\", ", "\" \", ");
     let error = parse(&empty).expect_err("a name").to_string();
     assert!(
-        error.contains("line 11") && error.contains("groups"),
+        error.contains(":11:") && error.contains("groups"),
         "{error}"
     );
     // More than there are bits.
