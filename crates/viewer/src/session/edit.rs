@@ -76,7 +76,10 @@ impl Session {
     /// Makes the selected body immovable, or movable again with the mass it had.
     pub fn set_immovable(&mut self, immovable: bool) {
         let Some(i) = self.selection else { return };
-        if immovable {
+        let turns = self.world.turns(i) && self.state == State::Layout;
+        if immovable && turns {
+            self.edit_shape("mass", |body| body.immovable = true);
+        } else if immovable {
             self.edit("mass", Input::Immovable, |body| body.immovable = true);
         } else {
             self.set_mass(self.world.mass(i));

@@ -21,8 +21,11 @@ impl Session {
         (0..self.world.len())
             .filter(|&i| !self.is_hidden(i) && !self.is_half_space(i))
             .filter_map(|i| {
-                let shown = self.world.placed(i)?.at(self.shown_position(i)).ok()?;
-                let hit = query::ray(shown, origin, direction).ok()??;
+                // In the frame of the shape, which may be turned.
+                let back = self.shown_rotation(i).inverse();
+                let from = back * (origin - self.shown_position(i));
+                let shown = self.world.placed(i)?.at(DVec3::ZERO).ok()?;
+                let hit = query::ray(shown, from, back * direction).ok()??;
                 Some((hit.time, i))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0))

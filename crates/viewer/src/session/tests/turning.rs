@@ -80,7 +80,7 @@ fn turning_is_switched_and_set() {
     );
     session.set_mass(3.0);
     session.set_immovable(true);
-    assert!(session.world().mass(1).is_infinite());
+    assert!(!session.world().kind(1).is_movable());
     session.set_immovable(false);
     assert_eq!(session.world().mass(1), 3.0);
     session.set_turns(false);
