@@ -1,7 +1,7 @@
 //! When do two moving shapes hit, where, and with which normal? Then the same against all bodies of a world.
 
 use sim_core::query::{self, Placed};
-use sim_core::{Body, Bvh, DVec3, Mesh, Settings, Shape, Vec3, World};
+use sim_core::{Body, BodyKind, Bvh, DVec3, Mesh, Settings, Shape, Vec3, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let vertices = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::new(Settings::default())?;
     world.add(Body {
         shape: Some(Shape::HalfSpace { normal: DVec3::Y }),
-        mass: f64::INFINITY,
+        kind: BodyKind::Static,
         ..Body::default()
     })?;
     let ball = Placed::sphere(0.5, DVec3::new(0.0, 3.0, 0.0))?;

@@ -1,12 +1,12 @@
 //! Who hit whom, how hard, and who lies on whom? The contacts that began, persisted and ended in each step.
 
-use sim_core::{Body, ContactEventKind, DVec3, Force, Settings, Shape, World};
+use sim_core::{Body, BodyKind, ContactEventKind, DVec3, Force, Settings, Shape, World};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut world = World::new(Settings::default())?;
     world.add(Body {
         shape: Some(Shape::HalfSpace { normal: DVec3::Y }),
-        mass: f64::INFINITY,
+        kind: BodyKind::Static,
         restitution: 0.3,
         ..Body::default()
     })?;
