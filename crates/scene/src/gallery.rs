@@ -110,11 +110,11 @@ pub static SCENES: &[GalleryScene] = &[
     },
     GalleryScene {
         name: "tennis-racket",
-        text: include_str!("../../../assets/scenes/tennis-racket.toml"),
+        text: include_str!("../assets/scenes/tennis-racket.toml"),
     },
     GalleryScene {
         name: "cubes-turning",
-        text: include_str!("../../../assets/scenes/cubes-turning.toml"),
+        text: include_str!("../assets/scenes/cubes-turning.toml"),
     },
 ];
 
