@@ -19,7 +19,7 @@ pub(super) struct State {
 pub(super) struct Turned {
     /// Turns principal axes into the world.
     pub(super) rotation: DQuat,
-    /// Angular momentum about the centre of mass in the world, kg m²/s; of a body of infinite mass, per
+    /// Angular momentum about the centre of mass in the world, kg m²/s; of a body that nothing moves, per
     /// kg m² of it.
     pub(super) momentum: DVec3,
 }

@@ -434,7 +434,7 @@ impl World {
     }
 
     /// Angular momentum of a body about its centre of mass, kg m²/s; zero of one that does not turn, and of
-    /// one of infinite mass.
+    /// one that nothing moves.
     pub fn angular_momentum(&self, body: usize) -> DVec3 {
         let slot = self.bodies.turners.slot(body);
         let slot = slot.filter(|_| self.bodies.is_movable(body));
