@@ -112,8 +112,8 @@ fn what_slides_down_a_smooth_slope_has_the_speed_that_it_must() {
         assert!((speed / exact - 1.0).abs() < 1e-8, "{speed} for {exact}");
         // A drift takes the speed at its end for all of a step.
         let way = (world.position(1) - 0.25 * scale * normal).length();
-        let late = way / (0.5 * exact) - 1.0;
-        assert!((late - 1.0 / 60.0).abs() < 1e-4, "{late}");
+        let ahead = way / (0.5 * exact) - 1.0;
+        assert!((ahead - 1.0 / 60.0).abs() < 1e-4, "{ahead}");
         assert!(world.spin(1).length() < 1e-6);
     }
 }

@@ -64,13 +64,7 @@ const INVARIANTS: [Invariant; 4] = [
     Invariant {
         broken: |_, world, drift| {
             let error = drift.relative_momentum?;
-            // Adaptive methods take up to hundreds of steps in one.
-            let inner = if world.settings().method.adaptive {
-                100.0
-            } else {
-                1.0
-            };
-            let most = ROUNDING * (inner * world.steps() as f64).sqrt();
+            let most = ROUNDING * (world.steps() as f64).sqrt();
             (error > most).then(|| format!("momentum is off by {error:e} of it"))
         },
     },

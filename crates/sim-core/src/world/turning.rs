@@ -102,14 +102,20 @@ impl Bodies {
     }
 
     /// How far a body's shape reaches about its position, however it is turned.
-    #[inline]
+    #[inline(always)]
     pub(super) fn extent_however_turned(&self, body: usize) -> Extent {
         match self.turners.is_empty() {
             true => self.extent(body),
-            false => match self.slot_that_shows(body) {
-                Some(slot) => Extent::of_ball(self.turners.radius[slot]),
-                None => self.extent(body),
-            },
+            false => self.extent_among_turning(body),
+        }
+    }
+
+    // Apart, so that worlds in which nothing turns do not pay for its frame.
+    #[inline(never)]
+    fn extent_among_turning(&self, body: usize) -> Extent {
+        match self.slot_that_shows(body) {
+            Some(slot) => Extent::of_ball(self.turners.radius[slot]),
+            None => self.extent(body),
         }
     }
 

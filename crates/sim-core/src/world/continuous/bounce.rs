@@ -11,7 +11,7 @@ use super::{
     outcome::MANY_BOUNCES,
 };
 use crate::{
-    impulse::{ALL_SWEEPS, Joined, drag, greatest, limit, reflect},
+    impulse::{ALL_SWEEPS, drag, greatest, limit, reflect},
     pieces::Pieces,
 };
 
@@ -89,11 +89,10 @@ impl EventLoop<'_> {
         }
         let scene = self.solver.scene;
         let places = Places::between(scene.bodies, scene.before, events.clone().map(Event::plane));
-        let is_movable: Vec<bool> = places.inverse_mass.iter().map(|&w| w > 0.0).collect();
-        let mut of_events: Vec<(usize, &Event)> = ties(&places.joined, &is_movable)
-            .into_iter()
-            .zip(events)
-            .collect();
+        let pairs = places.joined.iter().map(|joined| joined.bodies);
+        let is_movable = |place: usize| places.inverse_mass[place] > 0.0;
+        let ties = ties(pairs, places.bodies.len(), is_movable);
+        let mut of_events: Vec<(usize, &Event)> = ties.into_iter().zip(events).collect();
         of_events.sort_by_key(|&(tie, _)| tie);
         for tied in of_events.chunk_by(|a, b| a.0 == b.0) {
             match tied {
@@ -177,21 +176,19 @@ impl EventLoop<'_> {
     }
 }
 
-/// For each contact a number that those have in common which movable bodies tie together.
-fn ties(contacts: &[Joined], is_movable: &[bool]) -> Vec<usize> {
-    let mut pieces = Pieces::new(is_movable.len());
-    for contact in contacts {
-        let (i, j) = contact.bodies;
-        if is_movable[i] && is_movable[j] {
+/// For each pair a number that those have in common which movable bodies tie together.
+pub(super) fn ties(
+    pairs: impl Iterator<Item = (usize, usize)> + Clone,
+    bodies: usize,
+    is_movable: impl Fn(usize) -> bool,
+) -> Vec<usize> {
+    let mut pieces = Pieces::new(bodies);
+    for (i, j) in pairs.clone() {
+        if is_movable(i) && is_movable(j) {
             pieces.join(i, j);
         }
     }
-    let movable = |contact: &Joined| match is_movable[contact.bodies.0] {
-        true => contact.bodies.0,
-        false => contact.bodies.1,
-    };
-    contacts
-        .iter()
-        .map(|contact| pieces.first(movable(contact)))
+    pairs
+        .map(|(i, j)| pieces.first(if is_movable(i) { i } else { j }))
         .collect()
 }

@@ -11,10 +11,11 @@
 //! `v + s (u - v)` after the part `s` of it, and it begins anew with that contact as well. No crossing is
 //! possible whatever the velocities are.
 //!
-//! A drift gives no energy: on a part `s` of it, with `d = u - v`, forces do the work `s τ a·u = s (d·u - pᵀJu)` with
-//! `pᵀJu <= 0` as no gap is wider than the room, and kinetic energy changes by `s v·d + s² d²/2`, so that the sum of
-//! kinetic and potential energy falls by at least `s (1 - s/2) d²`, in the norm of mass; but for how the
-//! inertia turns within a step. Its error is that of one step: places are off by `τ² a / 2` at most.
+//! A drift gives no energy but what lifts bodies to the room that they are kept at. On a part `s` of it, with
+//! `d = u - v`, forces do the work `s τ a·u = s (d·u - pᵀJu)`, and kinetic energy changes by `s v·d + s² d²/2`. So the
+//! sum of kinetic and potential energy grows by `s pᵀJu - s (1 - s/2) d²`, in the norm of mass, where `pᵀJu` is
+//! `pᵀ(room - g)/τ`: the force of the contacts times the room that they still lack. How the inertia turns within a
+//! step is left out. The error is that of one step: places are off by `τ² a / 2` at most.
 
 use alloc::{vec, vec::Vec};
 use core::{f64::consts::PI, mem};
@@ -23,6 +24,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::super::stepping::Cause;
 use super::{
+    bounce::ties,
     event::{Event, EventKind},
     event_loop::EventLoop,
     solver::ContactSolver,
@@ -30,7 +32,6 @@ use super::{
 use crate::{
     collide::turning::{ContactPoint, Moving, Turning, features_within},
     impulse::arms::{self, Arms, Twist, Yielding},
-    pieces::Pieces,
 };
 
 /// Features touch that are no farther apart than this times what is a contact.
@@ -112,11 +113,6 @@ impl TurningRest {
         self.stopped.clear();
         self.stopped.resize(slots, None);
         self.contacts.clear();
-    }
-
-    /// Whether a body drifts.
-    pub(super) fn drifts(&self, slot: usize) -> bool {
-        self.before[slot].is_some()
     }
 }
 
@@ -215,22 +211,9 @@ impl EventLoop<'_> {
             return Ok(());
         }
         let all = self.solver.scene.bodies;
-        let mut pieces = Pieces::new(all.len());
-        for (event, _) in bouncing {
-            let (i, j) = event.bodies;
-            if all.is_movable(i) && all.is_movable(j) {
-                pieces.join(i, j);
-            }
-        }
-        let movable = |event: &Event| match all.is_movable(event.bodies.0) {
-            true => event.bodies.0,
-            false => event.bodies.1,
-        };
-        let mut ties: Vec<(usize, usize)> = bouncing
-            .iter()
-            .enumerate()
-            .map(|(k, (event, _))| (pieces.first(movable(event)), k))
-            .collect();
+        let pairs = bouncing.iter().map(|(event, _)| event.bodies);
+        let ties = ties(pairs, all.len(), |body| all.is_movable(body));
+        let mut ties: Vec<(usize, usize)> = ties.into_iter().zip(0..).collect();
         ties.sort_unstable();
         for tied in ties.chunk_by(|a, b| a.0 == b.0) {
             let tied: Vec<&(&Event, Vec<Touching>)> =
@@ -786,7 +769,7 @@ impl ContactSolver<'_> {
                     && all
                         .turners
                         .slot(other)
-                        .is_some_and(|slot| self.turning.drifts(slot));
+                        .is_some_and(|slot| self.paths.drifting[slot]);
                 if is_tied && !bodies.contains(&other) {
                     bodies.push(other);
                 }
