@@ -38,6 +38,15 @@ impl Neighbours {
 impl View<'_> {
     /// A box around a body all along its trajectory.
     fn swept(&self, body: usize) -> Swept {
+        // Two calls, so that the common one keeps the extent in registers.
+        match self.scene.bodies.turners.is_empty() {
+            true => self.swept_within(body, self.scene.bodies.extent(body)),
+            false => self.swept_within(body, self.scene.bodies.extent_however_turned(body)),
+        }
+    }
+
+    #[inline(always)]
+    fn swept_within(&self, body: usize, extent: Extent) -> Swept {
         let (from, to) = (
             self.paths.start.position[body],
             self.paths.end.position[body],
@@ -47,7 +56,7 @@ impl View<'_> {
             high,
             farthest,
             ..
-        } = self.scene.bodies.extent_however_turned(body);
+        } = extent;
         // More than is lost in rounding, here and where vertices are placed, and than a search goes beyond
         // the end of the step; and as far as bodies may be moved where others that meet are parted.
         let bend = self.motion().chord_deviation(body);
