@@ -89,7 +89,7 @@ fn corners_on_plane(
             continue;
         }
         if let Item::Piece(..) = boxed.item {
-            for corner in Points::of(mesh, boxed.item).at {
+            for corner in Points::of(mesh, boxed.item).corners() {
                 let above = height + back.dot(corner);
                 if above <= reach {
                     let corner = between + rotation * corner;
@@ -128,9 +128,9 @@ fn between_meshes(
         match (first.item, second.item) {
             (Item::Piece(..), Item::Piece(..)) => {
                 let (p, q) = (Points::of(a, first.item), Points::of(b, second.item));
-                let q = q.at.map(|corner| turn * corner + offset);
+                let q = q.corners().map(|corner| turn * corner + offset);
                 let known = found.len();
-                of_triangles(&p.at, &q, (distance, reach), found);
+                of_triangles(&p.corners(), &q, (distance, reach), found);
                 for touch in &mut found[known..] {
                     touch.points = touch.points.map(|point| of_a * point);
                     touch.normal = of_a * touch.normal;

@@ -20,6 +20,7 @@ mod certificate;
 mod contact_set;
 mod nearest;
 mod pieces;
+mod separation;
 mod view;
 
 use alloc::collections::BinaryHeap;
@@ -28,9 +29,9 @@ use core::cmp::Ordering;
 use glam::{DQuat, DVec3};
 
 use crate::{Bvh, rotation::Flight};
-use certificate::Gap;
 pub use contact_set::{ContactPoint, features_within};
 use pieces::{Boxed, Item, Points};
+use separation::Gap;
 use view::View;
 
 /// What moves.
@@ -240,24 +241,31 @@ fn search(
     let mut queue = BinaryHeap::new();
     queue.push(Entry {
         time: 0.0,
-        a: root_a.item,
-        b: root_b.item,
+        a: Item::whole(a),
+        b: Item::whole(b),
     });
     while let Some(entry) = queue.pop() {
         let now = entry.time;
-        if let (Item::Piece(..), Item::Piece(..)) = (entry.a, entry.b) {
+        if entry.a.is_set() && entry.b.is_set() {
             if now != view.time {
                 view = View::new(a, b, now, end);
                 effort.views += 1;
             }
             effort.pieces += 1;
             let (first, second) = (Points::of(a, entry.a), Points::of(b, entry.b));
-            let gap = view.pieces_apart(&first, &second, only, care.halt);
+            let gap = view.sets_apart(&first, &second, only, care.halt);
+            // What is within a box, or too near it to tell, is looked at face by face.
+            if !gap.is_apart
+                && let Some(opened) = opened([root_a.item, root_b.item], &entry)
+            {
+                queue.push(opened);
+                continue;
+            }
             let until = now + gap.lasts;
             // Without a proof for any time, and where they are near and come nearer.
             let is_contact = until <= now || gap.distance <= gap.near && !gap.opens;
             if is_contact || effort.pieces == care.most {
-                return Some(touch(&view, &gap, [&first, &second]));
+                return Some(touch(&view, &gap));
             }
             if until < end {
                 queue.push(Entry {
@@ -293,13 +301,24 @@ fn search(
 /// Part of what is left of the time after which boxes get new poses. It changes cost only.
 const RENEW: f64 = 0.25;
 
-fn touch(view: &View, gap: &Gap, pieces: [&Points; 2]) -> TurningTouch {
+/// The same pair without whole boxes, if it has some.
+fn opened(roots: [Item; 2], entry: &Entry) -> Option<Entry> {
+    let open = |item: Item, root: Item| if item == Item::Cuboid { root } else { item };
+    let opened = Entry {
+        time: entry.time,
+        a: open(entry.a, roots[0]),
+        b: open(entry.b, roots[1]),
+    };
+    (opened != *entry).then_some(opened)
+}
+
+fn touch(view: &View, gap: &Gap) -> TurningTouch {
     TurningTouch {
         time: view.time,
         distance: gap.distance,
         near: gap.near,
         points: gap.points.map(|point| view.axes * point),
         normal: view.axes * gap.normal,
-        faces: pieces.map(|points| points.face),
+        faces: gap.faces,
     }
 }

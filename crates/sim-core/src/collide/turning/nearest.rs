@@ -1,14 +1,16 @@
-//! The nearest points of triangles and points, in rounded arithmetic.
+//! The nearest points of two sets, in rounded arithmetic.
 
 use glam::DVec3;
 
-use super::pieces::Points;
+use super::pieces::{MOST_POINTS, Points};
 
 /// Two points, and how far they are from each other.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub(super) length: f64,
     pub(super) points: [DVec3; 2],
+    /// The faces that they are on, where there are some.
+    pub(super) faces: [Option<u32>; 2],
 }
 
 impl Pair {
@@ -16,6 +18,7 @@ impl Pair {
         Pair {
             length: (second - first).length(),
             points: [first, second],
+            faces: [None; 2],
         }
     }
 
@@ -26,22 +29,68 @@ impl Pair {
     }
 }
 
-/// The nearest points of two pieces that do not cross, placed in one frame.
-pub(super) fn nearest(a: &Points, first: &[DVec3; 3], b: &Points, second: &[DVec3; 3]) -> Pair {
+/// The points of a set, placed.
+type At = [DVec3; MOST_POINTS];
+
+/// The nearest points of two sets whose surfaces do not cross, placed in one frame. What is no nearer along a
+/// unit vector than what is known is passed over.
+pub(super) fn nearest(
+    (a, first): (&Points<'_>, &At),
+    (b, second): (&Points<'_>, &At),
+    along: DVec3,
+) -> Pair {
     let mut best = Pair::of(first[0], second[0]);
-    match (a.is_point, b.is_point) {
-        (true, true) => (),
-        (true, false) => best.keep_nearer(Pair::of(first[0], on_triangle(first[0], second))),
-        (false, true) => best.keep_nearer(Pair::of(on_triangle(second[0], first), second[0])),
-        (false, false) => {
-            for k in 0..3 {
-                best.keep_nearer(Pair::of(first[k], on_triangle(first[k], second)));
-                best.keep_nearer(Pair::of(on_triangle(second[k], first), second[k]));
-                for m in 0..3 {
-                    let ends = |p: &[DVec3; 3], k: usize| [p[k], p[(k + 1) % 3]];
-                    best.keep_nearer(segments(ends(first, k), ends(second, m)));
+    best.length = f64::INFINITY;
+    let ((of_a, count_a), (of_b, count_b)) = (a.triangles(), b.triangles());
+    let (heights_a, heights_b) = (
+        first.map(|point| along.dot(point)),
+        second.map(|point| along.dot(point)),
+    );
+    let pick = |at: &At, by: [u8; 3]| by.map(|k| at[k as usize]);
+    let over = |heights: &[f64; MOST_POINTS], by: [u8; 3], of: fn(f64, f64) -> f64| {
+        let [a, b, c] = by.map(|k| heights[k as usize]);
+        of(a, of(b, c))
+    };
+    match (count_a, count_b) {
+        (0, 0) => best = Pair::of(first[0], second[0]),
+        (0, _) => {
+            for &(by, face) in &of_b[..count_b] {
+                let mut pair = Pair::of(first[0], on_triangle(first[0], &pick(second, by)));
+                pair.faces[1] = Some(face);
+                best.keep_nearer(pair);
+            }
+        }
+        (_, 0) => {
+            for &(by, face) in &of_a[..count_a] {
+                let mut pair = Pair::of(on_triangle(second[0], &pick(first, by)), second[0]);
+                pair.faces[0] = Some(face);
+                best.keep_nearer(pair);
+            }
+        }
+        _ => {
+            for &(by_a, face_a) in &of_a[..count_a] {
+                let top = over(&heights_a, by_a, f64::max);
+                for &(by_b, face_b) in &of_b[..count_b] {
+                    if over(&heights_b, by_b, f64::min) - top < best.length {
+                        let mut pair = of_triangles(&pick(first, by_a), &pick(second, by_b));
+                        pair.faces = [Some(face_a), Some(face_b)];
+                        best.keep_nearer(pair);
+                    }
                 }
             }
+        }
+    }
+    best
+}
+
+fn of_triangles(first: &[DVec3; 3], second: &[DVec3; 3]) -> Pair {
+    let mut best = Pair::of(first[0], second[0]);
+    for k in 0..3 {
+        best.keep_nearer(Pair::of(first[k], on_triangle(first[k], second)));
+        best.keep_nearer(Pair::of(on_triangle(second[k], first), second[k]));
+        for m in 0..3 {
+            let ends = |p: &[DVec3; 3], k: usize| [p[k], p[(k + 1) % 3]];
+            best.keep_nearer(segments(ends(first, k), ends(second, m)));
         }
     }
     best

@@ -1,15 +1,31 @@
-//! What trees hold, as seen from the centre of mass: boxes, and up to three points.
+//! What trees hold, as seen from the centre of mass: boxes, and sets of points that are apart from others if
+//! their hulls are.
 
 use glam::DVec3;
 
 use super::{Figure, Moving};
-use crate::bvh::{Bvh, LEAF, WIDTH};
+use crate::bvh::{Bvh, Cuboid, LEAF, WIDTH};
 
-/// A node of a tree, or what can be split no further: a triangle by its leaf and lane, or a point.
+/// A node of a tree, or a set of points: a triangle by its leaf and lane, a point, or all of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Item {
     Node(u32),
     Piece(u32, u32),
+    Cuboid,
+}
+
+impl Item {
+    /// What a search starts from.
+    pub(super) fn whole(moving: &Moving<'_>) -> Item {
+        match moving.figure {
+            Figure::Mesh(tree) if tree.cuboid().is_some() => Item::Cuboid,
+            _ => Boxed::root(moving).item,
+        }
+    }
+
+    pub(super) fn is_set(self) -> bool {
+        !matches!(self, Item::Node(_))
+    }
 }
 
 /// A box of a shape, in the shape's frame about its centre of mass.
@@ -78,8 +94,15 @@ impl Boxed {
         };
         let tree = match (moving.figure, item) {
             (Figure::Mesh(tree), Item::Node(_)) => tree,
-            (Figure::Mesh(_), _) => return only(around(&Points::of(moving, item), item)),
-            _ => return only(Boxed::root(moving)),
+            (Figure::Mesh(_), Item::Piece(..)) => {
+                return only(around(&Points::of(moving, item), item));
+            }
+            _ => {
+                return only(Boxed {
+                    item,
+                    ..Boxed::root(moving)
+                });
+            }
         };
         let Item::Node(code) = item else {
             unreachable!("pieces are not split")
@@ -103,50 +126,103 @@ impl Boxed {
 }
 
 /// The box around a triangle.
-fn around(points: &Points, item: Item) -> Boxed {
-    let [a, b, c] = points.at;
+fn around(points: &Points<'_>, item: Item) -> Boxed {
+    let [a, b, c] = points.corners();
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     let half = 0.5 * (high - low) * (1.0 + 2.0 * f64::EPSILON);
     Boxed::new(0.5 * (low + high), half, item)
 }
 
-/// A triangle, or a point with what is within a radius about it, about the centre of mass.
+/// Points of which a set has no more.
+pub(super) const MOST_POINTS: usize = 8;
+
+/// A set of points about the centre of mass, in the frame of the shape.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Points {
-    /// The same one three times where there is but one.
-    pub(super) at: [DVec3; 3],
-    pub(super) is_point: bool,
+pub(super) struct Points<'a> {
+    /// The last one as often as it takes.
+    pub(super) at: [DVec3; MOST_POINTS],
+    pub(super) kind: Kind<'a>,
+    /// What is within this of them belongs to them, m.
     pub(super) radius: f64,
-    pub(super) face: Option<u32>,
 }
 
-impl Points {
-    pub(super) fn of(moving: &Moving<'_>, item: Item) -> Points {
-        match (moving.figure, item) {
-            (Figure::Mesh(tree), Item::Piece(code, lane)) => {
-                triangle(tree, moving.centre, code, lane)
-            }
-            (figure, _) => Points {
-                at: [-moving.centre; 3],
-                is_point: true,
-                radius: match figure {
-                    Figure::Ball(radius) => radius,
-                    _ => 0.0,
-                },
-                face: None,
+/// What a set is the hull of.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind<'a> {
+    Point,
+    /// A face of a mesh.
+    Triangle(u32),
+    /// Corners are numbered as there.
+    Cuboid(&'a Cuboid),
+}
+
+impl<'a> Points<'a> {
+    pub(super) fn of(moving: &Moving<'a>, item: Item) -> Points<'a> {
+        let alone = |radius: f64| Points {
+            at: [-moving.centre; MOST_POINTS],
+            kind: Kind::Point,
+            radius,
+        };
+        let tree = match moving.figure {
+            Figure::Mesh(tree) => tree,
+            Figure::Ball(radius) => return alone(radius),
+            Figure::HalfSpace(_) => return alone(0.0),
+        };
+        match (item, tree.cuboid()) {
+            (Item::Piece(code, lane), _) => triangle(tree, moving.centre, code, lane),
+            (Item::Cuboid, Some(cuboid)) => Points {
+                at: core::array::from_fn(|k| Cuboid::corner(&cuboid.ends, k) - moving.centre),
+                kind: Kind::Cuboid(cuboid),
+                radius: 0.0,
             },
+            _ => unreachable!("nodes are no sets"),
         }
+    }
+
+    /// The first three, which are those of a triangle.
+    pub(super) fn corners(&self) -> [DVec3; 3] {
+        [self.at[0], self.at[1], self.at[2]]
+    }
+
+    /// The triangles of the surface by their points, and which faces of the mesh they are.
+    pub(super) fn triangles(&self) -> ([([u8; 3], u32); 12], usize) {
+        let mut triangles = [([0; 3], 0); 12];
+        let count = match self.kind {
+            Kind::Point => 0,
+            Kind::Triangle(face) => {
+                triangles[0] = ([0, 1, 2], face);
+                1
+            }
+            Kind::Cuboid(cuboid) => {
+                for axis in 0..3 {
+                    for end in 0..2 {
+                        let face = &cuboid.faces[axis][end];
+                        let across = 7 & !(1 << axis);
+                        let one = 1 << ((axis + 1) % 3);
+                        let corner = face.corner;
+                        let diagonal = [(corner ^ one) as u8, (corner ^ across ^ one) as u8];
+                        for (side, tip) in [corner, corner ^ across].into_iter().enumerate() {
+                            let by_corners = [tip as u8, diagonal[0], diagonal[1]];
+                            let place = 4 * axis + 2 * end + side;
+                            triangles[place] = (by_corners, face.triangles[side]);
+                        }
+                    }
+                }
+                12
+            }
+        };
+        (triangles, count)
     }
 }
 
-fn triangle(tree: &Bvh, centre: DVec3, code: u32, lane: u32) -> Points {
+fn triangle(tree: &Bvh, centre: DVec3, code: u32, lane: u32) -> Points<'_> {
     let triangles = tree.triangles(tree.node(code));
+    let [a, b, c] = triangles
+        .corners(lane as usize)
+        .map(|v| v.as_dvec3() - centre);
     Points {
-        at: triangles
-            .corners(lane as usize)
-            .map(|v| v.as_dvec3() - centre),
-        is_point: false,
+        at: [a, b, c, c, c, c, c, c],
+        kind: Kind::Triangle(triangles.face[lane as usize]),
         radius: 0.0,
-        face: Some(triangles.face[lane as usize]),
     }
 }
