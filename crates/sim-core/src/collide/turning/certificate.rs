@@ -11,6 +11,7 @@
 use glam::DVec3;
 
 use super::{
+    Moving,
     pieces::Boxed,
     view::{Direction, View},
 };
@@ -28,7 +29,12 @@ pub(super) struct Margin {
 
 impl View {
     /// How long two boxes are certainly apart, s from here; 0 where nothing is known.
-    pub(super) fn boxes_apart(&self, a: &Boxed, b: &Boxed, only: Option<DVec3>) -> f64 {
+    pub(super) fn boxes_apart(
+        &self,
+        directions: &[Direction; 6],
+        [a, b]: [&Boxed; 2],
+        only: Option<DVec3>,
+    ) -> f64 {
         let placed = self.turn * b.centre;
         let between = self.offset + placed - a.centre;
         let motion =
@@ -59,7 +65,7 @@ impl View {
         match only {
             Some(normal) => along(&self.direction(normal), true),
             None => {
-                for direction in &self.directions {
+                for direction in directions {
                     along(direction, false);
                 }
                 if let Some(straight) = between.try_normalize() {
@@ -67,18 +73,30 @@ impl View {
                 }
             }
         }
-        // However they turn, they stay within balls about their centres of mass.
-        if let Some(n) = only.or_else(|| self.offset.try_normalize()) {
-            let balls = a.farthest + a.radius + b.farthest + b.radius;
-            let s = n.dot(self.offset) - balls - 32.0 * UNIT * margin.size;
-            if s > 0.0 {
-                let w = n.dot(self.velocity) - 32.0 * UNIT * margin.speed;
-                let q = n.dot(self.acceleration) - 64.0 * UNIT * margin.bend;
-                lasts = lasts.max(root(s, w, q));
-            }
-        }
         lasts
     }
+}
+
+/// For how long two shapes are certainly apart, s from the start, as they stay within balls about their
+/// centres of mass however they turn.
+pub(super) fn balls_apart(a: &Moving<'_>, b: &Moving<'_>, only: Option<DVec3>) -> f64 {
+    let reach = |moving: &Moving<'_>| {
+        let root = Boxed::root(moving);
+        root.farthest + root.radius
+    };
+    let balls = reach(a) + reach(b);
+    let offset = b.position - a.position;
+    let Some(n) = only.or_else(|| offset.try_normalize()) else {
+        return 0.0;
+    };
+    let (velocity, acceleration) = (b.velocity - a.velocity, b.acceleration - a.acceleration);
+    let s = n.dot(offset) - balls - 32.0 * UNIT * (offset.length() + balls);
+    if s.is_nan() || s <= 0.0 {
+        return 0.0;
+    }
+    let w = n.dot(velocity) - 32.0 * UNIT * velocity.length();
+    let q = n.dot(acceleration) - 64.0 * UNIT * acceleration.length();
+    root(s, w, q)
 }
 
 /// No later than the first time at which `s + w t + q t²/2` is 0; `s` is positive.

@@ -198,6 +198,21 @@ struct Entry {
     b: Item,
 }
 
+impl Entry {
+    /// The same pair by the faces of whole boxes.
+    fn opened(self, roots: &[Boxed; 2]) -> Entry {
+        let open = |item: Item, root: &Boxed| match item {
+            Item::Cuboid => root.item,
+            _ => item,
+        };
+        Entry {
+            time: self.time,
+            a: open(self.a, &roots[0]),
+            b: open(self.b, &roots[1]),
+        }
+    }
+}
+
 impl Ord for Entry {
     /// The greatest is the one with the least time.
     fn cmp(&self, other: &Entry) -> Ordering {
@@ -220,6 +235,16 @@ impl PartialEq for Entry {
 
 impl Eq for Entry {}
 
+/// Whether two shapes are certainly apart for a time, s, however they turn.
+pub(crate) fn stay_apart(a: &Moving<'_>, b: &Moving<'_>, end: f64) -> bool {
+    let only = match (a.figure, b.figure) {
+        (Figure::HalfSpace(normal), _) => Some(normal),
+        (_, Figure::HalfSpace(normal)) => Some(-normal),
+        _ => None,
+    };
+    certificate::balls_apart(a, b, only) >= end
+}
+
 fn search(
     a: &Moving<'_>,
     b: &Moving<'_>,
@@ -231,86 +256,140 @@ fn search(
         Figure::HalfSpace(normal) => Some(normal),
         _ => None,
     };
-    let mut view = View::new(a, b, 0.0, end);
-    effort.views += 1;
-    let (root_a, root_b) = (Boxed::root(a), Boxed::root(b));
-    effort.boxes += 1;
-    if view.boxes_apart(&root_a, &root_b, only) >= end {
-        return None;
+    let mut search = Search {
+        bodies: [a, b],
+        end,
+        only,
+        care,
+        effort,
+    };
+    let (whole_a, whole_b) = (Item::whole(a), Item::whole(b));
+    let (mut now, mut apart) = (0.0, true);
+    // Two sets need no queue.
+    while apart && whole_a.is_set() && whole_b.is_set() {
+        let view = search.view(now);
+        match search.advance(&view, (whole_a, whole_b)) {
+            Next::Apart => return None,
+            Next::Later(time) => now = time,
+            Next::Contact(touch) => return Some(touch),
+            Next::Untold => apart = false,
+        }
     }
-    let mut queue = BinaryHeap::new();
-    queue.push(Entry {
-        time: 0.0,
-        a: Item::whole(a),
-        b: Item::whole(b),
-    });
-    while let Some(entry) = queue.pop() {
-        let now = entry.time;
-        if entry.a.is_set() && entry.b.is_set() {
-            if now != view.time {
-                view = View::new(a, b, now, end);
-                effort.views += 1;
-            }
-            effort.pieces += 1;
-            let (first, second) = (Points::of(a, entry.a), Points::of(b, entry.b));
-            let gap = view.sets_apart(&first, &second, only, care.halt);
-            // What is within a box, or too near it to tell, is looked at face by face.
-            if !gap.is_apart
-                && let Some(opened) = opened([root_a.item, root_b.item], &entry)
-            {
-                queue.push(opened);
+    let roots = [Boxed::root(a), Boxed::root(b)];
+    let first = match apart {
+        true => (whole_a, whole_b),
+        // What is within a box, or too near it to tell, is looked at face by face.
+        false => (roots[0].item, roots[1].item),
+    };
+    search.in_boxes(now, first, &roots)
+}
+
+/// A search, and what it has cost so far.
+struct Search<'a, 'b> {
+    bodies: [&'a Moving<'a>; 2],
+    end: f64,
+    only: Option<DVec3>,
+    care: Care,
+    effort: &'b mut Effort,
+}
+
+/// What becomes of two sets.
+enum Next {
+    /// They stay apart to the end.
+    Apart,
+    /// They are apart until then.
+    Later(f64),
+    Contact(TurningTouch),
+    /// No direction has them on either side, of which one is a box.
+    Untold,
+}
+
+impl Search<'_, '_> {
+    fn view(&mut self, time: f64) -> View {
+        self.effort.views += 1;
+        View::new(self.bodies[0], self.bodies[1], time, self.end)
+    }
+
+    /// What becomes of two sets from the time of a view on.
+    fn advance(&mut self, view: &View, (a, b): (Item, Item)) -> Next {
+        self.effort.pieces += 1;
+        let (first, second) = (Points::of(self.bodies[0], a), Points::of(self.bodies[1], b));
+        let gap = view.sets_apart(&first, &second, self.only, self.care.halt);
+        if !gap.is_apart && (a == Item::Cuboid || b == Item::Cuboid) {
+            return Next::Untold;
+        }
+        let until = view.time + gap.lasts;
+        // Without a proof for any time, and where they are near and come nearer.
+        let is_contact = until <= view.time || gap.distance <= gap.near && !gap.opens;
+        if is_contact || self.effort.pieces == self.care.most {
+            return Next::Contact(touch(view, &gap));
+        }
+        match until < self.end {
+            true => Next::Later(until),
+            false => Next::Apart,
+        }
+    }
+
+    /// The first contact of what is in two boxes from a time on.
+    fn in_boxes(
+        &mut self,
+        from: f64,
+        first: (Item, Item),
+        roots: &[Boxed; 2],
+    ) -> Option<TurningTouch> {
+        let mut view = self.view(from);
+        let mut directions = view.directions();
+        self.effort.boxes += 1;
+        let [root_a, root_b] = roots;
+        if view.boxes_apart(&directions, [root_a, root_b], self.only) >= view.left {
+            return None;
+        }
+        let mut queue = BinaryHeap::new();
+        queue.push(Entry {
+            time: from,
+            a: first.0,
+            b: first.1,
+        });
+        while let Some(entry) = queue.pop() {
+            let now = entry.time;
+            if entry.a.is_set() && entry.b.is_set() {
+                if now != view.time {
+                    view = self.view(now);
+                    directions = view.directions();
+                }
+                match self.advance(&view, (entry.a, entry.b)) {
+                    Next::Apart => (),
+                    Next::Later(time) => queue.push(Entry { time, ..entry }),
+                    Next::Contact(touch) => return Some(touch),
+                    Next::Untold => queue.push(entry.opened(roots)),
+                }
                 continue;
             }
-            let until = now + gap.lasts;
-            // Without a proof for any time, and where they are near and come nearer.
-            let is_contact = until <= now || gap.distance <= gap.near && !gap.opens;
-            if is_contact || effort.pieces == care.most {
-                return Some(touch(&view, &gap));
+            // Boxes take a view that is not much older than they are.
+            if now - view.time > RENEW * view.left {
+                view = self.view(now);
+                directions = view.directions();
             }
-            if until < end {
-                queue.push(Entry {
-                    time: until,
-                    ..entry
-                });
-            }
-            continue;
-        }
-        // Boxes take a view that is not much older than they are.
-        if now - view.time > RENEW * (end - view.time) {
-            view = View::new(a, b, now, end);
-            effort.views += 1;
-        }
-        let (of_a, of_b) = (Boxed::within(a, entry.a), Boxed::within(b, entry.b));
-        for a in of_a.iter() {
-            for b in of_b.iter() {
-                effort.boxes += 1;
-                let until = (view.time + view.boxes_apart(a, b, only)).max(now);
-                if until < end {
-                    queue.push(Entry {
-                        time: until,
-                        a: a.item,
-                        b: b.item,
-                    });
+            let [a, b] = self.bodies;
+            let (of_a, of_b) = (Boxed::within(a, entry.a), Boxed::within(b, entry.b));
+            for a in of_a.iter() {
+                for b in of_b.iter() {
+                    self.effort.boxes += 1;
+                    let lasts = view.boxes_apart(&directions, [a, b], self.only);
+                    let time = (view.time + lasts).max(now);
+                    if time < self.end {
+                        let (a, b) = (a.item, b.item);
+                        queue.push(Entry { time, a, b });
+                    }
                 }
             }
         }
+        None
     }
-    None
 }
 
 /// Part of what is left of the time after which boxes get new poses. It changes cost only.
 const RENEW: f64 = 0.25;
-
-/// The same pair without whole boxes, if it has some.
-fn opened(roots: [Item; 2], entry: &Entry) -> Option<Entry> {
-    let open = |item: Item, root: Item| if item == Item::Cuboid { root } else { item };
-    let opened = Entry {
-        time: entry.time,
-        a: open(entry.a, roots[0]),
-        b: open(entry.b, roots[1]),
-    };
-    (opened != *entry).then_some(opened)
-}
 
 fn touch(view: &View, gap: &Gap) -> TurningTouch {
     TurningTouch {

@@ -68,14 +68,27 @@ pub(super) fn nearest(
             }
         }
         _ => {
-            for &(by_a, face_a) in &of_a[..count_a] {
-                let top = over(&heights_a, by_a, f64::max);
-                for &(by_b, face_b) in &of_b[..count_b] {
-                    if over(&heights_b, by_b, f64::min) - top < best.length {
-                        let mut pair = of_triangles(&pick(first, by_a), &pick(second, by_b));
-                        pair.faces = [Some(face_a), Some(face_b)];
-                        best.keep_nearer(pair);
-                    }
+            let tops = of_a.map(|(by, _)| over(&heights_a, by, f64::max));
+            let bottoms = of_b.map(|(by, _)| over(&heights_b, by, f64::min));
+            let mut compare = |i: usize, k: usize| {
+                if bottoms[k] - tops[i] < best.length {
+                    let ((by_a, face_a), (by_b, face_b)) = (of_a[i], of_b[k]);
+                    let mut pair = of_triangles(&pick(first, by_a), &pick(second, by_b));
+                    pair.faces = [Some(face_a), Some(face_b)];
+                    best.keep_nearer(pair);
+                }
+            };
+            // Those that reach farthest to the other side first.
+            let by = |of: &[f64], is_less: fn(f64, f64) -> bool| {
+                (1..of.len()).fold(0, |best, k| if is_less(of[k], of[best]) { k } else { best })
+            };
+            compare(
+                by(&tops[..count_a], |a, b| a > b),
+                by(&bottoms[..count_b], |a, b| a < b),
+            );
+            for i in 0..count_a {
+                for k in 0..count_b {
+                    compare(i, k);
                 }
             }
         }

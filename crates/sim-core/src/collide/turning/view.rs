@@ -20,8 +20,6 @@ pub(super) struct View {
     pub(super) acceleration: DVec3,
     pub(super) first: Spinning,
     pub(super) second: Spinning,
-    /// Directions that boxes are compared along: axes of both.
-    pub(super) directions: [Direction; 6],
 }
 
 /// How one of both turns at that time, and bounds for what is left.
@@ -59,7 +57,7 @@ impl View {
         // Differences first: where in the world both are is no matter.
         let (v, acceleration) = (b.velocity - a.velocity, b.acceleration - a.acceleration);
         let offset = (b.position - a.position) + time * (v + 0.5 * time * acceleration);
-        let mut view = View {
+        View {
             time,
             left,
             axes: rotation_a,
@@ -69,19 +67,14 @@ impl View {
             acceleration: to_frame * acceleration,
             first,
             second,
-            directions: [Direction {
-                along: DVec3::X,
-                reach: [DVec3::ZERO; 2],
-                sweep: [DVec3::ZERO; 2],
-            }; 6],
-        };
-        let axes = DVec3::AXES
-            .into_iter()
-            .chain(DVec3::AXES.map(|axis| turn * axis));
-        for (place, along) in axes.enumerate() {
-            view.directions[place] = view.direction(along);
         }
-        view
+    }
+
+    /// Directions that boxes are compared along: axes of both.
+    pub(super) fn directions(&self) -> [Direction; 6] {
+        let [x, y, z] = DVec3::AXES.map(|axis| self.direction(axis));
+        let [u, v, w] = DVec3::AXES.map(|axis| self.direction(self.turn * axis));
+        [x, y, z, u, v, w]
     }
 
     /// Of a unit vector.

@@ -3,7 +3,7 @@
 //! [`turning::first_contact`] proves when, on parabolas. Where a method makes another trajectory, it is
 //! cut into parts that are parabolas but for rounding, or as short as it gets.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use super::super::stepping::Cause;
 use super::{
@@ -14,7 +14,7 @@ use super::{
 use crate::{
     collide::{
         Contact,
-        turning::{self, Care, Turning, TurningTouch},
+        turning::{self, Care, Moving, Turning, TurningTouch},
     },
     rotation::Flight,
 };
@@ -89,16 +89,26 @@ impl View<'_> {
                 };
             }
         }
+        let bodies = self.scene.bodies;
+        let still =
+            |body: usize, first| bodies.moving(body, first, Turning::Still(DQuat::IDENTITY));
+        let Some((a, b)) = still(i, first).zip(still(j, second)) else {
+            return Ok(None);
+        };
+        if turning::stay_apart(&a, &b, to - from) {
+            return Ok(None);
+        }
         let flights = (
             self.flight_on(i, (from, to))?,
             self.flight_on(j, (from, to))?,
         );
-        let bodies = self.scene.bodies;
-        let turning = |body: usize, flight| bodies.turning_of(body, flight);
-        let a = bodies.moving(i, first, turning(i, flights.0.as_ref()));
-        let b = bodies.moving(j, second, turning(j, flights.1.as_ref()));
-        let Some((a, b)) = a.zip(b) else {
-            return Ok(None);
+        let a = Moving {
+            turning: bodies.turning_of(i, flights.0.as_ref()),
+            ..a
+        };
+        let b = Moving {
+            turning: bodies.turning_of(j, flights.1.as_ref()),
+            ..b
         };
         let Some(touch) = turning::first_contact_with(&a, &b, to - from, Care::TO_GO_ON).0 else {
             return Ok(None);
@@ -171,7 +181,7 @@ impl super::super::bodies::Bodies {
             (Some(flight), Some(slot)) => {
                 Turning::Flight(flight, self.turners.inertia[slot].axes())
             }
-            _ => Turning::Still(glam::DQuat::IDENTITY),
+            _ => Turning::Still(DQuat::IDENTITY),
         }
     }
 }
