@@ -171,7 +171,7 @@ impl<'a> Points<'a> {
         match (item, tree.cuboid()) {
             (Item::Piece(code, lane), _) => triangle(tree, moving.centre, code, lane),
             (Item::Cuboid, Some(cuboid)) => Points {
-                at: core::array::from_fn(|k| Cuboid::corner(&cuboid.ends, k) - moving.centre),
+                at: corners(cuboid.ends.map(|end| end - moving.centre)),
                 kind: Kind::Cuboid(cuboid),
                 radius: 0.0,
             },
@@ -213,6 +213,17 @@ impl<'a> Points<'a> {
         };
         (triangles, count)
     }
+}
+
+/// The corners of a box between two of them, by the number that its axes give.
+fn corners([low, high]: [DVec3; 2]) -> [DVec3; MOST_POINTS] {
+    let mut corners = [low; MOST_POINTS];
+    for (k, corner) in corners.iter_mut().enumerate() {
+        corner.x = if k & 1 == 0 { low.x } else { high.x };
+        corner.y = if k & 2 == 0 { low.y } else { high.y };
+        corner.z = if k & 4 == 0 { low.z } else { high.z };
+    }
+    corners
 }
 
 fn triangle(tree: &Bvh, centre: DVec3, code: u32, lane: u32) -> Points<'_> {
