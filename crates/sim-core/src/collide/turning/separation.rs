@@ -688,9 +688,9 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
                 }
             }
         }
-        // Where they nearly touch, also those that turn with what they belong to: what lies in a face, or tips
-        // over an edge, is kept apart by no direction at rest.
-        if is_near(self) {
+        // And those that turn with what they belong to: what lies in a face, or tips over an edge, is kept apart
+        // by no direction at rest for long.
+        if !is_done(self) {
             self.along_turning(own, between);
         }
         pair
