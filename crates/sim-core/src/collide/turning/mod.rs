@@ -315,7 +315,8 @@ impl Search<'_, '_> {
         self.effort.pieces += 1;
         let (first, second) = (Points::of(self.bodies[0], a), Points::of(self.bodies[1], b));
         let gap = view.sets_apart(&first, &second, self.only, self.care.halt);
-        if !gap.is_apart && (a == Item::Cuboid || b == Item::Cuboid) {
+        let is_box = a == Item::Cuboid || b == Item::Cuboid;
+        if !gap.is_apart && is_box && self.only.is_none() {
             return Next::Untold;
         }
         let until = view.time + gap.lasts;

@@ -42,7 +42,7 @@ pub(super) struct Gap {
     pub(super) faces: [Option<u32>; 2],
 }
 
-/// Contacts nearer than this times what is one are looked at along directions that turn.
+/// Boxes nearer than this times what is a contact are looked at along the line between their nearest points.
 const NEARLY: f64 = 1024.0;
 
 /// Nearest points that part by less than this beside the speed at which corners near them close are in
@@ -670,8 +670,15 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
                 self.along(own.normals[0].cross(edge), between);
             }
         }
-        let is_near = |sets: &Self| sets.widest.0 <= NEARLY * sets.near;
-        if has_room && is_near(self) {
+        // Those that turn with what they belong to: what lies in a face, or tips over an edge, is kept apart by no
+        // direction at rest for long.
+        if has_room && !is_done(self) {
+            self.along_turning(own, between);
+            if is_done(self) {
+                return pair;
+            }
+        }
+        if has_room && self.widest.0 <= NEARLY * self.near {
             let nearest = nearest((a, first), (b, second), self.widest.1);
             self.along(nearest.points[1] - nearest.points[0], between);
             pair = Some(nearest);
@@ -688,9 +695,7 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
                 }
             }
         }
-        // And those that turn with what they belong to: what lies in a face, or tips over an edge, is kept apart
-        // by no direction at rest for long.
-        if !is_done(self) {
+        if !has_room && !is_done(self) {
             self.along_turning(own, between);
         }
         pair

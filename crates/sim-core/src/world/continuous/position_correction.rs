@@ -347,7 +347,7 @@ impl ContactSolver<'_> {
 }
 
 /// Parts of a displacement that two bodies take, of which one may stay where it is.
-fn shares(first_moves: bool, second_moves: bool) -> (f64, f64) {
+pub(super) fn shares(first_moves: bool, second_moves: bool) -> (f64, f64) {
     match (first_moves, second_moves) {
         (true, true) => (0.5, 0.5),
         (true, false) => (1.0, 0.0),

@@ -27,6 +27,7 @@ use super::{
     bounce::ties,
     event::{Event, EventKind},
     event_loop::EventLoop,
+    position_correction::shares,
     solver::ContactSolver,
 };
 use crate::{
@@ -471,19 +472,32 @@ impl ContactSolver<'_> {
         if missing <= 0.0 {
             return Ok(());
         }
+        // Both, or the one that has room for it.
         let (i, j) = event.bodies;
         let before = [i, j].map(|body| self.paths.start.position[body]);
-        self.move_apart(event.bodies, missing * normal);
-        for body in [i, j] {
-            if self.scene.bodies.is_movable(body) && self.meets_others(body, time)? {
-                self.paths.start.position[i] = before[0];
-                self.paths.start.position[j] = before[1];
+        let (first, second) = shares(
+            self.scene.bodies.is_movable(i),
+            self.scene.bodies.is_movable(j),
+        );
+        for part in [first, 0.0, 1.0] {
+            let ways = [-part, 1.0 - part].map(|part| part * missing * normal);
+            if part > 0.0 && first == 0.0 || part < 1.0 && second == 0.0 {
+                continue;
+            }
+            let mut has_room = true;
+            for ((body, before), way) in [i, j].into_iter().zip(before).zip(ways) {
+                self.paths.start.position[body] = before + way;
+                has_room &= way == DVec3::ZERO || !self.meets_others(body, time)?;
+            }
+            if has_room {
+                for other in touching {
+                    other.gap += missing * other.normal.dot(normal);
+                }
                 return Ok(());
             }
         }
-        for other in touching {
-            other.gap += missing * other.normal.dot(normal);
-        }
+        self.paths.start.position[i] = before[0];
+        self.paths.start.position[j] = before[1];
         Ok(())
     }
 
