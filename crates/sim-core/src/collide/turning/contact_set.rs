@@ -20,6 +20,8 @@ pub struct ContactPoint {
     pub normal: DVec3,
     /// The shape with whose surface the normal turns: 0 or 1.
     pub owner: usize,
+    /// Where edges cross, their directions, of the first shape and of the second: the normal stays across both.
+    pub edges: Option<[DVec3; 2]>,
 }
 
 /// Cosine of the angle up to which the line between two near points is along the normal of their features.
@@ -50,6 +52,7 @@ pub fn features_within(
                     points: [foot, corner],
                     normal,
                     owner: 0,
+                    edges: None,
                 });
             });
         }
@@ -60,6 +63,7 @@ pub fn features_within(
                     points: [corner + between, foot + between],
                     normal: -normal,
                     owner: 1,
+                    edges: None,
                 });
             });
         }
@@ -134,6 +138,7 @@ fn between_meshes(
                 for touch in &mut found[known..] {
                     touch.points = touch.points.map(|point| of_a * point);
                     touch.normal = of_a * touch.normal;
+                    touch.edges = touch.edges.map(|edges| edges.map(|edge| of_a * edge));
                 }
             }
             (Item::Node(_), Item::Piece(..)) => {
@@ -184,6 +189,7 @@ fn of_triangles(
                 points,
                 normal,
                 owner,
+                edges: None,
             });
         }
     }
@@ -222,6 +228,7 @@ fn of_triangles(
                 points,
                 normal,
                 owner: 0,
+                edges: Some([u.normalize(), v.normalize()]),
             });
         }
     }

@@ -11,7 +11,7 @@
 //! certified anew from where they are then. Every two triangles are below one pair in the queue, or below
 //! one that was certified to the end. So no contact is before the least time in the queue: **a time that is
 //! told is never later than the first contact, and that there is none is proven.** Triangles nearer than
-//! [`NEAR`] roundings that do not move apart are a contact.
+//! [`NEAR`] roundings that neither move apart nor are certified to the end are a contact.
 //!
 //! Times come from poses at one time (`View`), in a frame at rest that then has the first shape's axes.
 //! All bounds are relative: no length or time is in here.
@@ -320,14 +320,14 @@ impl Search<'_, '_> {
             return Next::Untold;
         }
         let until = view.time + gap.lasts;
+        if until >= self.end {
+            return Next::Apart;
+        }
         // Without a proof for any time, and where they are near and come nearer.
         let is_contact = until <= view.time || gap.distance <= gap.near && !gap.opens;
-        if is_contact || self.effort.pieces == self.care.most {
-            return Next::Contact(touch(view, &gap));
-        }
-        match until < self.end {
-            true => Next::Later(until),
-            false => Next::Apart,
+        match is_contact || self.effort.pieces == self.care.most {
+            true => Next::Contact(touch(view, &gap)),
+            false => Next::Later(until),
         }
     }
 

@@ -233,36 +233,38 @@ impl<const L: usize> Course<L> {
     /// least speed of those that are there.
     #[inline]
     fn lowest(&self, t: f64, common: f64) -> (f64, f64) {
-        let bend = |k: usize| (self.bend[k] - common).min(0.0);
-        let heights: [f64; L] =
-            core::array::from_fn(|k| self.at[k] + t * (self.speed[k] + 0.5 * t * bend(k)));
-        let lowest = heights.into_iter().fold(f64::INFINITY, f64::min);
-        let mut slope = f64::INFINITY;
-        for k in 0..L {
-            let speed = self.speed[k] + t * bend(k);
-            slope = if heights[k] == lowest {
-                slope.min(speed)
-            } else {
-                slope
-            };
+        let (mut lowest, mut slope) = (f64::INFINITY, f64::INFINITY);
+        for ((at, speed), bend) in self.at.iter().zip(&self.speed).zip(&self.bend) {
+            let bend = (bend - common).min(0.0);
+            let height = at + t * (speed + 0.5 * t * bend);
+            if height <= lowest {
+                let steepest = if height < lowest {
+                    f64::INFINITY
+                } else {
+                    slope
+                };
+                slope = steepest.min(speed + t * bend);
+                lowest = height;
+            }
         }
         (lowest, slope)
     }
 
     #[inline]
     fn highest(&self, t: f64, common: f64) -> (f64, f64) {
-        let bend = |k: usize| (self.bend[k] - common).max(0.0);
-        let heights: [f64; L] =
-            core::array::from_fn(|k| self.at[k] + t * (self.speed[k] + 0.5 * t * bend(k)));
-        let highest = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let mut slope = f64::NEG_INFINITY;
-        for k in 0..L {
-            let speed = self.speed[k] + t * bend(k);
-            slope = if heights[k] == highest {
-                slope.max(speed)
-            } else {
-                slope
-            };
+        let (mut highest, mut slope) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        for ((at, speed), bend) in self.at.iter().zip(&self.speed).zip(&self.bend) {
+            let bend = (bend - common).max(0.0);
+            let height = at + t * (speed + 0.5 * t * bend);
+            if height >= highest {
+                let steepest = if height > highest {
+                    f64::NEG_INFINITY
+                } else {
+                    slope
+                };
+                slope = steepest.max(speed + t * bend);
+                highest = height;
+            }
         }
         (highest, slope)
     }
@@ -399,12 +401,13 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
         let size = self.view.offset.length() + self.first.farthest + self.second.farthest;
         let speed = self.margin.speed * n0 + n1 * size;
         let bend = self.margin.bend * n0 + 2.0 * n1 * self.margin.speed + n2 * size;
-        // What comes from afar stops where there is room for another rounding.
-        let room = self.halt * UNIT * self.margin.size;
+        // What comes from farther than a contact stops where there is room for another rounding.
+        let room = match gap > self.near - 32.0 * UNIT * self.margin.size {
+            true => self.halt * UNIT * self.margin.size,
+            false => 0.0,
+        };
         let floor = Floor {
-            gap: -self.radius
-                - 32.0 * UNIT * self.margin.size
-                - if gap > room { room } else { 0.0 },
+            gap: -self.radius - 32.0 * UNIT * self.margin.size - room,
             speed: -32.0 * UNIT * speed,
             second: -64.0 * UNIT * bend,
             third: -(bend_a.third + bend_b.third),

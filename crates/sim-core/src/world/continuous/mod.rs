@@ -17,7 +17,7 @@
 //! 6. [`position_correction`]: an exact test makes sure that no two bodies meet.
 //!
 //! [`turning_search`], [`turning_response`]: the same for bodies that turn, which are in no island: they bounce with
-//! their lever arms, or drift in contact for the rest of the step.
+//! their lever arms, or stay in contact for the rest of the step.
 //!
 //! [`held_overlaps`]: where bodies that were placed in overlap would get deeper, all of it is done again
 //! with the two held.
@@ -52,6 +52,7 @@ mod tallies;
 mod tests;
 mod trajectory;
 mod turning_response;
+mod turning_rest;
 mod turning_search;
 mod velocity_solve;
 mod view;
@@ -72,7 +73,7 @@ use position_correction::Correction;
 use solver::ContactSolver;
 use tallies::Tallies;
 use trajectory::Trajectories;
-use turning_response::TurningRest;
+use turning_rest::TurningRest;
 
 /// What a step with continuous collision needs beside the state; empty while there is none.
 #[derive(Clone, Debug, Default)]

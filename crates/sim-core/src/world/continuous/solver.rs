@@ -19,7 +19,7 @@ use super::{
     island::{Island, Places, Visited},
     tallies::Tallies,
     trajectory::Trajectories,
-    turning_response::TurningRest,
+    turning_rest::TurningRest,
     view::View,
 };
 

@@ -58,8 +58,8 @@ pub(in crate::world) struct Trajectories {
     pub(super) velocity_stagger: f64,
     /// How bodies that turn do so from where their trajectories start to the step's end, by slot.
     pub(super) flights: Vec<Flight>,
-    /// By slot, whether what forces do for the rest of the step is in its velocity already.
-    pub(super) drifting: Vec<bool>,
+    /// By slot, the torque on a body in contact, N m, contacts included: its forces are constant.
+    pub(super) pressed: Vec<Option<DVec3>>,
     /// Whether every trajectory is a parabola.
     is_free: bool,
     /// Room to ask where bodies are, and for what starts again.
@@ -121,8 +121,8 @@ impl Trajectories {
     /// Turns all bodies that do to the step's end.
     pub(super) fn begin_turning(&mut self, scene: &Scene<'_>) -> Result<(), (usize, Cause)> {
         self.flights.clear();
-        self.drifting.clear();
-        self.drifting.resize(scene.bodies.turners.body.len(), false);
+        self.pressed.clear();
+        self.pressed.resize(scene.bodies.turners.body.len(), None);
         for (slot, &body) in scene.bodies.turners.body.iter().enumerate() {
             let flight = self
                 .flight_from(scene, slot, scene.before.turned[slot], scene.settings.dt)
@@ -142,10 +142,7 @@ impl Trajectories {
         duration: f64,
     ) -> Result<Flight, FlightError> {
         let turners = &scene.bodies.turners;
-        let torque = match self.drifting[slot] {
-            true => DVec3::ZERO,
-            false => turners.torque[slot],
-        };
+        let torque = self.pressed[slot].unwrap_or(turners.torque[slot]);
         Flight::new(
             turners.inertia[slot].moments(),
             turned.rotation,
@@ -277,7 +274,7 @@ impl<'a> Motion<'a> {
     #[inline(never)]
     fn group_among_forced(&self, body: usize) -> Option<(Range<usize>, bool)> {
         let slot = self.scene.bodies.turners.slot(body);
-        if slot.is_some_and(|slot| self.paths.drifting[slot]) {
+        if slot.is_some_and(|slot| self.paths.pressed[slot].is_some()) {
             return None;
         }
         let sections = &self.scene.forces.plan.sections;
@@ -304,7 +301,7 @@ impl<'a> Motion<'a> {
             return Ok((start.position[body], start.velocity[body]));
         }
         if time == self.horizon(body) {
-            let staggered = paths.velocity_stagger * paths.acceleration[body];
+            let staggered = self.stagger_of(body) * paths.acceleration[body];
             let v = self.paths.end.velocity[body] + staggered;
             return Ok((self.paths.end.position[body], v));
         }
@@ -382,7 +379,20 @@ impl<'a> Motion<'a> {
 
     /// The velocity that the method keeps where a body's trajectory has another one.
     fn unstaggered_velocity(&self, body: usize, on_trajectory: DVec3) -> DVec3 {
-        on_trajectory - self.paths.velocity_stagger * self.paths.acceleration[body]
+        on_trajectory - self.stagger_of(body) * self.paths.acceleration[body]
+    }
+
+    /// By how much of its acceleration the velocity on the trajectory of a body is ahead of the method's, s.
+    fn stagger_of(&self, body: usize) -> f64 {
+        let stagger = self.paths.velocity_stagger;
+        if stagger == 0.0 {
+            return 0.0;
+        }
+        let slot = self.scene.bodies.turners.slot(body);
+        match slot.is_some_and(|slot| self.paths.pressed[slot].is_some()) {
+            true => 0.0,
+            false => stagger,
+        }
     }
 
     /// What forces and contacts do to a body where its trajectory starts, m/s².

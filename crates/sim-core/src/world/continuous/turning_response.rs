@@ -1,21 +1,7 @@
-//! What turning bodies do where they touch: they bounce, or go on in contact for the rest of the step.
+//! What turning bodies do where they touch: they bounce, or stay in contact ([`super::turning_rest`]).
 //!
-//! **Impacts.** All features that touch at the instant are answered at once, with their arms
-//! ([`crate::impulse::arms`]): restitution along each normal, no friction.
-//!
-//! **Contact.** Bodies that would be back at once, or that have had very many impacts in the step, *drift*
-//! for what is left of it, `τ`: with the velocities `u = v + τ a + M⁻¹ Jᵀ p`, `0 <= p ⟂ J u + (g - room)/τ >= 0`,
-//! where `a` is what forces do, and `g` the gaps of what is known to touch (Anitescu, Potra 1997, "Formulating
-//! dynamic multi-rigid-body contact problems with friction as solvable linear complementarity problems").
-//! Their ways are searched like all others: what they meet early ends the drift there, with the velocity
-//! `v + s (u - v)` after the part `s` of it, and it begins anew with that contact as well. No crossing is
-//! possible whatever the velocities are.
-//!
-//! A drift gives no energy but what lifts bodies to the room that they are kept at. On a part `s` of it, with
-//! `d = u - v`, forces do the work `s τ a·u = s (d·u - pᵀJu)`, and kinetic energy changes by `s v·d + s² d²/2`. So the
-//! sum of kinetic and potential energy grows by `s pᵀJu - s (1 - s/2) d²`, in the norm of mass, where `pᵀJu` is
-//! `pᵀ(room - g)/τ`: the force of the contacts times the room that they still lack. How the inertia turns within a
-//! step is left out. The error is that of one step: places are off by `τ² a / 2` at most.
+//! All features that touch at the instant are answered at once, with their arms ([`crate::impulse::arms`]):
+//! restitution along each normal, no friction.
 
 use alloc::{vec, vec::Vec};
 use core::{f64::consts::PI, mem};
@@ -39,58 +25,23 @@ use crate::{
 const REACH: f64 = 64.0;
 /// Least gap from which bodies bounce, in the same: where those stop that come from afar.
 const LEAST_ROOM: f64 = 0.75;
-/// Gap at which bodies that drift are kept, in the same.
+/// Gap at which bodies in contact are kept, in the same.
 const ROOM: f64 = 32.0;
-/// Impacts of a turning body in a step after which it drifts, if its impacts lose something.
+/// Impacts of a turning body in a step after which it stays in contact, if its impacts lose something.
 const MANY_IMPACTS: u32 = 32;
 /// The same if they lose nothing.
 const MANY_ELASTIC_IMPACTS: u32 = 4096;
-/// Contacts that may be met in a drift, one after the other, before bodies stop for the rest of the step.
-const MANY_ROUNDS: u32 = 24;
-
-/// Turning bodies in contact in a step.
-#[derive(Clone, Debug, Default)]
-pub(super) struct TurningRest {
-    /// By slot: impacts and rounds of drifting in the step.
-    impacts: Vec<u32>,
-    rounds: Vec<u32>,
-    /// By slot, the motion before the drift, while there is one.
-    before: Vec<Option<Before>>,
-    /// By slot, velocity and angular momentum with which a body goes on after the step that has stopped in it.
-    stopped: Vec<Option<(DVec3, DVec3)>>,
-    /// What is known to touch.
-    contacts: Vec<Anchored>,
-}
-
-/// Motion before a drift, and when that was.
-#[derive(Clone, Copy, Debug)]
-struct Before {
-    since: f64,
-    velocity: DVec3,
-    momentum: DVec3,
-}
-
-/// A contact by points of both bodies.
-#[derive(Clone, Copy, Debug)]
-struct Anchored {
-    bodies: (usize, usize),
-    /// As seen from the centres of mass, in the frames of the shapes, m.
-    points: [DVec3; 2],
-    /// In the frame of the one whose surface it is.
-    normal: DVec3,
-    owner: usize,
-    room: f64,
-}
-
 /// A contact where bodies are now.
 #[derive(Clone, Copy, Debug)]
-struct Touching {
-    bodies: (usize, usize),
-    arms: (DVec3, DVec3),
-    normal: DVec3,
-    owner: usize,
-    gap: f64,
-    room: f64,
+pub(super) struct Touching {
+    pub(super) bodies: (usize, usize),
+    pub(super) arms: (DVec3, DVec3),
+    pub(super) normal: DVec3,
+    pub(super) owner: usize,
+    /// Directions of edges that cross.
+    pub(super) edges: Option<[DVec3; 2]>,
+    pub(super) gap: f64,
+    pub(super) room: f64,
 }
 
 /// What becomes of an impact.
@@ -102,41 +53,7 @@ enum TurningOutcome {
     Rest,
 }
 
-impl TurningRest {
-    /// Begins a step.
-    pub(super) fn begin(&mut self, slots: usize) {
-        self.impacts.clear();
-        self.impacts.resize(slots, 0);
-        self.rounds.clear();
-        self.rounds.resize(slots, 0);
-        self.before.clear();
-        self.before.resize(slots, None);
-        self.stopped.clear();
-        self.stopped.resize(slots, None);
-        self.contacts.clear();
-    }
-}
-
 impl EventLoop<'_> {
-    /// Gives bodies that have stopped in the step the motion with which they go on, unless they are pushed.
-    pub(super) fn go_on_turning(&mut self) {
-        let ContactSolver {
-            scene,
-            paths,
-            turning,
-            ..
-        } = &mut self.solver;
-        for (slot, stopped) in turning.stopped.iter().enumerate() {
-            let body = scene.bodies.turners.body[slot];
-            if let Some((velocity, momentum)) = *stopped
-                && paths.end.velocity[body] == DVec3::ZERO
-            {
-                paths.end.velocity[body] = velocity;
-                paths.end.turned[slot].momentum = momentum;
-            }
-        }
-    }
-
     /// Answers the impacts of turning bodies at a time, at which their trajectories start, and takes them
     /// from a group.
     pub(super) fn resolve_turning(
@@ -164,10 +81,15 @@ impl EventLoop<'_> {
         }
         group.retain(|event| !is_turning(event));
         turning.retain(|event| !self.solver.goes_on(event));
+        // Whom contacts have pushed they push on, whatever hits it.
+        let mut pressed: Vec<usize> = Vec::new();
         for event in &turning {
-            self.solver.end_drift(event.bodies.0, time);
-            self.solver.end_drift(event.bodies.1, time);
-            seeds.extend([event.bodies.0, event.bodies.1]);
+            for body in [event.bodies.0, event.bodies.1] {
+                if self.solver.release(body) {
+                    pressed.push(body);
+                }
+                seeds.push(body);
+            }
         }
         let mut found: Vec<Vec<Touching>> = Vec::new();
         for event in &turning {
@@ -186,17 +108,15 @@ impl EventLoop<'_> {
                 TurningOutcome::Rest => resting.push(touching),
             }
         }
+        let lasting = resting.iter().flatten();
+        pressed.extend(lasting.flat_map(|touching| [touching.bodies.0, touching.bodies.1]));
         self.bounce_turning(&bouncing, None, time)?;
         self.bounce_turning(&stopped, Some(0.0), time)?;
-        let seen: Vec<usize> = turning
-            .iter()
-            .flat_map(|event| [event.bodies.0, event.bodies.1])
-            .collect();
         for touching in resting.iter().flatten() {
             self.solver.anchor(touching, time);
         }
-        if !resting.is_empty() {
-            self.solver.drift_all(&seen, time, (seeds, restarted))?;
+        if !pressed.is_empty() {
+            self.solver.press_all(&pressed, time, (seeds, restarted))?;
         }
         Ok(())
     }
@@ -279,11 +199,11 @@ impl EventLoop<'_> {
 }
 
 /// The bodies of some contacts, once each, with their motion.
-struct ArmIsland {
-    bodies: Vec<usize>,
-    contacts: Vec<Arms>,
-    yielding: Vec<Yielding>,
-    twists: Vec<Twist>,
+pub(super) struct ArmIsland {
+    pub(super) bodies: Vec<usize>,
+    pub(super) contacts: Vec<Arms>,
+    pub(super) yielding: Vec<Yielding>,
+    pub(super) twists: Vec<Twist>,
 }
 
 impl ArmIsland {
@@ -367,40 +287,8 @@ const SAME_PLACE: f64 = 1e-12;
 
 impl ContactSolver<'_> {
     /// Whether an event is no contact yet, and the search goes on from there; not for ever in a step.
-    fn goes_on(&mut self, event: &Event) -> bool {
-        let (i, j) = event.bodies;
-        if event.kind != EventKind::Horizon {
-            return false;
-        }
-        for body in [i, j] {
-            if let Some(slot) = self.scene.bodies.turners.slot(body) {
-                self.turning.rounds[slot] += 1;
-            }
-        }
-        !self.is_stopped(i) && !self.is_stopped(j)
-    }
-
-    /// Ends the drift of a body at a time, at which its trajectory starts: it has of the change of its
-    /// velocity what belongs to the part that is over.
-    fn end_drift(&mut self, body: usize, time: f64) {
-        let Some(slot) = self.scene.bodies.turners.slot(body) else {
-            return;
-        };
-        let Some(before) = self.turning.before[slot].take() else {
-            return;
-        };
-        self.paths.drifting[slot] = false;
-        self.paths.acceleration[body] = self.paths.applied_acceleration[body];
-        let whole = self.scene.settings.dt - before.since;
-        let part = (time - before.since) / whole;
-        let velocity = &mut self.paths.start.velocity[body];
-        *velocity = before.velocity + part * (*velocity - before.velocity);
-        let momentum = &mut self.paths.start.turned[slot].momentum;
-        *momentum = before.momentum + part * (*momentum - before.momentum);
-    }
-
     /// How a body is turned at a time: shape into the world.
-    fn rotation_at(&self, body: usize, time: f64) -> DQuat {
+    pub(super) fn rotation_at(&self, body: usize, time: f64) -> DQuat {
         let bodies = self.scene.bodies;
         match bodies.turners.slot(body) {
             Some(slot) if bodies.tumbles(body) => {
@@ -412,7 +300,7 @@ impl ContactSolver<'_> {
         }
     }
 
-    fn place_at(&mut self, body: usize, time: f64) -> Result<DVec3, (usize, Cause)> {
+    pub(super) fn place_at(&mut self, body: usize, time: f64) -> Result<DVec3, (usize, Cause)> {
         let mut probe = mem::take(&mut self.paths.probe);
         let place = self.view().motion().motion_at(body, time, &mut probe);
         self.paths.probe = probe;
@@ -440,6 +328,7 @@ impl ContactSolver<'_> {
                 points: [place, place + near * event.contact.normal],
                 normal: event.contact.normal,
                 owner: 0,
+                edges: None,
             });
         }
         let between = second - first;
@@ -450,6 +339,7 @@ impl ContactSolver<'_> {
                 arms: (point.points[0], point.points[1] - between),
                 normal: point.normal,
                 owner: point.owner,
+                edges: point.edges,
                 gap: (point.points[1] - point.points[0]).dot(point.normal),
                 room: ROOM * near,
             })
@@ -487,7 +377,7 @@ impl ContactSolver<'_> {
             let mut has_room = true;
             for ((body, before), way) in [i, j].into_iter().zip(before).zip(ways) {
                 self.paths.start.position[body] = before + way;
-                has_room &= way == DVec3::ZERO || !self.meets_others(body, time)?;
+                has_room &= way == DVec3::ZERO || self.met_by(body, time)?.is_none();
             }
             if has_room {
                 for other in touching {
@@ -501,8 +391,12 @@ impl ContactSolver<'_> {
         Ok(())
     }
 
-    /// Whether a body meets another one at a time, by the exact test.
-    fn meets_others(&mut self, body: usize, time: f64) -> Result<bool, (usize, Cause)> {
+    /// Another body that one meets at a time, by the exact test.
+    pub(super) fn met_by(
+        &mut self,
+        body: usize,
+        time: f64,
+    ) -> Result<Option<usize>, (usize, Cause)> {
         let mut partners = mem::take(&mut self.near.partners);
         partners.clear();
         let broad = &self.near.broad;
@@ -511,15 +405,16 @@ impl ContactSolver<'_> {
             body,
             (self.place_at(body, time)?, self.rotation_at(body, time)),
         );
-        let mut meets = false;
+        let mut met = None;
         for &other in &partners {
-            if self.scene.may_collide(body.min(other), body.max(other)) {
+            if met.is_none() && self.scene.may_collide(body.min(other), body.max(other)) {
                 let place = (self.place_at(other, time)?, self.rotation_at(other, time));
-                meets |= self.scene.bodies.meet_placed(own, (other, place));
+                let meets = self.scene.bodies.meet_placed(own, (other, place));
+                met = meets.then_some(other);
             }
         }
         self.near.partners = partners;
-        Ok(meets)
+        Ok(met)
     }
 
     /// What becomes of an impact.
@@ -572,7 +467,11 @@ impl ContactSolver<'_> {
     }
 
     /// Bodies of contacts as they move at a time.
-    fn gather(&mut self, touching: &[Touching], time: f64) -> Result<ArmIsland, (usize, Cause)> {
+    pub(super) fn gather(
+        &mut self,
+        touching: &[Touching],
+        time: f64,
+    ) -> Result<ArmIsland, (usize, Cause)> {
         let all = self.scene.bodies;
         let mut bodies: Vec<usize> = touching
             .iter()
@@ -615,7 +514,7 @@ impl ContactSolver<'_> {
 
     /// Gives the bodies of an island their new motion: velocities as they are, and angular momenta by the
     /// impulses, so that what one gains the other one loses.
-    fn put(&mut self, island: &ArmIsland, given: &[f64]) {
+    pub(super) fn put(&mut self, island: &ArmIsland, given: &[f64]) {
         let all = self.scene.bodies;
         for (place, &body) in island.bodies.iter().enumerate() {
             if all.is_movable(body) {
@@ -641,234 +540,4 @@ impl ContactSolver<'_> {
             }
         }
     }
-
-    /// Notes that two bodies touch, where they are at a time.
-    fn anchor(&mut self, touching: &Touching, time: f64) {
-        let (i, j) = touching.bodies;
-        let inverse = [i, j].map(|body| self.rotation_at(body, time).inverse());
-        let contact = Anchored {
-            bodies: touching.bodies,
-            points: [inverse[0] * touching.arms.0, inverse[1] * touching.arms.1],
-            normal: inverse[touching.owner] * touching.normal,
-            owner: touching.owner,
-            room: touching.room,
-        };
-        // One of the same features is taken for the same.
-        let is_same = |known: &Anchored| {
-            known.bodies == contact.bodies
-                && known.owner == contact.owner
-                && known.normal.dot(contact.normal) > SAME_NORMAL
-                && (0..2)
-                    .any(|k| (known.points[k] - contact.points[k]).length() <= 4.0 * contact.room)
-        };
-        self.turning.contacts.retain(|known| !is_same(known));
-        self.turning.contacts.push(contact);
-    }
-
-    /// What is known to touch among some bodies and what they touch, where they are at a time.
-    fn known_contacts(
-        &mut self,
-        bodies: &[usize],
-        time: f64,
-    ) -> Result<Vec<Touching>, (usize, Cause)> {
-        let mut touching = Vec::new();
-        for place in 0..self.turning.contacts.len() {
-            let contact = self.turning.contacts[place];
-            let (i, j) = contact.bodies;
-            // What has bounced off since goes its own way.
-            let is_off = |body: usize| {
-                let all = self.scene.bodies;
-                all.is_movable(body) && all.tumbles(body) && !bodies.contains(&body)
-            };
-            if !bodies.contains(&i) && !bodies.contains(&j) || is_off(i) || is_off(j) {
-                continue;
-            }
-            let rotations = [i, j].map(|body| self.rotation_at(body, time));
-            let arms = (
-                rotations[0] * contact.points[0],
-                rotations[1] * contact.points[1],
-            );
-            let normal = rotations[contact.owner] * contact.normal;
-            let between = self.place_at(j, time)? - self.place_at(i, time)?;
-            touching.push(Touching {
-                bodies: contact.bodies,
-                arms,
-                normal,
-                owner: contact.owner,
-                gap: (between + arms.1 - arms.0).dot(normal),
-                room: contact.room,
-            });
-        }
-        Ok(touching)
-    }
-
-    /// Whether a body has met so much in a drift that it stays where it is.
-    fn is_stopped(&self, body: usize) -> bool {
-        let slot = self.scene.bodies.turners.slot(body);
-        slot.is_some_and(|slot| self.turning.rounds[slot] > MANY_ROUNDS)
-    }
-
-    /// Adds the contacts that bodies keep which do not turn, and whom turning ones push: they give on what
-    /// they get.
-    fn add_kept_contacts(
-        &mut self,
-        touching: &mut Vec<Touching>,
-        time: f64,
-        restarted: &mut Vec<usize>,
-    ) -> Result<(), (usize, Cause)> {
-        let all = self.scene.bodies;
-        let mut bodies: Vec<usize> = Vec::new();
-        let reach = |bodies: &mut Vec<usize>, (i, j): (usize, usize)| {
-            for body in [i, j] {
-                if all.is_movable(body) && !all.tumbles(body) && !bodies.contains(&body) {
-                    bodies.push(body);
-                }
-            }
-        };
-        for touching in touching.iter() {
-            reach(&mut bodies, touching.bodies);
-        }
-        let mut known: Vec<u32> = Vec::new();
-        let mut next = 0;
-        while let Some(&body) = bodies.get(next) {
-            next += 1;
-            for &index in self.contacts.of_body(body) {
-                if known.contains(&index) {
-                    continue;
-                }
-                known.push(index);
-                let constraint = &self.contacts.all()[index as usize];
-                reach(&mut bodies, constraint.bodies);
-                touching.push(Touching {
-                    bodies: constraint.bodies,
-                    arms: (DVec3::ZERO, DVec3::ZERO),
-                    normal: constraint.normal,
-                    owner: 0,
-                    gap: 0.0,
-                    room: 0.0,
-                });
-            }
-        }
-        for body in bodies {
-            self.restart(body, time, restarted)?;
-        }
-        Ok(())
-    }
-
-    /// Lets bodies that touch, and those that drift and touch them, drift for the rest of the step.
-    fn drift_all(
-        &mut self,
-        seen: &[usize],
-        time: f64,
-        (seeds, restarted): (&mut Vec<usize>, &mut Vec<usize>),
-    ) -> Result<(), (usize, Cause)> {
-        let all = self.scene.bodies;
-        let mut bodies: Vec<usize> = seen
-            .iter()
-            .copied()
-            .filter(|&body| all.is_movable(body))
-            .collect();
-        bodies.sort_unstable();
-        bodies.dedup();
-        let mut next = 0;
-        while let Some(&body) = bodies.get(next) {
-            next += 1;
-            for contact in &self.turning.contacts {
-                let (i, j) = contact.bodies;
-                if body != i && body != j {
-                    continue;
-                }
-                let other = i + j - body;
-                let is_tied = all.is_movable(other)
-                    && all
-                        .turners
-                        .slot(other)
-                        .is_some_and(|slot| self.paths.drifting[slot]);
-                if is_tied && !bodies.contains(&other) {
-                    bodies.push(other);
-                }
-            }
-        }
-        for &body in &bodies {
-            self.restart(body, time, restarted)?;
-            self.end_drift(body, time);
-        }
-        let left = self.scene.settings.dt - time;
-        let mut touching = self.known_contacts(&bodies, time)?;
-        self.add_kept_contacts(&mut touching, time, restarted)?;
-        let tied = touching
-            .iter()
-            .flat_map(|touching| [touching.bodies.0, touching.bodies.1]);
-        seeds.extend(tied.chain(bodies.iter().copied()));
-        let mut island = self.gather(&touching, time)?;
-        let mut before: Vec<(usize, usize, Before)> = Vec::new();
-        for (place, &body) in island.bodies.iter().enumerate() {
-            let Some(slot) = all.turners.slot(body) else {
-                continue;
-            };
-            if !all.tumbles(body) || !all.is_movable(body) || !bodies.contains(&body) {
-                continue;
-            }
-            self.turning.rounds[slot] += 1;
-            let stagger = self.paths.velocity_stagger;
-            let pull = self.view().motion().acceleration_there(body);
-            let twist = &mut island.twists[place];
-            if self.is_stopped(body) {
-                // It stays where it is for what is left, and is only pushed. What it has, forces apart, it
-                // keeps for the next step.
-                let momentum = self.paths.start.turned[slot].momentum;
-                self.turning.stopped[slot].get_or_insert((twist.velocity, momentum));
-                *twist = Twist::default();
-                self.paths.start.turned[slot].momentum = DVec3::ZERO;
-            } else {
-                twist.velocity -= stagger * self.paths.acceleration[body];
-            }
-            let momentum = self.paths.start.turned[slot].momentum;
-            before.push((
-                body,
-                slot,
-                Before {
-                    since: time,
-                    velocity: twist.velocity,
-                    momentum,
-                },
-            ));
-            if !self.is_stopped(body) {
-                twist.velocity += left * pull;
-                let torque = all.turners.torque[slot];
-                self.paths.start.turned[slot].momentum += left * torque;
-                twist.spin = all.twist_in(&self.paths.start, body).spin;
-            }
-        }
-        let wanted: Vec<f64> = island
-            .contacts
-            .iter()
-            .zip(&touching)
-            .map(|(arms, touching)| {
-                let (i, j) = touching.bodies;
-                let widened = match self.is_stopped(i) || self.is_stopped(j) {
-                    true => 0.0,
-                    false => (touching.room - touching.gap) / left,
-                };
-                widened - arms.opening(&island.twists)
-            })
-            .collect();
-        let given = arms::multipliers(&island.contacts, &island.yielding, &wanted);
-        arms::push(
-            &island.contacts,
-            &island.yielding,
-            &mut island.twists,
-            &given,
-        );
-        self.put(&island, &given);
-        for (body, slot, before) in before {
-            self.turning.before[slot] = Some(before);
-            self.paths.drifting[slot] = true;
-            self.paths.acceleration[body] = DVec3::ZERO;
-        }
-        Ok(())
-    }
 }
-
-/// Cosine above which two normals are one.
-const SAME_NORMAL: f64 = 1.0 - 1e-6;

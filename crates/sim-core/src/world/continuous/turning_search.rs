@@ -52,9 +52,9 @@ impl View<'_> {
             && self.paths.acceleration[body] == DVec3::ZERO
             && !self.is_bent(body)
             && slot.is_none_or(|slot| {
+                let torque = self.scene.bodies.turners.torque[slot];
                 self.paths.start.turned[slot].momentum == DVec3::ZERO
-                    && (self.paths.drifting[slot]
-                        || self.scene.bodies.turners.torque[slot] == DVec3::ZERO)
+                    && self.paths.pressed[slot].unwrap_or(torque) == DVec3::ZERO
             })
     }
 

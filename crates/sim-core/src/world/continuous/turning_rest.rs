@@ -1,0 +1,832 @@
+//! Turning bodies that stay in contact for what is left of a step.
+//!
+//! First the contacts that close cease to: of all motions in which none does, bodies take the nearest one in
+//! the norm of kinetic energy, which takes energy only. Then each contact pushes with a constant force `f`,
+//! along a constant direction at constant arms, so that bodies go along parabolas and turn under constant
+//! torques, which is exact ([`crate::rotation`]). Forces are those after which no gap is less than its room,
+//! at the end of the step and at times within, and no gap begins to close: `0 <= f ⟂ g(τ) - room >= 0`, where `g(t)` is the gap of the
+//! features that touch as bodies really move, by Newton's method over problems of complementarity.
+//!
+//! **Energy.** A force does the work `f D`, where `D(s)` is how far its point gets along it. With arms and
+//! normals of the start `D(s) = g(s) - g(0) - c s²/2`, and with those of the end `g(s) - g(0) + c (τ s - s²/2)`,
+//! where `c` is how the gap would be bent if bodies kept their velocities, third orders apart. Each contact
+//! takes the one with which it does no work but for the room that it lacks, whenever the step is cut short:
+//! contact never gives energy to second order. What flat faces do, and what does not turn, has `c = 0` and
+//! is exact; else the loss is `f |c| τ²/2` in a step, and vanishes with its length.
+//!
+//! Trajectories are searched like all others. What they meet early ends the contact forces there, and they
+//! are found anew with that contact as well. No crossing is possible whatever the forces are.
+
+use alloc::{vec, vec::Vec};
+use glam::{DMat3, DQuat, DVec3};
+
+use super::super::{state::Turned, stepping::Cause};
+use super::{
+    event::{Event, EventKind},
+    event_loop::EventLoop,
+    solver::ContactSolver,
+    turning_response::{ArmIsland, Touching},
+};
+use crate::{
+    impulse::arms::{self, Arms, Twist, Yielding},
+    rotation::Flight,
+};
+
+/// Contacts that may be met while bodies are in contact, one after the other, before they stop for the rest of
+/// the step.
+const MANY_ROUNDS: u32 = 24;
+
+/// Cosine above which two normals are one.
+const SAME_NORMAL: f64 = 1.0 - 1e-6;
+
+/// Parts of what is left of the step at which gaps are looked at.
+const PARTS: [f64; 3] = [1.0, 0.5, 0.125];
+
+/// How far beyond start and end of what is left arms are taken, in steps from one to the other.
+const FARTHEST: f64 = 1.0;
+
+/// Rounds in which forces are found at most. What is left of a gap then is met early.
+const ROUNDS: usize = 12;
+
+/// Turning bodies in contact in a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct TurningRest {
+    /// By slot: impacts and rounds of contact in the step.
+    pub(super) impacts: Vec<u32>,
+    rounds: Vec<u32>,
+    /// By slot, velocity and angular momentum with which a body goes on after the step that has stopped in it.
+    stopped: Vec<Option<(DVec3, DVec3)>>,
+    /// What is known to touch.
+    contacts: Vec<Anchored>,
+}
+
+/// A contact by points of both bodies.
+#[derive(Clone, Copy, Debug)]
+struct Anchored {
+    bodies: (usize, usize),
+    /// As seen from the centres of mass, in the frames of the shapes, m.
+    points: [DVec3; 2],
+    /// In the frame of the one whose surface it is.
+    normal: DVec3,
+    owner: usize,
+    /// Directions of edges that cross, in the frames of their shapes.
+    edges: Option<[DVec3; 2]>,
+    room: f64,
+}
+
+impl TurningRest {
+    /// Begins a step.
+    pub(super) fn begin(&mut self, slots: usize) {
+        self.impacts.clear();
+        self.impacts.resize(slots, 0);
+        self.rounds.clear();
+        self.rounds.resize(slots, 0);
+        self.stopped.clear();
+        self.stopped.resize(slots, None);
+        self.contacts.clear();
+    }
+}
+
+impl EventLoop<'_> {
+    /// Gives bodies that have stopped in the step the motion with which they go on, unless they are pushed.
+    pub(super) fn go_on_turning(&mut self) {
+        let ContactSolver {
+            scene,
+            paths,
+            turning,
+            ..
+        } = &mut self.solver;
+        for (slot, stopped) in turning.stopped.iter().enumerate() {
+            let body = scene.bodies.turners.body[slot];
+            if let Some((velocity, momentum)) = *stopped
+                && paths.end.velocity[body] == DVec3::ZERO
+            {
+                paths.end.velocity[body] = velocity;
+                paths.end.turned[slot].momentum = momentum;
+            }
+        }
+    }
+}
+
+impl ContactSolver<'_> {
+    /// Whether an event asks only to be looked for anew.
+    pub(super) fn goes_on(&mut self, event: &Event) -> bool {
+        let (i, j) = event.bodies;
+        if event.kind != EventKind::Horizon {
+            return false;
+        }
+        for body in [i, j] {
+            if let Some(slot) = self.scene.bodies.turners.slot(body) {
+                self.turning.rounds[slot] += 1;
+            }
+        }
+        !self.is_stopped(i) && !self.is_stopped(j)
+    }
+
+    /// Ends the contact forces on a body, whose trajectory starts then, and tells whether there were some.
+    pub(super) fn release(&mut self, body: usize) -> bool {
+        let Some(slot) = self.scene.bodies.turners.slot(body) else {
+            return false;
+        };
+        let is_pressed = self.paths.pressed[slot].take().is_some();
+        if is_pressed {
+            let applied = self.paths.applied_acceleration[body];
+            self.paths.acceleration[body] = applied;
+            self.paths.start.velocity[body] += self.paths.velocity_stagger * applied;
+        }
+        is_pressed
+    }
+
+    /// Notes that two bodies touch, where they are at a time.
+    pub(super) fn anchor(&mut self, touching: &Touching, time: f64) {
+        let (i, j) = touching.bodies;
+        let inverse = [i, j].map(|body| self.rotation_at(body, time).inverse());
+        let contact = Anchored::of(touching, inverse);
+        // One of the same features is taken for the same.
+        let is_same = |known: &Anchored| {
+            known.bodies == contact.bodies
+                && known.owner == contact.owner
+                && known.normal.dot(contact.normal) > SAME_NORMAL
+                && (0..2)
+                    .any(|k| (known.points[k] - contact.points[k]).length() <= 4.0 * contact.room)
+        };
+        self.turning.contacts.retain(|known| !is_same(known));
+        self.turning.contacts.push(contact);
+    }
+
+    /// What is known to touch among some bodies and what they touch, where they are at a time.
+    fn known_contacts(
+        &mut self,
+        bodies: &[usize],
+        time: f64,
+    ) -> Result<Vec<Touching>, (usize, Cause)> {
+        let mut touching = Vec::new();
+        for place in 0..self.turning.contacts.len() {
+            let contact = self.turning.contacts[place];
+            let (i, j) = contact.bodies;
+            // What has bounced off since goes its own way.
+            let is_off = |body: usize| {
+                let all = self.scene.bodies;
+                all.is_movable(body) && all.tumbles(body) && !bodies.contains(&body)
+            };
+            if !bodies.contains(&i) && !bodies.contains(&j) || is_off(i) || is_off(j) {
+                continue;
+            }
+            let rotations = [i, j].map(|body| self.rotation_at(body, time));
+            let between = self.place_at(j, time)? - self.place_at(i, time)?;
+            let edges = contact
+                .edges
+                .map(|[e, f]| [rotations[0] * e, rotations[1] * f]);
+            let at = |rotation, position| At { position, rotation };
+            let later = contact.later([at(rotations[0], DVec3::ZERO), at(rotations[1], between)]);
+            touching.push(Touching {
+                bodies: contact.bodies,
+                arms: later.arms,
+                normal: later.normal,
+                owner: contact.owner,
+                edges,
+                gap: later.gap,
+                room: contact.room,
+            });
+        }
+        Ok(touching)
+    }
+
+    /// Whether a body has met so much in a step that it stays where it is.
+    fn is_stopped(&self, body: usize) -> bool {
+        let slot = self.scene.bodies.turners.slot(body);
+        slot.is_some_and(|slot| self.turning.rounds[slot] > MANY_ROUNDS)
+    }
+
+    /// Adds the contacts that bodies keep which do not turn, and whom turning ones push: they give on what
+    /// they get.
+    fn add_kept_contacts(
+        &mut self,
+        touching: &mut Vec<Touching>,
+        time: f64,
+        restarted: &mut Vec<usize>,
+    ) -> Result<(), (usize, Cause)> {
+        let all = self.scene.bodies;
+        let mut bodies: Vec<usize> = Vec::new();
+        let reach = |bodies: &mut Vec<usize>, (i, j): (usize, usize)| {
+            for body in [i, j] {
+                if all.is_movable(body) && !all.tumbles(body) && !bodies.contains(&body) {
+                    bodies.push(body);
+                }
+            }
+        };
+        for touching in touching.iter() {
+            reach(&mut bodies, touching.bodies);
+        }
+        let mut known: Vec<u32> = Vec::new();
+        let mut next = 0;
+        while let Some(&body) = bodies.get(next) {
+            next += 1;
+            for &index in self.contacts.of_body(body) {
+                if known.contains(&index) {
+                    continue;
+                }
+                known.push(index);
+                let constraint = &self.contacts.all()[index as usize];
+                reach(&mut bodies, constraint.bodies);
+                touching.push(Touching {
+                    bodies: constraint.bodies,
+                    arms: (DVec3::ZERO, DVec3::ZERO),
+                    normal: constraint.normal,
+                    owner: 0,
+                    edges: None,
+                    gap: 0.0,
+                    room: 0.0,
+                });
+            }
+        }
+        for body in bodies {
+            self.restart(body, time, restarted)?;
+        }
+        Ok(())
+    }
+
+    /// Bodies that some lie on or that lie on them, all in contact.
+    fn tied_in_contact(&self, seen: &[usize]) -> Vec<usize> {
+        let all = self.scene.bodies;
+        let mut bodies: Vec<usize> = seen
+            .iter()
+            .copied()
+            .filter(|&body| all.is_movable(body))
+            .collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        let mut next = 0;
+        while let Some(&body) = bodies.get(next) {
+            next += 1;
+            for contact in &self.turning.contacts {
+                let (i, j) = contact.bodies;
+                if body != i && body != j {
+                    continue;
+                }
+                let other = i + j - body;
+                let slot = all.turners.slot(other);
+                let is_tied = all.is_movable(other)
+                    && slot.is_some_and(|slot| self.paths.pressed[slot].is_some());
+                if is_tied && !bodies.contains(&other) {
+                    bodies.push(other);
+                }
+            }
+        }
+        bodies
+    }
+
+    /// Lets bodies that touch, and those in contact that touch them, stay in contact for the rest of the step.
+    pub(super) fn press_all(
+        &mut self,
+        seen: &[usize],
+        time: f64,
+        (seeds, restarted): (&mut Vec<usize>, &mut Vec<usize>),
+    ) -> Result<(), (usize, Cause)> {
+        let bodies = self.tied_in_contact(seen);
+        for &body in &bodies {
+            self.restart(body, time, restarted)?;
+            self.release(body);
+        }
+        let mut touching = self.known_contacts(&bodies, time)?;
+        self.add_kept_contacts(&mut touching, time, restarted)?;
+        let tied = touching
+            .iter()
+            .flat_map(|touching| [touching.bodies.0, touching.bodies.1]);
+        seeds.extend(tied.chain(bodies.iter().copied()));
+        self.lift(&bodies, &mut touching, time, restarted)?;
+        let pulls = self.begin_contact(&bodies);
+        let mut island = self.gather(&touching, time)?;
+        // Nothing closes any more.
+        let wanted: Vec<f64> = island
+            .contacts
+            .iter()
+            .map(|contact| -contact.opening(&island.twists))
+            .collect();
+        let given = arms::multipliers(&island.contacts, &island.yielding, &wanted);
+        arms::push(
+            &island.contacts,
+            &island.yielding,
+            &mut island.twists,
+            &given,
+        );
+        self.put(&island, &given);
+        let pressing = self.pressing(&island, &touching, &pulls, time)?;
+        let forces = pressing.find()?;
+        self.press(&pressing, &forces);
+        Ok(())
+    }
+
+    /// Moves bodies apart that lack the room of their contacts: by roundings, each as little as it can, where
+    /// others leave room for it.
+    fn lift(
+        &mut self,
+        bodies: &[usize],
+        touching: &mut [Touching],
+        time: f64,
+        restarted: &mut Vec<usize>,
+    ) -> Result<(), (usize, Cause)> {
+        let wanted: Vec<f64> = touching
+            .iter()
+            .map(|touching| (touching.room - touching.gap).max(0.0))
+            .collect();
+        if wanted.iter().all(|&wanted| wanted == 0.0) {
+            return Ok(());
+        }
+        let mut island = self.gather(touching, time)?;
+        for (yielding, body) in island.yielding.iter_mut().zip(&island.bodies) {
+            let moves = self.scene.bodies.tumbles(*body) && bodies.contains(body);
+            yielding.mass = if moves { yielding.mass } else { 0.0 };
+            yielding.inertia = DMat3::ZERO;
+        }
+        let given = arms::multipliers(&island.contacts, &island.yielding, &wanted);
+        let mut way = vec![Twist::default(); island.bodies.len()];
+        arms::push(&island.contacts, &island.yielding, &mut way, &given);
+        let ways = island.bodies.iter().copied().zip(way.iter());
+        let mut moved: Vec<(usize, DVec3, DVec3)> = ways
+            .map(|(body, way)| (body, way.velocity, self.paths.start.position[body]))
+            .filter(|&(_, way, _)| way != DVec3::ZERO)
+            .collect();
+        for &(body, way, _) in &moved {
+            self.paths.start.position[body] += way;
+        }
+        // What is in the way goes with it.
+        let mut next = 0;
+        while let Some(&(body, way, _)) = moved.get(next) {
+            let Some(other) = self.met_by(body, time)? else {
+                next += 1;
+                continue;
+            };
+            let all = self.scene.bodies;
+            let is_free = all.is_movable(other) && all.tumbles(other);
+            if !is_free || moved.iter().any(|&(body, ..)| body == other) {
+                for (body, _, before) in moved {
+                    self.paths.start.position[body] = before;
+                }
+                return Ok(());
+            }
+            self.restart(other, time, restarted)?;
+            moved.push((other, way, self.paths.start.position[other]));
+            self.paths.start.position[other] += way;
+        }
+        for (contact, touching) in island.contacts.iter().zip(touching) {
+            touching.gap += contact.opening(&way);
+        }
+        Ok(())
+    }
+
+    /// Takes bodies from their forces, which are constant from here on, and tells those: by body what
+    /// accelerates it. What has met too much stops.
+    fn begin_contact(&mut self, bodies: &[usize]) -> Vec<(usize, DVec3)> {
+        let all = self.scene.bodies;
+        let mut pulls = Vec::new();
+        for &body in bodies {
+            let Some(slot) = all.turners.slot(body) else {
+                continue;
+            };
+            if !all.tumbles(body) || !all.is_movable(body) {
+                continue;
+            }
+            self.turning.rounds[slot] += 1;
+            let mut pull = self.view().motion().acceleration_there(body);
+            let staggered = self.paths.velocity_stagger * self.paths.acceleration[body];
+            self.paths.start.velocity[body] -= staggered;
+            if self.is_stopped(body) {
+                // It stays where it is for what is left, and is only pushed. What it has, forces apart, it
+                // keeps for the next step.
+                let start = &mut self.paths.start;
+                let kept = (start.velocity[body], start.turned[slot].momentum);
+                self.turning.stopped[slot].get_or_insert(kept);
+                (start.velocity[body], start.turned[slot].momentum) = (DVec3::ZERO, DVec3::ZERO);
+                pull = DVec3::ZERO;
+            }
+            pulls.push((body, pull));
+        }
+        pulls
+    }
+
+    /// All that it takes to find the forces of contacts.
+    fn pressing<'a>(
+        &mut self,
+        island: &'a ArmIsland,
+        touching: &'a [Touching],
+        pulls: &[(usize, DVec3)],
+        time: f64,
+    ) -> Result<Pressing<'a>, (usize, Cause)> {
+        let all = self.scene.bodies;
+        let left = self.scene.settings.dt - time;
+        let mut movers = Vec::with_capacity(island.bodies.len());
+        for (place, &body) in island.bodies.iter().enumerate() {
+            let pull = pulls.iter().find(|(pulled, _)| *pulled == body);
+            let turns = pull.and_then(|&(_, pull)| {
+                let slot = all.turners.slot(body)?;
+                let inertia = &all.turners.inertia[slot];
+                let is_stopped = self.is_stopped(body);
+                Some(Turns {
+                    slot,
+                    pull,
+                    torque: if is_stopped {
+                        DVec3::ZERO
+                    } else {
+                        all.turners.torque[slot]
+                    },
+                    moments: inertia.moments(),
+                    axes: inertia.axes(),
+                    turned: self.paths.start.turned[slot],
+                })
+            });
+            movers.push(Mover {
+                body,
+                turns,
+                position: self.place_at(body, time)?,
+                velocity: island.twists[place].velocity,
+                mass: island.yielding[place].mass,
+                rotations: [0.0, PARTS[0], PARTS[1], PARTS[2]]
+                    .map(|part| self.rotation_at(body, time + part * left)),
+            });
+        }
+        // Of a constant force half of the speed at its end is the mean; what does not turn gets its impulse
+        // at once.
+        let yielding = island.yielding.iter().zip(&movers);
+        let yielding = yielding
+            .map(|(yielding, mover)| match mover.turns {
+                Some(_) => Yielding {
+                    mass: 0.5 * yielding.mass,
+                    inertia: 0.5 * yielding.inertia,
+                },
+                None => *yielding,
+            })
+            .collect();
+        let place = |contact: &Arms| [contact.bodies.0, contact.bodies.1];
+        let contacts = island.contacts.iter().zip(touching);
+        let anchored = contacts
+            .map(|(contact, touching)| {
+                let inverse = place(contact).map(|k| movers[k].rotations[0].inverse());
+                Anchored::of(touching, inverse)
+            })
+            .collect();
+        // Nothing is lifted on what has stopped.
+        let room = island.contacts.iter().zip(touching);
+        let room = room
+            .map(|(contact, touching)| {
+                let mut bodies = place(contact).into_iter().map(|k| movers[k].body);
+                match bodies.any(|body| self.is_stopped(body)) {
+                    true => touching.gap.min(touching.room),
+                    false => touching.room,
+                }
+            })
+            .collect();
+        Ok(Pressing {
+            left,
+            movers,
+            yielding,
+            touching,
+            anchored,
+            room,
+            contacts: &island.contacts,
+        })
+    }
+
+    /// Lets forces push for what is left of the step.
+    fn press(&mut self, pressing: &Pressing<'_>, forces: &Forces) {
+        let pushes = pressing.pushes(forces);
+        for (mover, &(impulse, torque)) in pressing.movers.iter().zip(&pushes) {
+            match &mover.turns {
+                Some(turns) => {
+                    let by_contact = mover.mass / pressing.left * impulse;
+                    self.paths.acceleration[mover.body] = turns.pull + by_contact;
+                    self.paths.pressed[turns.slot] = Some(turns.torque + torque);
+                }
+                None if mover.mass > 0.0 => {
+                    self.paths.start.velocity[mover.body] += mover.mass * impulse;
+                }
+                None => (),
+            }
+        }
+    }
+}
+
+/// How a body of an island moves on.
+struct Mover {
+    body: usize,
+    turns: Option<Turns>,
+    position: DVec3,
+    velocity: DVec3,
+    /// Inverse mass, 1/kg; zero where nothing moves it.
+    mass: f64,
+    /// How it is turned at the start and after [`PARTS`] of what is left, if contacts do not turn it.
+    rotations: [DQuat; 1 + PARTS.len()],
+}
+
+/// What a body has that turns and is moved by contacts.
+struct Turns {
+    slot: usize,
+    /// What forces other than contacts do, m/s² and N m.
+    pull: DVec3,
+    torque: DVec3,
+    moments: DVec3,
+    axes: DQuat,
+    turned: Turned,
+}
+
+/// Contacts of an island and how its bodies move, without the forces that are sought.
+struct Pressing<'a> {
+    left: f64,
+    movers: Vec<Mover>,
+    /// What impulses do to mean velocities.
+    yielding: Vec<Yielding>,
+    touching: &'a [Touching],
+    anchored: Vec<Anchored>,
+    /// The gap that each is kept at, m.
+    room: Vec<f64>,
+    contacts: &'a [Arms],
+}
+
+/// Forces of contacts, with the arms and normals along which they push.
+struct Forces {
+    /// Over what is left, N s.
+    impulse: Vec<f64>,
+    contacts: Vec<Arms>,
+}
+
+/// A contact somewhere on its way.
+struct Later {
+    gap: f64,
+    normal: DVec3,
+    /// From the centres of mass, m.
+    arms: (DVec3, DVec3),
+}
+
+/// A pose.
+#[derive(Clone, Copy)]
+struct At {
+    position: DVec3,
+    rotation: DQuat,
+}
+
+impl Anchored {
+    /// A contact in the frames of its shapes, by what turns the world into those.
+    fn of(touching: &Touching, inverse: [DQuat; 2]) -> Anchored {
+        Anchored {
+            bodies: touching.bodies,
+            points: [inverse[0] * touching.arms.0, inverse[1] * touching.arms.1],
+            normal: inverse[touching.owner] * touching.normal,
+            owner: touching.owner,
+            edges: touching
+                .edges
+                .map(|[e, f]| [inverse[0] * e, inverse[1] * f]),
+            room: touching.room,
+        }
+    }
+
+    /// Where it is in some poses.
+    fn later(&self, at: [At; 2]) -> Later {
+        let [first, second] = at;
+        let arms = (
+            first.rotation * self.points[0],
+            second.rotation * self.points[1],
+        );
+        let owned = at[self.owner].rotation * self.normal;
+        let normal = match self.edges {
+            None => owned,
+            Some([e, f]) => {
+                let across = (first.rotation * e).cross(second.rotation * f);
+                let sign = 1.0_f64.copysign(across.dot(owned));
+                across.try_normalize().map_or(owned, |n| sign * n)
+            }
+        };
+        let between = second.position - first.position;
+        Later {
+            gap: (between + arms.1 - arms.0).dot(normal),
+            normal,
+            arms,
+        }
+    }
+}
+
+/// How a body moves at the start.
+#[derive(Clone, Copy, Default)]
+struct Rates {
+    velocity: DVec3,
+    acceleration: DVec3,
+    spin: DVec3,
+    turning: DVec3,
+}
+
+impl Rates {
+    /// Velocity and acceleration of a point at an arm.
+    fn at(&self, arm: DVec3) -> (DVec3, DVec3) {
+        let swept = self.spin.cross(arm);
+        let bent = self.turning.cross(arm) + self.spin.cross(swept);
+        (self.velocity + swept, self.acceleration + bent)
+    }
+}
+
+/// Motion of the bodies of an island under some forces.
+struct Course {
+    /// By body at the start.
+    rates: Vec<Rates>,
+    /// By body at the start and after [`PARTS`].
+    at: Vec<[At; 1 + PARTS.len()]>,
+    /// By body the angle that it turns by, as a vector: the integral of its spin.
+    turn: Vec<DVec3>,
+}
+
+impl Pressing<'_> {
+    /// What forces give to each body: impulse and torque.
+    fn pushes(&self, forces: &Forces) -> Vec<(DVec3, DVec3)> {
+        let mut pushes = vec![(DVec3::ZERO, DVec3::ZERO); self.movers.len()];
+        for (contact, &impulse) in forces.contacts.iter().zip(&forces.impulse) {
+            let push = impulse * contact.normal;
+            let (i, j) = contact.bodies;
+            pushes[i].0 -= push;
+            pushes[j].0 += push;
+            pushes[i].1 -= contact.arms.0.cross(push) / self.left;
+            pushes[j].1 += contact.arms.1.cross(push) / self.left;
+        }
+        pushes
+    }
+
+    fn course(&self, forces: &Forces) -> Result<Course, (usize, Cause)> {
+        let pushes = self.pushes(forces);
+        let mut course = Course {
+            rates: Vec::with_capacity(self.movers.len()),
+            at: Vec::with_capacity(self.movers.len()),
+            turn: Vec::with_capacity(self.movers.len()),
+        };
+        for (mover, (impulse, torque)) in self.movers.iter().zip(pushes) {
+            let mut at = mover.rotations.map(|rotation| At {
+                position: mover.position,
+                rotation,
+            });
+            let times = [0.0, PARTS[0], PARTS[1], PARTS[2]].map(|part| part * self.left);
+            let mut turn = DVec3::ZERO;
+            let mut rates = Rates::default();
+            match &mover.turns {
+                None => {
+                    let velocity = mover.velocity + mover.mass * impulse;
+                    rates.velocity = velocity;
+                    for (at, t) in at.iter_mut().zip(times) {
+                        at.position += t * velocity;
+                    }
+                }
+                Some(turns) => {
+                    let acceleration = turns.pull + mover.mass / self.left * impulse;
+                    let Turned { rotation, momentum } = turns.turned;
+                    let torque = turns.torque + torque;
+                    let flight = Flight::new(turns.moments, rotation, momentum, torque, self.left)
+                        .map_err(|error| (mover.body, Cause::Turning(error)))?;
+                    let mut spins = [DVec3::ZERO; 1 + PARTS.len()];
+                    for ((at, t), spin) in at.iter_mut().zip(times).zip(&mut spins) {
+                        at.position += t * (mover.velocity + 0.5 * t * acceleration);
+                        let pose = flight.at(t);
+                        at.rotation = (pose.rotation * turns.axes.inverse()).normalize();
+                        *spin = pose.spin;
+                    }
+                    let pose = flight.at(0.0);
+                    rates = Rates {
+                        velocity: mover.velocity,
+                        acceleration,
+                        spin: pose.spin,
+                        turning: pose.acceleration,
+                    };
+                    // Simpson's rule: the start, the middle and the end.
+                    turn = self.left / 6.0 * (spins[0] + 4.0 * spins[2] + spins[1]);
+                }
+            }
+            course.rates.push(rates);
+            course.at.push(at);
+            course.turn.push(turn);
+        }
+        Ok(course)
+    }
+
+    /// A contact after a part of what is left.
+    fn later(&self, k: usize, course: &Course, part: usize) -> Later {
+        let (i, j) = self.contacts[k].bodies;
+        self.anchored[k].later([course.at[i][part], course.at[j][part]])
+    }
+
+    /// Twice what a gap grows by at first over the square of the time, up to the first part of what is left
+    /// at which gaps are looked at: its second derivative, and what it opens by.
+    fn growth(&self, k: usize, course: &Course) -> f64 {
+        let contact = &self.contacts[k];
+        let n = contact.normal;
+        let of = [
+            &course.rates[contact.bodies.0],
+            &course.rates[contact.bodies.1],
+        ];
+        let (first, second) = (of[0].at(contact.arms.0), of[1].at(contact.arms.1));
+        let turned = match self.touching[k].edges {
+            None => of[self.touching[k].owner].spin.cross(n),
+            Some([e, f]) => {
+                let across = e.cross(f);
+                let rate = of[0].spin.cross(e).cross(f) + e.cross(of[1].spin.cross(f));
+                let along = (across.dot(n)).recip() * rate;
+                along - along.dot(n) * n
+            }
+        };
+        let opening = second.0 - first.0;
+        let bend = n.dot(second.1 - first.1) + 2.0 * turned.dot(opening);
+        bend + 2.0 * n.dot(opening) / (PARTS[PARTS.len() - 1] * self.left)
+    }
+
+    /// How far the point of a contact gets along a constant direction at constant arms.
+    fn gets(&self, contact: &Arms, course: &Course) -> f64 {
+        let of = |body: usize, arm: DVec3| {
+            let at = &course.at[body];
+            at[1].position - at[0].position + course.turn[body].cross(arm)
+        };
+        let (i, j) = contact.bodies;
+        contact
+            .normal
+            .dot(of(j, contact.arms.1) - of(i, contact.arms.0))
+    }
+
+    /// Chooses between arms and normals of the start and of the end those with which contacts do less work,
+    /// unless they do none, and tells whether any has changed.
+    fn choose(&self, forces: &mut Forces, course: &Course) -> bool {
+        let mut is_changed = false;
+        for k in 0..self.contacts.len() {
+            let lacking = (self.room[k] - self.touching[k].gap).max(0.0);
+            let least = 0.25 * self.touching[k].room;
+            let is_active = forces.impulse[k] > 0.0;
+            if !is_active || self.gets(&forces.contacts[k], course) <= lacking + least {
+                continue;
+            }
+            let Later { normal, arms, .. } = self.later(k, course, 1);
+            let start = self.contacts[k];
+            let end = Arms {
+                normal,
+                arms,
+                ..start
+            };
+            let (by_start, by_end) = (self.gets(&start, course), self.gets(&end, course));
+            let mut chosen = if by_end < by_start { end } else { start };
+            // Farther on, where both do some.
+            let part = by_start / (by_start - by_end);
+            if by_start.min(by_end) > 0.0 && part.abs() <= FARTHEST {
+                let between = |a: DVec3, b: DVec3| a + part * (b - a);
+                chosen = Arms {
+                    normal: between(start.normal, end.normal),
+                    arms: (
+                        between(start.arms.0, end.arms.0),
+                        between(start.arms.1, end.arms.1),
+                    ),
+                    ..start
+                };
+            }
+            is_changed |= chosen != forces.contacts[k];
+            forces.contacts[k] = chosen;
+        }
+        is_changed
+    }
+
+    /// The forces after which no gap is less than it must be.
+    fn find(&self) -> Result<Forces, (usize, Cause)> {
+        let count = self.touching.len();
+        let mut forces = Forces {
+            impulse: vec![0.0; count],
+            contacts: self.contacts.to_vec(),
+        };
+        for round in 0..ROUNDS {
+            let course = self.course(&forces)?;
+            if round == 1 {
+                self.choose(&mut forces, &course);
+                continue;
+            }
+            let mut pushed = vec![Twist::default(); self.movers.len()];
+            arms::push(
+                &forces.contacts,
+                &self.yielding,
+                &mut pushed,
+                &forces.impulse,
+            );
+            let mut is_found = true;
+            let mut wanted = Vec::with_capacity(count);
+            for k in 0..count {
+                let (from, room) = (self.touching[k].gap.min(self.room[k]), self.room[k]);
+                let missing = PARTS
+                    .iter()
+                    .enumerate()
+                    .map(|(place, part)| {
+                        let share = part * part;
+                        let least = from + share * (room - from);
+                        (least - self.later(k, &course, 1 + place).gap) / share
+                    })
+                    .fold(
+                        -0.5 * self.left * self.left * self.growth(k, &course),
+                        f64::max,
+                    );
+                let slack = 0.25 * self.touching[k].room;
+                is_found &= missing <= slack && (forces.impulse[k] == 0.0 || missing >= -slack);
+                wanted.push(forces.contacts[k].opening(&pushed) + missing / self.left);
+            }
+            if is_found && !self.choose(&mut forces, &course) {
+                break;
+            }
+            forces.impulse = arms::multipliers(&forces.contacts, &self.yielding, &wanted);
+        }
+        Ok(forces)
+    }
+}
