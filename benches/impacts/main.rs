@@ -15,6 +15,7 @@ mod rapier;
 mod scene;
 #[path = "../collision/table.rs"]
 mod table;
+mod turning;
 mod watch;
 
 extern crate alloc;
@@ -31,6 +32,7 @@ fn main() {
         crowd::bench(&mut criterion),
         one::bench(&mut criterion),
         galperin::bench(&mut criterion),
+        turning::bench(&mut criterion),
     ];
     criterion.final_summary();
     let (heaps, wrong) = heap::bench();

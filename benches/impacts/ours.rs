@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use sim_core::{
-    Body, BodyKind, Collision, DVec3, Force, Mesh, Method, Settings, Shape, Vec3, World,
+    Body, BodyKind, Collision, DVec3, Force, Mesh, Method, Settings, Shape, Turn, Vec3, World,
 };
 
 use crate::scene::{Form, Scene};
@@ -46,6 +46,10 @@ pub(crate) fn world(scene: &Scene, collision: Collision, method: &str) -> World 
             },
             restitution: scene.restitution,
             friction: scene.friction,
+            turn: (scene.turns && !item.is_fixed()).then(|| Turn {
+                spin: item.spin,
+                ..Turn::default()
+            }),
             ..Body::default()
         };
         world.add(body).expect("a body");

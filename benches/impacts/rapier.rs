@@ -62,10 +62,13 @@ impl Rapier {
                     ColliderBuilder::trimesh_with_flags(vertices, faces, flags).expect("a mesh")
                 }
             });
+            let body = match scene.turns {
+                true => body.angvel(vector(item.spin)),
+                false => body.lock_rotations(),
+            };
             let body = body
                 .translation(vector(place))
                 .linvel(vector(item.velocity))
-                .lock_rotations()
                 .can_sleep(scene.may_sleep)
                 .ccd_enabled(item.is_bullet && !item.is_fixed());
             match collider {
@@ -91,7 +94,16 @@ impl Rapier {
         DVec3::new(v.x, v.y, v.z)
     }
 
-    /// Of all bodies, which have 1 kg each.
+    pub(crate) fn is_movable(&self, body: usize) -> bool {
+        self.world.bodies[self.handles[body]].is_dynamic()
+    }
+
+    /// Of one that may turn.
+    pub(crate) fn energy_of(&self, body: usize) -> f64 {
+        self.world.bodies[self.handles[body]].kinetic_energy()
+    }
+
+    /// Of all bodies, which have 1 kg each and do not turn.
     pub(crate) fn kinetic_energy(&self) -> f64 {
         let squares = (0..self.handles.len()).map(|i| self.velocity(i).length_squared());
         0.5 * squares.sum::<f64>()

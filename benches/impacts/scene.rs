@@ -22,6 +22,8 @@ pub(crate) struct Item {
     pub(crate) form: Option<Form>,
     pub(crate) position: DVec3,
     pub(crate) velocity: DVec3,
+    /// Of a scene whose bodies turn, rad/s.
+    pub(crate) spin: DVec3,
     /// Whether it may sweep others that move as well.
     pub(crate) is_bullet: bool,
 }
@@ -44,7 +46,7 @@ impl Item {
     }
 }
 
-/// Bodies of 1 kg that do not turn, elastic and without friction unless said, and immovable walls.
+/// Bodies of 1 kg, elastic and without friction unless said, that do not turn unless said, and immovable walls.
 #[derive(Clone)]
 pub(crate) struct Scene {
     pub(crate) items: Vec<Item>,
@@ -52,6 +54,7 @@ pub(crate) struct Scene {
     pub(crate) gravity: DVec3,
     pub(crate) restitution: f64,
     pub(crate) friction: f64,
+    pub(crate) turns: bool,
     /// Whether engines may pass over what is at rest.
     pub(crate) may_sleep: bool,
 }
@@ -64,6 +67,7 @@ impl Scene {
             gravity: DVec3::ZERO,
             restitution: 1.0,
             friction: 0.0,
+            turns: false,
             may_sleep: false,
         }
     }
@@ -74,6 +78,7 @@ pub(crate) fn item(form: Form, position: DVec3, velocity: DVec3) -> Item {
         form: Some(form),
         position,
         velocity,
+        spin: DVec3::ZERO,
         is_bullet: true,
     }
 }

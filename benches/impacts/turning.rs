@@ -1,0 +1,210 @@
+//! Bodies that turn: time of a step, and what becomes of the energy.
+
+use std::sync::Arc;
+
+use criterion::Criterion;
+use sim_core::{DVec3, Mesh, Vec3};
+
+use crate::rapier::Rapier;
+use crate::scene::{Form, HALF, Item, Scene, builtin, crowd, item};
+use crate::table::{Table, three_digits, time};
+use crate::watch::{self, Engine};
+use crate::{ours, row, short};
+
+struct Case {
+    name: &'static str,
+    scene: Scene,
+    /// Steps that are timed, and those after which the energy is compared.
+    timed: u32,
+    steps: u32,
+    /// Most that ours may be off by, relative; infinite where impacts take energy.
+    most: f64,
+}
+
+/// One comes along a way at 10 m/s and turns at 5 rad/s, the other one is at rest.
+fn hit(forms: [Form; 2], from: f64) -> Scene {
+    let way = DVec3::new(1.0, 0.05, 0.1).normalize();
+    let [first, second] = forms;
+    let still = Item {
+        is_bullet: false,
+        ..item(first, DVec3::ZERO, DVec3::ZERO)
+    };
+    let spin = DVec3::new(3.0, 4.0, 0.0);
+    let coming = Item {
+        spin,
+        ..item(second, -from * way, 10.0 * way)
+    };
+    turning(Scene::new(vec![still, coming]))
+}
+
+fn turning(scene: Scene) -> Scene {
+    Scene {
+        turns: true,
+        ..scene
+    }
+}
+
+/// A box of twice these halves.
+fn cuboid(half: [f32; 3]) -> Arc<Mesh> {
+    let cube = builtin("cube.obj");
+    let vertices = cube.vertices().iter();
+    let vertices: Vec<Vec3> = vertices.map(|&v| v * 2.0 * Vec3::from(half)).collect();
+    Arc::new(Mesh::new(vertices, cube.triangles().to_vec()).expect("a box"))
+}
+
+/// Eight cubes above each other in pairs of pairs, that fall into a bin.
+fn bin() -> Scene {
+    let walls = [DVec3::X, -DVec3::X, DVec3::Z, -DVec3::Z, DVec3::Y];
+    let mut items: Vec<Item> = walls
+        .into_iter()
+        .map(|normal| {
+            let away = if normal.y > 0.0 { 0.0 } else { 0.8 };
+            item(Form::Wall(normal), -away * normal, DVec3::ZERO)
+        })
+        .collect();
+    for k in 0..8_u32 {
+        let side = |bit: u32| if k >> bit & 1 == 0 { -0.4 } else { 0.4 };
+        let place = DVec3::new(side(0), 0.6 + 0.9 * f64::from(k >> 2), side(1));
+        let spin = DVec3::new(0.5 * side(2), 0.7 * side(1), 0.9 * side(0));
+        items.push(Item {
+            spin,
+            is_bullet: false,
+            ..item(Form::Cube(0.25), place, DVec3::ZERO)
+        });
+    }
+    Scene {
+        gravity: -9.81 * DVec3::Y,
+        restitution: 0.2,
+        ..turning(Scene::new(items))
+    }
+}
+
+fn cases() -> [Case; 5] {
+    let cow = || Form::Mesh(builtin("cow.obj"));
+    let brick = Item {
+        spin: DVec3::new(1.0, 2.0, 3.0),
+        ..item(Form::Mesh(cuboid([0.5, 0.25, 1.0])), DVec3::ZERO, DVec3::X)
+    };
+    let case = |name, scene, timed, steps, most| Case {
+        name,
+        scene,
+        timed,
+        steps,
+        most,
+    };
+    [
+        case(
+            "a free brick",
+            turning(Scene::new(vec![brick])),
+            600,
+            6_000,
+            1e-13,
+        ),
+        case(
+            "cube on cow, 5 rad/s",
+            hit([cow(), Form::Cube(0.5)], 5.0),
+            60,
+            60,
+            1e-13,
+        ),
+        case(
+            "cow on cow, 5 rad/s",
+            hit([cow(), cow()], 6.0),
+            60,
+            60,
+            1e-13,
+        ),
+        case(
+            "100 cubes in a box",
+            turning(crowd(100, &Form::Cube(HALF)).0),
+            120,
+            600,
+            1e-13,
+        ),
+        case("8 cubes in a bin", bin(), 120, 120, f64::INFINITY),
+    ]
+}
+
+/// Kinetic and potential energy.
+trait Energy {
+    fn energy(&self, gravity: DVec3) -> f64;
+}
+
+impl Energy for sim_core::World {
+    fn energy(&self, gravity: DVec3) -> f64 {
+        let movable = (0..self.len()).filter(|&body| self.kind(body).is_movable());
+        let potential: f64 = movable.map(|body| -gravity.dot(self.position(body))).sum();
+        self.kinetic_energy() + potential
+    }
+}
+
+impl Energy for Rapier {
+    fn energy(&self, gravity: DVec3) -> f64 {
+        let bodies = (0..self.handles.len()).filter(|&body| self.is_movable(body));
+        bodies
+            .map(|body| self.energy_of(body) - gravity.dot(self.position(body)))
+            .sum()
+    }
+}
+
+/// Error of the energy at the end, and the most that a step has brought, relative to the start.
+fn errors<E: Engine + Energy>(mut engine: E, case: &Case) -> (f64, f64) {
+    let start = engine.energy(case.scene.gravity);
+    let (mut before, mut gained) = (start, 0.0_f64);
+    for _ in 0..case.steps {
+        engine.step();
+        let after = engine.energy(case.scene.gravity);
+        gained = gained.max(after - before);
+        before = after;
+    }
+    ((before - start) / start.abs(), gained / start.abs())
+}
+
+pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
+    let mut table = Table::new(
+        "Bodies that turn: a step of 1/60 s; what the energy is off by at the end, and the most that a step \
+         brings, relative",
+        &["scene", "engine", "step", "ratio", "energy", "gained"],
+    );
+    let mut group = criterion.benchmark_group("impacts/turning");
+    for case in &cases() {
+        let start = ours::continuous(&case.scene);
+        let ours = watch::time(
+            &mut group,
+            &format!("{}/ours", case.name),
+            case.timed,
+            || start.clone(),
+        );
+        let theirs = watch::time(
+            &mut group,
+            &format!("{}/rapier", case.name),
+            case.timed,
+            || Rapier::new(&case.scene),
+        );
+        let Some(ours) = ours else { continue };
+        let (end, gained) = errors(start, case);
+        assert!(
+            end.abs() <= case.most,
+            "{}: energy off by {end:e}",
+            case.name
+        );
+        let mut rows = vec![("ours", ours, end, gained)];
+        if let Some(theirs) = theirs {
+            let (end, gained) = errors(Rapier::new(&case.scene), case);
+            rows.push(("rapier 0.36", theirs, end, gained));
+        }
+        for (engine, seconds, end, gained) in rows {
+            let cells = [
+                case.name,
+                engine,
+                &time(seconds),
+                &three_digits(seconds / ours),
+                &short(end),
+                &short(gained),
+            ];
+            row(&mut table, &cells);
+        }
+    }
+    group.finish();
+    (!table.rows.is_empty()).then_some(table)
+}
