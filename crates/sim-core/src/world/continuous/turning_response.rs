@@ -83,6 +83,12 @@ impl EventLoop<'_> {
         turning.retain(|event| !self.solver.goes_on(event));
         // Whom contacts have pushed they push on, whatever hits it.
         let mut pressed: Vec<usize> = Vec::new();
+        // What presses them together is what is left of forces where contacts bear them.
+        let acceleration = &self.solver.paths.acceleration;
+        let loads: Vec<[DVec3; 2]> = turning
+            .iter()
+            .map(|event| [acceleration[event.bodies.0], acceleration[event.bodies.1]])
+            .collect();
         for event in &turning {
             for body in [event.bodies.0, event.bodies.1] {
                 if self.solver.release(body) {
@@ -98,8 +104,8 @@ impl EventLoop<'_> {
             found.push(touching);
         }
         let (mut bouncing, mut stopped, mut resting) = (Vec::new(), Vec::new(), Vec::new());
-        for (event, touching) in turning.iter().zip(found) {
-            match self.solver.outcome(event, &touching, time)? {
+        for ((event, load), touching) in turning.iter().zip(loads).zip(found) {
+            match self.solver.outcome(event, load, &touching, time)? {
                 TurningOutcome::Bounce => bouncing.push((event, touching)),
                 TurningOutcome::Stop => {
                     stopped.push((event, touching.clone()));
@@ -421,6 +427,7 @@ impl ContactSolver<'_> {
     fn outcome(
         &mut self,
         event: &Event,
+        load: [DVec3; 2],
         touching: &[Touching],
         time: f64,
     ) -> Result<TurningOutcome, (usize, Cause)> {
@@ -448,12 +455,9 @@ impl ContactSolver<'_> {
             true => MANY_IMPACTS,
             false => MANY_ELASTIC_IMPACTS,
         };
-        let applied = &self.paths.applied_acceleration;
-        let load_speed = self.scene.settings.dt * (applied[i] - applied[j]).dot(normal);
-        let pull = applied[i]
-            .dot(normal)
-            .abs()
-            .max(applied[j].dot(normal).abs());
+        let [first, second] = load.map(|acceleration| acceleration.dot(normal));
+        let load_speed = self.scene.settings.dt * (first - second);
+        let pull = first.abs().max(second.abs());
         // What has fallen through the room that bodies are kept at is no impact.
         let fallen = libm::sqrt(8.0 * ROOM * event.gap * pull);
         let unfelt = self.view().unfelt(load_speed) + fallen;
