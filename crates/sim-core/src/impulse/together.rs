@@ -68,10 +68,17 @@ pub fn reflect(
     let mut impulse = vec![0.0; contacts.len()];
     let fastest = greatest(velocity);
     let rounding = 16.0 * f64::EPSILON * fastest;
+    let closing_by = |least: f64, velocity: &[DVec3]| -> Vec<usize> {
+        let all = 0..contacts.len();
+        all.filter(|&k| contacts[k].opening(velocity) < -least)
+            .collect()
+    };
     for round in 0..ROUNDS {
-        let closing: Vec<usize> = (0..contacts.len())
-            .filter(|&k| contacts[k].opening(velocity) < -rounding)
-            .collect();
+        let mut closing = closing_by(rounding, velocity);
+        if closing.is_empty() && round == 0 {
+            // A graze: it is an impact all the same, and would be found again.
+            closing = closing_by(0.0, velocity);
+        }
         if closing.is_empty() {
             break;
         }
@@ -350,6 +357,21 @@ mod tests {
             }
             assert!(energy(&inverse, &velocity) <= energy(&inverse, &start) * (1.0 + 1e-14));
         }
+    }
+
+    /// What grazes two in one place closes by less than rounding of its own speed, and parts from them all the same.
+    #[test]
+    fn grazes_part() {
+        let contacts = [1, 2].map(|other| Joined {
+            bodies: (0, other),
+            normal: DVec3::NEG_X,
+        });
+        let start = vec![DVec3::new(-8e-12, 1.8e4, 0.0), DVec3::ZERO, DVec3::ZERO];
+        assert!(contacts.iter().all(|c| c.opening(&start) < 0.0));
+        let mut velocity = start;
+        let given = reflect(&contacts, &[1.0; 3], &mut velocity, 1.0);
+        assert!(given.iter().all(|&given| given > 0.0), "{given:?}");
+        assert!(contacts.iter().all(|c| c.opening(&velocity) > 0.0));
     }
 
     #[test]

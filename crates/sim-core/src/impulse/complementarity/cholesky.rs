@@ -40,11 +40,14 @@ impl Cholesky {
         let mut degree: Vec<u32> = (0..count).map(|row| size(&near[of_row(row)])).collect();
         let (mut place, mut own) = (vec![NONE; count], vec![0; words]);
         let (mut begin, mut rows) = (vec![0], Vec::new());
+        // Those that have no place, in order.
+        let mut left: Vec<u32> = (0..count as u32).collect();
         for step in 0..count {
-            let left = (0..count).filter(|&row| place[row] == NONE);
-            let Some(row) = left.min_by_key(|&row| degree[row]) else {
+            let least = (0..left.len()).min_by_key(|&at| degree[left[at] as usize]);
+            let Some(least) = least else {
                 break;
             };
+            let row = left.remove(least) as usize;
             place[row] = step as u32;
             own.copy_from_slice(&near[of_row(row)]);
             // Whatever is tied to it is tied together from now on.
@@ -107,17 +110,21 @@ impl Cholesky {
         for column in 0..count {
             let (begin, end) = (self.begin[column], self.begin[column + 1]);
             let mut diagonal = self.inverse[column];
-            for place in begin..end {
-                sums[self.rows[place] as usize] = self.blocks[place];
+            let own = self.rows[begin..end].iter().zip(&self.blocks[begin..end]);
+            for (&row, block) in own {
+                sums[row as usize] = *block;
             }
             let mut left = first[column];
             while left != NONE {
                 let (own, next_left) = (left as usize, next[left as usize]);
-                let here = at[own];
+                let (here, end) = (at[own], self.begin[own + 1]);
                 let across = self.blocks[here].transpose();
                 diagonal -= self.blocks[here] * across;
-                for place in here + 1..self.begin[own + 1] {
-                    sums[self.rows[place] as usize] -= self.blocks[place] * across;
+                let below = self.rows[here + 1..end]
+                    .iter()
+                    .zip(&self.blocks[here + 1..end]);
+                for (&row, block) in below {
+                    sums[row as usize] -= *block * across;
                 }
                 self.pass_on(own, here + 1, (&mut first, &mut next, &mut at));
                 left = next_left;
@@ -125,8 +132,11 @@ impl Cholesky {
             let inverse = inverse_of_root(diagonal);
             self.inverse[column] = inverse;
             let across = inverse.transpose();
-            for place in begin..end {
-                self.blocks[place] = sums[self.rows[place] as usize] * across;
+            let own = self.rows[begin..end]
+                .iter()
+                .zip(&mut self.blocks[begin..end]);
+            for (&row, block) in own {
+                *block = sums[row as usize] * across;
             }
             self.pass_on(column, begin, (&mut first, &mut next, &mut at));
         }
@@ -147,6 +157,12 @@ impl Cholesky {
         }
     }
 
+    /// The blocks of a column, with their rows.
+    fn below(&self, column: usize) -> impl Iterator<Item = (&u32, &DMat3)> {
+        let all = self.begin[column]..self.begin[column + 1];
+        self.rows[all.clone()].iter().zip(&self.blocks[all])
+    }
+
     /// Solves for a right-hand side, in its place, with some memory of the same length.
     pub(super) fn solve(&self, values: &mut [DVec3], memory: &mut [DVec3]) {
         for (row, &place) in self.place.iter().enumerate() {
@@ -155,14 +171,14 @@ impl Cholesky {
         for column in 0..self.inverse.len() {
             let value = self.inverse[column] * memory[column];
             memory[column] = value;
-            for place in self.begin[column]..self.begin[column + 1] {
-                memory[self.rows[place] as usize] -= self.blocks[place] * value;
+            for (&row, block) in self.below(column) {
+                memory[row as usize] -= *block * value;
             }
         }
         for column in (0..self.inverse.len()).rev() {
             let mut value = memory[column];
-            for place in self.begin[column]..self.begin[column + 1] {
-                value -= self.blocks[place].transpose() * memory[self.rows[place] as usize];
+            for (&row, block) in self.below(column) {
+                value -= block.transpose() * memory[row as usize];
             }
             memory[column] = self.inverse[column].transpose() * value;
         }

@@ -170,9 +170,10 @@ impl EventLoop<'_> {
         let at = self.view().instant(event.bodies, time);
         let velocity = &mut self.solver.paths.start.velocity;
         let impact = scene.exchange(event.bodies, &event.contact, velocity, at);
-        impact
-            .into_iter()
-            .for_each(|impact| self.note_impact(impact));
+        match impact {
+            Some(impact) => self.note_impact(impact),
+            None => self.queue.progress.note_nothing(),
+        }
     }
 }
 

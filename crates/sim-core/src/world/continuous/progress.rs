@@ -24,7 +24,8 @@ use super::{
 /// What bodies may exchange in no time, in momenta of each: an angle of 1e-3 between contacts.
 const MOST_EXCHANGED: f64 = 1e3;
 
-/// How often a contact of a body may begin or end in no time, without an impulse.
+/// How often a body may take part in something in no time that goes without an impulse: a contact that begins or
+/// ends, an impact at which nothing is exchanged.
 const MOST_CHANGES: u64 = 1_000;
 
 /// What has happened in no time.
@@ -68,6 +69,9 @@ impl Progress {
         closing: f64,
         masses: (f64, f64),
     ) {
+        if impulse == 0.0 {
+            self.note_nothing();
+        }
         self.impulse += impulse;
         self.largest = self.largest.max(impulse);
         self.fastest = self.fastest.max(closing);
@@ -76,6 +80,11 @@ impl Progress {
                 self.heaviest = self.heaviest.max(mass);
             }
         }
+    }
+
+    /// Notes an impact at which nothing is exchanged: bodies that do not close.
+    pub(super) fn note_nothing(&mut self) {
+        self.changes += 1;
     }
 
     /// Notes events that have been resolved.
@@ -154,5 +163,23 @@ impl View<'_> {
             EventKind::Horizon => return true,
         };
         time * speed > self.layout().hover_gap(i, j)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Thousands of impacts at which nothing is exchanged are enough to see that they have no end.
+    #[test]
+    fn what_exchanges_nothing_in_no_time_has_no_end() {
+        let mut progress = Progress::default();
+        progress.begin(3);
+        (0..3).for_each(|body| progress.take_part(body));
+        let impacts = (0..).take_while(|_| {
+            progress.note_impulse(0.0, 1e-12, (1.0, 1.0));
+            progress.has_end()
+        });
+        assert_eq!(impacts.count() as u64, 3 * MOST_CHANGES);
     }
 }
