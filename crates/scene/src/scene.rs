@@ -172,22 +172,33 @@ impl Scene {
                 most: MAX_BYTES,
             },
         })?;
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-            SceneError::Content {
+        // UTF-16 has zeros, which no text has.
+        let valid = match std::str::from_utf8(&bytes) {
+            Ok(text) => text.find('\0').unwrap_or(text.len()),
+            Err(error) => error.valid_up_to(),
+        };
+        if valid < bytes.len() {
+            let before = bytes[..valid].iter();
+            return Err(SceneError::Content {
                 file: path.to_owned(),
-                line: Some(1 + before.iter().filter(|&&byte| byte == b'\n').count()),
+                line: Some(1 + before.filter(|&&byte| byte == b'\n').count()),
                 body: None,
                 field: None,
                 what: "is not UTF-8 text: save as UTF-8".to_owned(),
-            }
-        })?;
+            });
+        }
+        let text = String::from_utf8_lossy(&bytes);
         Scene::parse(&text, path)
     }
 
     fn of_mesh(path: &Path) -> Result<Scene, SceneError> {
         let mesh = MeshRef::load(path).map_err(|error| SceneError::Mesh(Box::new(error)))?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        // A scene file has no body without a name.
+        let name = match name.trim().is_empty() {
+            true => "mesh".into(),
+            false => name,
+        };
         let mut scene = Scene::parse("rate = 60", path)?;
         scene.title = name.clone().into_owned();
         let shape = SceneShape::Mesh(mesh);

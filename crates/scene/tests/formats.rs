@@ -435,11 +435,6 @@ fn obj_continues_over_blanks_and_names_what_is_no_number() {
         let text = format!("{vertices}f 1 3 {end} 2\ng a {end} f\n{faces}");
         is_the_tetrahedron(&read("a.obj", text.as_bytes()).expect(end));
     }
-    let marked: Vec<u8> = format!("\u{feff}{vertices}f 1 3 2\n{faces}")
-        .encode_utf16()
-        .flat_map(u16::to_le_bytes)
-        .collect();
-    is_the_tetrahedron(&read("a.obj", &marked).expect("UTF-16"));
     let message = refusal("a.obj", b"v 0 0 0\nv 1\xc2\xa00 0 x\n");
     assert!(
         message.contains("a.obj:2: x of the vertex is `1"),
@@ -450,6 +445,27 @@ fn obj_continues_over_blanks_and_names_what_is_no_number() {
         message.contains("z of the vertex is `\u{fffd}`"),
         "{message}"
     );
+}
+
+#[test]
+fn text_comes_in_utf16_with_a_mark_or_without() {
+    let obj = "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    for (name, text) in [
+        ("a.obj", obj.to_owned()),
+        ("a.stl", text_stl()),
+        ("a.ply", text_ply()),
+    ] {
+        for mark in ["\u{feff}", ""] {
+            let units = || mark.encode_utf16().chain(text.encode_utf16());
+            let little: Vec<u8> = units().flat_map(u16::to_le_bytes).collect();
+            let big: Vec<u8> = units().flat_map(u16::to_be_bytes).collect();
+            let marked = format!("{mark}{text}").into_bytes();
+            for bytes in [little, big, marked] {
+                let loaded = read(name, &bytes);
+                is_the_tetrahedron(&loaded.unwrap_or_else(|error| panic!("{error}")));
+            }
+        }
+    }
 }
 
 #[test]

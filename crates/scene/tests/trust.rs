@@ -169,13 +169,22 @@ fn a_spring_has_two_bodies() {
 #[test]
 fn a_scene_that_is_not_utf8_is_told_with_its_line() {
     let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("latin1.toml");
-    fs::write(&path, b"rate = 60\n\n# \xe4\n").expect("a file");
-    let message = Scene::load(&path).expect_err("not UTF-8").to_string();
-    assert!(
-        message.contains("latin1.toml:3: ") && message.contains("save as UTF-8"),
-        "{message}"
-    );
+    let path = folder.path().join("other.toml");
+    let utf16 = "rate = 60\n".encode_utf16();
+    for (bytes, line) in [
+        (b"rate = 60\n\n# \xe4\n".to_vec(), 3),
+        (b"rate = 60\n# \0\n".to_vec(), 2),
+        (utf16.clone().flat_map(u16::to_le_bytes).collect(), 1),
+        (utf16.flat_map(u16::to_be_bytes).collect(), 1),
+    ] {
+        fs::write(&path, bytes).expect("a file");
+        let message = Scene::load(&path).expect_err("not UTF-8").to_string();
+        let place = format!("other.toml:{line}: ");
+        assert!(
+            message.contains(&place) && message.contains("save as UTF-8"),
+            "{message}"
+        );
+    }
 }
 
 #[test]

@@ -18,12 +18,21 @@ use crate::number;
 use crate::session::{Drift, Reference};
 use crate::stopwatch::Stopwatch;
 
-/// Gain of energy and change of momentum that rounding may make, relative, by the square root of steps.
+/// What rounding may make: of the energy, of its gain by the square root of steps; of the momentum, of all that
+/// bodies have had and have given each other in a step.
 const ROUNDING: f64 = 1e-12;
 
 /// What must hold after each step, and what is wrong where it does not.
 struct Invariant {
-    broken: fn(&Scene, &World, &Drift) -> Option<String>,
+    broken: fn(&Scene, &World, &Step) -> Option<String>,
+}
+
+/// What a step has changed, and all steps before it.
+struct Step {
+    since_start: Drift,
+    alone: Drift,
+    /// Impulses of its impacts, N s.
+    impulses: f64,
 }
 
 const INVARIANTS: [Invariant; 4] = [
@@ -48,7 +57,8 @@ const INVARIANTS: [Invariant; 4] = [
     },
     // Where a method follows a force that varies, it has an error of its own.
     Invariant {
-        broken: |_, world, drift| {
+        broken: |_, world, step| {
+            let drift = &step.since_start;
             let is_exact = world.settings().method.order > 1
                 && world
                     .forces()
@@ -61,11 +71,19 @@ const INVARIANTS: [Invariant; 4] = [
             (gained > most).then(|| format!("energy has grown by {gained:e} of it"))
         },
     },
+    // Each exchange is rounded in the place of what is exchanged, and of the momenta that it changes. Step by
+    // step: errors that are allowed to add up would in the end allow any.
     Invariant {
-        broken: |_, world, drift| {
-            let error = drift.relative_momentum?;
-            let most = ROUNDING * (world.steps() as f64).sqrt();
-            (error > most).then(|| format!("momentum is off by {error:e} of it"))
+        broken: |_, world, step| {
+            let error = step.alone.momentum?;
+            let after: f64 = (0..world.len())
+                .filter(|&body| world.kind(body).is_movable())
+                .map(|body| world.mass(body) * world.velocity(body).length())
+                .sum();
+            let exchanged = step.alone.pushes + after + step.impulses;
+            (error > ROUNDING * exchanged).then(|| {
+                format!("momentum is off by {error:e} kg m/s, of {exchanged:e} that the step had")
+            })
         },
     },
 ];
@@ -121,13 +139,15 @@ pub fn run(
         "{:<16} {:>11} {:>11} {:>5} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
         "scene", "steps", "impacts", "runs", "energy", "momentum", "early", "late", "memory"
     );
-    for (name, scene) in scenes {
+    for (index, (name, scene)) in scenes.iter().enumerate() {
         if interrupt.came() {
             break;
         }
         let soaked = soak(name, scene, part, interrupt).inspect_err(|_| {
             // What the scenes before have done is told all the same; nothing is left to do if it cannot be.
-            let _ = std::io::stdout().write_all(text.as_bytes());
+            if index > 0 {
+                let _ = std::io::stdout().write_all(text.as_bytes());
+            }
         })?;
         let memory = match soaked.memory {
             [Some(before), Some(after)] => {
@@ -170,24 +190,32 @@ fn soak(
     while stopwatch.read() < part && !interrupt.came() {
         let mut world = scene.world().map_err(Failure::refused)?;
         let reference = Reference::of(&world);
+        let mut impacts = Vec::new();
         soaked.runs += 1;
         while stopwatch.read() < part && !interrupt.came() {
+            let before = Reference::of(&world);
+            impacts.clear();
             let watch = Stopwatch::start();
-            match world.step() {
+            match world.step_reporting(&mut impacts) {
                 Ok(()) => {}
                 // What closing walls are there for.
                 Err(StepError::Squeezed { .. }) if world.steps() > 0 => break,
                 Err(error) => return Err(Failure::Run(errors::step_error(scene, &error))),
             }
             let seconds = watch.read().as_secs_f64();
-            let drift = reference.drift(&world);
+            let step = Step {
+                since_start: reference.drift(&world),
+                alone: before.drift(&world),
+                impulses: impacts.iter().map(|impact| impact.impulse.abs()).sum(),
+            };
             for invariant in &INVARIANTS {
-                if let Some(what) = (invariant.broken)(scene, &world, &drift) {
-                    let step = world.steps();
-                    return Err(Failure::Run(format!("{name}: after step {step} {what}")));
+                if let Some(what) = (invariant.broken)(scene, &world, &step) {
+                    let number = world.steps();
+                    return Err(Failure::Run(format!("{name}: after step {number} {what}")));
                 }
             }
-            soaked.note(&drift, seconds, stopwatch.read().div_duration_f64(part));
+            let drift = &step.since_start;
+            soaked.note(drift, seconds, stopwatch.read().div_duration_f64(part));
         }
         soaked.impacts += world.impacts();
     }

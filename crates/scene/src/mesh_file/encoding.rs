@@ -7,16 +7,22 @@ use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE};
 use super::soup::ReadError;
 use crate::shown;
 
-/// Text whose byte order mark, if it has one, tells the encoding; other bytes stay as they are.
+/// Text whose byte order mark, if it has one, tells the encoding, or else, of UTF-16, the zeros in its first
+/// characters; other bytes stay as they are.
 pub(super) fn by_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
-    match Encoding::for_bom(bytes) {
-        Some((encoding, length)) if encoding == UTF_8 => Cow::Borrowed(&bytes[length..]),
-        Some((encoding, length)) => {
-            let (text, _) = encoding.decode_without_bom_handling(&bytes[length..]);
-            Cow::Owned(text.into_owned().into_bytes())
-        }
-        None => Cow::Borrowed(bytes),
+    let marked = Encoding::for_bom(bytes);
+    let (encoding, text) = match (marked, bytes) {
+        (Some((encoding, length)), _) => (encoding, &bytes[length..]),
+        // Two characters of ASCII.
+        (None, [1..128, 0, 1..128, 0, ..]) => (UTF_16LE, bytes),
+        (None, [0, 1..128, 0, 1..128, ..]) => (UTF_16BE, bytes),
+        _ => return Cow::Borrowed(bytes),
+    };
+    if encoding == UTF_8 {
+        return Cow::Borrowed(text);
     }
+    let (text, _) = encoding.decode_without_bom_handling(text);
+    Cow::Owned(text.into_owned().into_bytes())
 }
 
 /// How many lines end in a stretch of a text: at a line feed, or, on old systems, at a carriage return alone.

@@ -20,7 +20,8 @@ pub(super) const FORMAT: Format = Format {
 };
 
 fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
-    let (header, body) = Header::read(bytes)?;
+    let bytes = encoding::by_mark(bytes);
+    let (header, body) = Header::read(&bytes)?;
     let mut values = Values {
         encoding: header.encoding,
         rest: body,
@@ -115,7 +116,7 @@ struct Faces {
 impl Header {
     /// Reads the header; what follows it comes back too.
     fn read(bytes: &[u8]) -> Result<(Header, &[u8]), ReadError> {
-        let mut rest = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let mut rest = bytes;
         // All lines of a header end as the first one does: what follows may be bytes of any value.
         let line_end = encoding::line_end(&rest[..rest.len().min("ply\r\n".len())]);
         let (mut kind, mut elements) = (None, Vec::<Element>::new());

@@ -94,9 +94,10 @@ pub struct Drift {
     /// Error of the momentum less the impulse of the forces, kg m/s; known as long as nothing but
     /// constant forces acts from outside, and nothing has hit what may be immovable.
     pub momentum: Option<f64>,
-    /// The same relative to the sum of `m |v|` at the start and of the constant forces' `|F| t`
-    /// since; none where that is 0.
+    /// The same relative to `pushes`; none where that is 0.
     pub relative_momentum: Option<f64>,
+    /// The sum of `m |v|` at the start and of the constant forces' `|F| t` since, kg m/s.
+    pub pushes: f64,
 }
 
 impl Reference {
@@ -153,6 +154,7 @@ impl Reference {
             driven: pushed || forces.iter().any(|force| drives(world, force)),
             momentum,
             relative_momentum: momentum.and_then(|error| ratio(error, pushes)),
+            pushes,
         }
     }
 }
