@@ -102,17 +102,21 @@ fn pair_text(session: &mut Session, shown: usize) -> String {
     let Some(pair) = pairs.get(shown) else {
         return "It takes two bodies with meshes.".to_owned();
     };
-    let which = format!(
-        "Pair {} of {}",
+    let (now, all) = (
         number::count(shown as f64 + 1.0),
-        number::count(pairs.len() as f64)
+        number::count(pairs.len() as f64),
     );
-    match (pair.meet, pair.below) {
-        (false, _) => format!("{which}: the boxes are apart, and all in them is left out."),
-        (true, 0) => format!("{which}: two leaves meet, and their triangles are tested."),
-        (true, below) => {
-            format!("{which}: the boxes meet, and {below} pairs of boxes in them come next.")
+    let below = pair.below;
+    match pair.meet {
+        false => {
+            format!("Pair {now} of {all}: the boxes are apart, and all in them is left out.")
         }
+        true if below == 0 => {
+            format!("Pair {now} of {all}: two leaves meet, and their triangles are tested.")
+        }
+        true => format!(
+            "Pair {now} of {all}: the boxes meet, and {below} pairs of boxes in them come next."
+        ),
     }
 }
 
