@@ -32,6 +32,8 @@ pub struct Scene {
     pub collision: Collision,
     /// Error that adaptive methods may make in a step, from 1e-15 to 1.
     pub tolerance: f64,
+    /// When what it shows is over, s, above 0: there a window holds still once.
+    pub ends: Option<f64>,
     /// The bodies in the order of the file; may be empty.
     pub bodies: Vec<SceneBody>,
     /// Forces beside the constant ones of the bodies, which they name by their place in `bodies`.

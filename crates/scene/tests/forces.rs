@@ -158,6 +158,16 @@ damping = 1
         ),
         (
             "rate = 60",
+            "rate = 60\nends = 0",
+            ":2: ends: must be a time above 0 s, or left out, is 0",
+        ),
+        (
+            "rate = 60",
+            "rate = 60\nends = inf",
+            ":2: ends: must be a time above 0 s, or left out, is inf",
+        ),
+        (
+            "rate = 60",
             "rate = 60\nforce = 3",
             ":2: force: must be an array of tables",
         ),

@@ -685,6 +685,7 @@ fn scene() -> impl Strategy<Value = Scene> {
                 method: METHODS[method],
                 collision,
                 tolerance: 1e-9,
+                ends: dt.lt(&1.0).then_some(8.0 * dt),
                 bodies,
                 forces: Vec::new(),
             }

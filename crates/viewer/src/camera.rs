@@ -67,6 +67,25 @@ impl Camera {
         }
     }
 
+    /// Looks elsewhere from where the eye is: `dx` radians to the right, `dy` upwards.
+    pub fn look(&mut self, dx: f64, dy: f64) {
+        let eye = self.eye();
+        self.orbit(-dx, -dy);
+        let moved = eye + self.distance * self.forward();
+        if moved.is_finite() {
+            self.target = moved;
+        }
+    }
+
+    /// Moves eye and target together, to the right, up, and forward, in distances to the target.
+    pub fn fly(&mut self, way: DVec3) {
+        let [right, up, backward] = self.axes();
+        let moved = self.target + self.distance * (way.x * right + way.y * up - way.z * backward);
+        if moved.is_finite() {
+            self.target = moved;
+        }
+    }
+
     /// Comes nearer the target by a factor above zero: 2 halves the distance, 0.5 doubles it.
     pub fn zoom(&mut self, factor: f64) {
         let distance = self.distance / factor;
@@ -299,6 +318,24 @@ mod tests {
                 .all(|axis| (axis.length() - 1.0).abs() < 1e-12)
         );
         assert!(camera.eye().y > camera.target.y);
+    }
+
+    #[test]
+    fn flying_goes_where_it_looks_and_looking_stays_where_it_is() {
+        let mut camera = Camera::default();
+        let (eye, ahead) = (camera.eye(), camera.forward());
+        camera.fly(DVec3::new(0.0, 0.0, 0.5));
+        assert!((camera.eye() - eye - 0.5 * camera.distance * ahead).length() < 1e-12);
+        let eye = camera.eye();
+        camera.look(0.3, 0.1);
+        assert!(camera.eye().distance(eye) < 1e-12);
+        let [right, ..] = Camera::default().axes();
+        assert!(camera.forward().dot(right) > 0.2, "to the right");
+        assert!(camera.forward().y > ahead.y, "upwards");
+        let before = camera;
+        camera.fly(DVec3::splat(f64::NAN));
+        camera.look(f64::NAN, f64::INFINITY);
+        assert_eq!(camera, before);
     }
 
     #[test]

@@ -109,12 +109,17 @@ pub fn energy(value: f64) -> String {
     }
 }
 
-/// An error: 0, or sign and magnitude.
+/// An error: 0, or its sign and two or three digits.
 pub fn error(value: f64) -> String {
-    if value == 0.0 {
+    let size = value.abs();
+    if size == 0.0 {
         "0".to_owned()
-    } else {
+    } else if !(0.095..995.0).contains(&size) {
         format!("{value:+.1e}")
+    } else if size < 9.95 {
+        format!("{value:+.1}")
+    } else {
+        format!("{value:+.0}")
     }
 }
 
@@ -167,6 +172,10 @@ mod tests {
     fn errors_keep_their_sign() {
         assert_eq!(error(0.0), "0");
         assert_eq!(error(1.23e-16), "+1.2e-16");
-        assert_eq!(error(-0.5), "-5.0e-1");
+        assert_eq!(error(-0.5), "-0.5");
+        assert_eq!(error(-9.43), "-9.4");
+        assert_eq!(error(0.02), "+2.0e-2");
+        assert_eq!(error(123.4), "+123");
+        assert_eq!(error(-1254.0), "-1.3e3");
     }
 }

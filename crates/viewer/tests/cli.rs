@@ -1,21 +1,12 @@
-//! The program from outside: answers, exit codes, and what happens where there is no display.
+//! What the commands of the program answer, and what they refuse.
 
 use std::fs;
-use std::io::Read;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
-fn cowbell(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_cowbell"));
-    command.args(arguments).stdin(Stdio::null());
-    command
-}
+mod kit;
 
-fn answer(arguments: &[&str]) -> Output {
-    cowbell(arguments).output().expect("the program starts")
-}
+use kit::{ACTING, answer, cowbell, file, nothing_acts, refusal};
 
 /// Runs a command that must succeed; its JSON.
 fn json(arguments: &[&str]) -> Value {
@@ -25,25 +16,6 @@ fn json(arguments: &[&str]) -> Value {
     let text = String::from_utf8(output.stdout).expect("JSON is UTF-8");
     assert_eq!(text.matches('\n').count(), 1, "one line");
     serde_json::from_str(&text).expect("the answer is JSON")
-}
-
-/// Runs a command that must fail with `code`; its one line on stderr.
-fn refusal(mut command: Command, code: i32) -> String {
-    let output = command.output().expect("the program starts");
-    let text = String::from_utf8(output.stderr).expect("messages are UTF-8");
-    assert_eq!(output.status.code(), Some(code), "{text}");
-    assert!(output.stdout.is_empty());
-    assert_eq!(text.lines().count(), 1, "{text}");
-    assert!(text.starts_with("cowbell: "), "{text}");
-    assert!(!text.contains("panicked"), "{text}");
-    text
-}
-
-/// A file in the folder for temporary files; `name` keeps tests apart.
-fn file(name: &str, text: &str) -> PathBuf {
-    let path = std::env::temp_dir().join(format!("cowbell-{}-{name}", std::process::id()));
-    fs::write(&path, text).expect("a file can be written");
-    path
 }
 
 fn keys(value: &Value) -> Vec<&str> {
@@ -482,145 +454,6 @@ fn check_refuses_what_makes_no_mesh() {
     let text = refusal(cowbell(&["check", &path_text, "--json"]), 2);
     assert!(text.contains("broken.obj"), "{text}");
     fs::remove_file(path).expect("the file is removed");
-}
-
-#[test]
-fn closed_stdout_is_no_failure() {
-    for arguments in [
-        &["run", "cube-cow", "--steps", "1"][..],
-        &["run", "cube-cow", "--steps", "1", "--json"],
-        &["--help"],
-        &["--version"],
-    ] {
-        let mut child = cowbell(arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
-        drop(child.stdout.take());
-        let mut complaint = String::new();
-        if let Some(mut stderr) = child.stderr.take() {
-            stderr.read_to_string(&mut complaint).expect("text");
-        }
-        let status = child.wait().expect("the program ends");
-        assert_eq!(status.code(), Some(0), "{arguments:?}: {complaint}");
-        assert_eq!(complaint, "");
-    }
-}
-
-#[test]
-#[cfg(target_os = "linux")]
-fn without_a_display_says_so() {
-    let displays: [&[(&str, &str)]; 4] = [
-        &[],
-        &[("DISPLAY", ":4242")],
-        &[("WAYLAND_DISPLAY", "nowhere")],
-        &[("DISPLAY", "no.such.host:0")],
-    ];
-    for display in displays {
-        let mut command = cowbell(&[]);
-        command
-            .env_remove("DISPLAY")
-            .env_remove("WAYLAND_DISPLAY")
-            .env_remove("WAYLAND_SOCKET")
-            .envs(display.iter().copied());
-        let text = refusal(command, 3);
-        assert!(text.contains("cowbell run cube-cow"), "{text}");
-    }
-}
-
-/// Characters that act on a terminal, in one word of a scene or of an argument.
-const ACTING: &str = "a\u{1b}]0;x\u{7}\u{9b}\u{202e}";
-
-fn nothing_acts(output: &Output) {
-    for bytes in [&output.stdout, &output.stderr] {
-        let text = String::from_utf8(bytes.clone()).expect("text");
-        let acts = |c: char| c != '\n' && scene::shown::is_unsafe(c);
-        assert!(!text.contains(acts), "{text:?}");
-    }
-}
-
-#[test]
-fn names_and_arguments_do_not_act_on_the_terminal() {
-    let name = ACTING
-        .replace('\u{1b}', "\\u001b")
-        .replace('\u{7}', "\\u0007");
-    for name in [name, "x".repeat(65_536)] {
-        let text = format!(
-            "rate = 60\ntitle = \"{name}\"\n[[body]]\nname = \"{name}\"\nsphere = 1\nvelocity = [9, 0, 0]\n\
-             [[body]]\nname = 'b'\nsphere = 1\nposition = [2.1, 0, 0]\n"
-        );
-        let path = file("acts.toml", &text);
-        let path_text = path.to_string_lossy();
-        for json in [&["--json"][..], &[]] {
-            let output = answer(&[&["run", &path_text, "--steps", "9"][..], json].concat());
-            assert_eq!(output.status.code(), Some(0));
-            nothing_acts(&output);
-        }
-        fs::remove_file(path).expect("the file is removed");
-    }
-    for word in [ACTING.to_owned(), "x".repeat(100_000)] {
-        for arguments in [
-            &["run", &word][..],
-            &["run", "cube-cow", "--method", &word],
-            &["run", "cube-cow", "--steps", &word],
-            &["check", &word],
-            &[&word, &word],
-            &["shot", "cube-cow", "--select", &word, "-o", "x.png"],
-        ] {
-            let text = refusal(cowbell(arguments), 2);
-            assert!(text.len() <= 1024, "{} bytes", text.len());
-            nothing_acts(&answer(arguments));
-        }
-    }
-}
-
-#[cfg(unix)]
-#[test]
-fn an_interrupted_run_tells_what_it_reached() {
-    let run = [
-        "run",
-        "parabola",
-        "--json",
-        "--steps",
-        "1000000000000000000",
-    ];
-    let mut command = cowbell(&run);
-    let child = command
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
-    std::thread::sleep(std::time::Duration::from_secs(2));
-    let id = child.id().to_string();
-    let killed = Command::new("kill").args(["-INT", &id]).status();
-    assert!(killed.expect("kill").success());
-    let output = child.wait_with_output().expect("it ends");
-    assert_eq!(output.status.code(), Some(130));
-    let state: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert!(state["steps"].as_u64().is_some_and(|steps| steps > 0));
-    let text = String::from_utf8(output.stderr).expect("text");
-    assert!(text.starts_with("cowbell: interrupted after "), "{text}");
-}
-
-/// A file that may not grow is an error, as a full disk is: the program does not die of it.
-#[cfg(unix)]
-#[test]
-fn a_limit_on_files_is_an_error_in_words() {
-    let path = std::env::temp_dir().join(format!("cowbell-limit-{}", std::process::id()));
-    let script = "ulimit -f 0; exec \"$0\" run parabola --steps 1 --json > \"$1\"";
-    let output = Command::new("sh")
-        .args(["-c", script, env!("CARGO_BIN_EXE_cowbell")])
-        .arg(&path)
-        .output()
-        .expect("a shell");
-    let _ = std::fs::remove_file(&path);
-    let text = String::from_utf8(output.stderr).expect("text");
-    assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(
-        text.starts_with("cowbell: cannot write the result: "),
-        "{text}"
-    );
 }
 
 #[test]

@@ -336,6 +336,21 @@ fn a_film_is_made_of_what_is_kept_and_can_be_given_up() {
     click(&mut window, "✖");
     assert!(film.reel.is_cancelled());
     window.state_mut().1.accept_shooting(Ok(None));
+    // A stretch of it: from a state that is marked, which is unmarked alike.
+    let (_, session) = window.state_mut();
+    let middle = session.playback().nearest(0.5);
+    session.begin_film_at(middle);
+    session.shoot_film([720, 450]);
+    let stretch = session.shooting_due().expect("a film is wanted");
+    let count = stretch.pictures.len();
+    assert!((11..=14).contains(&count), "{count}");
+    session.accept_shooting(Ok(None));
+    session.begin_film_at(middle);
+    assert_eq!(session.film_start(), None);
+    session.shoot_film([720, 450]);
+    let film = session.shooting_due().expect("a film is wanted");
+    assert!(film.pictures.len() > 20);
+    window.state_mut().1.accept_shooting(Ok(None));
     window.run();
     assert!(window.query_by_label("Save run").is_some());
 }
@@ -364,12 +379,12 @@ fn the_cost_of_phases_is_measured_while_it_is_plotted() {
 }
 
 /// What is the same in every language: names, and what scenes of the gallery call their bodies.
-const COMMON: [&str; 49] = [
+const COMMON: [&str; 52] = [
     "BVH", "RK4", "CSV", "PNG", "Hz", "Verlet", "Blanes", "Moan", "Kahan", "Li", "Radau", "IIA",
     "Dormand", "Prince", "English", "Ctrl", "Shift", "Alt", "Esc", "Del", "PgDn", "Home", "kg",
     "ms", "mm", "toml", "cow", "cube", "cube-cow", "obj", "Page", "Down", "left", "plate",
     "bullet", "right", "light", "heavy", "sphere", "kin", "pot", "cos", "sin", "mu", "dt", "dx",
-    "inf", "kB", "rad",
+    "inf", "kB", "rad", "racket", "Cowbell", "Apache",
 ];
 
 /// The words of a text that are of no language but English.
@@ -392,7 +407,7 @@ fn every_panel_is_chinese_when_chinese_is_chosen() {
         let texts = texts(window).into_iter();
         left.extend(texts.filter(|text| !english(text).is_empty()));
     };
-    for name in ["cube-cow", "bullet", "two-cubes"] {
+    for name in ["cube-cow", "bullet", "two-cubes", "tennis-racket"] {
         let mut window = opened(name);
         if !has_chinese(&mut window) {
             return;
@@ -403,6 +418,10 @@ fn every_panel_is_chinese_when_chinese_is_chosen() {
         session.compare.on = true;
         session.display.bvh.shown = true;
         session.display.descent = Some(0);
+        window.run();
+        look(&window);
+        // With boxes that meet, pair by pair.
+        window.key_press(Key::K);
         window.run();
         look(&window);
         click(&mut window, "▶ 开始");
@@ -698,6 +717,82 @@ fn the_tour_goes_through_all_labs_and_sets_up_what_it_says() {
         }
     }
     assert_eq!(stops, stop_count());
+}
+
+#[test]
+fn the_descent_is_gone_through_pair_by_pair() {
+    let mut window = opened("cube-cow");
+    let session = &mut window.state_mut().1;
+    session.select(Some(1));
+    // Into the cow.
+    let place = session.world().position(0) + sim_core::DVec3::new(0.0, 0.5, 0.0);
+    session.set_position(place);
+    window.run();
+    let pairs = window.state_mut().1.pairs();
+    for n in 1..=3 {
+        window.key_press(Key::K);
+        window.run();
+        let told = format!(
+            "Pair {n} of {}: ",
+            viewer::number::count(pairs.len() as f64)
+        );
+        assert!(window.query_by_label_contains(&told).is_some(), "{told}");
+        assert_eq!(window.state().1.display.pair, Some(n - 1));
+    }
+    window.key_press(Key::J);
+    window.run();
+    assert_eq!(window.state().1.display.pair, Some(1));
+    // Level by level again.
+    window.key_press(Key::N);
+    window.run();
+    assert_eq!(window.state().1.display.pair, None);
+    assert!(window.query_by_label_contains("Level 1 of ").is_some());
+}
+
+#[test]
+fn keys_fly_while_the_right_button_is_held() {
+    let mut window = opened("cube-cow");
+    window.run();
+    let at = egui::pos2(500.0, 300.0);
+    let button = |pressed| egui::Event::PointerButton {
+        pos: at,
+        button: egui::PointerButton::Secondary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let before = window.state().1.camera;
+    window.hover_at(at);
+    window.event(button(true));
+    window.step();
+    window.key_down(Key::W);
+    window.step();
+    window.step();
+    let (after, wireframe) = (window.state().1.camera, window.state().1.display.wireframe);
+    assert!((after.eye() - before.eye()).dot(before.forward()) > 0.0);
+    assert!(!wireframe, "W is a key of its own only without the button");
+    window.key_up(Key::W);
+    window.event(button(false));
+    window.run();
+    window.key_press(Key::W);
+    window.run();
+    assert!(window.state().1.display.wireframe);
+}
+
+#[test]
+fn the_panel_is_as_wide_whatever_stands_in_it() {
+    let place = |method: &'static Method| {
+        let scene = Scene::load("spring").expect("in the gallery");
+        let mut session = Session::new(scene).expect("a world");
+        session.set_method(method);
+        let mut window = window(session, [1360.0, 880.0]);
+        window.run();
+        window.get_by_label("New").rect().left()
+    };
+    let all: Vec<f32> = sim_core::METHODS
+        .iter()
+        .map(|method| place(method))
+        .collect();
+    assert!(all.iter().all(|left| *left == all[0]), "{all:?}");
 }
 
 #[test]

@@ -57,6 +57,7 @@ pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<S
         method: method(&source, header.method)?,
         collision: collision(&source, header.collision)?,
         tolerance: tolerance(&source, header.tolerance)?,
+        ends: ends(&source, header.ends)?,
         bodies: Vec::new(),
         forces: Vec::new(),
     };
@@ -323,4 +324,19 @@ fn tolerance(source: &Source, value: Option<Spanned<Number>>) -> Result<f64, Sce
         return Err(Place::new(source, Subject::Scene).error(value.span(), "tolerance", what));
     }
     Ok(tolerance)
+}
+
+fn ends(source: &Source, value: Option<Spanned<Number>>) -> Result<Option<f64>, SceneError> {
+    let Some(value) = value else {
+        return Ok(None);
+    };
+    let Number(ends) = *value.get_ref();
+    if !(ends > 0.0 && ends.is_finite()) {
+        let what = format!(
+            "must be a time above 0 s, or left out, is {}",
+            shown::number(ends)
+        );
+        return Err(Place::new(source, Subject::Scene).error(value.span(), "ends", what));
+    }
+    Ok(Some(ends))
 }

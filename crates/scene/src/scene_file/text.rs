@@ -17,6 +17,7 @@ pub(super) struct Header {
     pub(super) method: Option<Spanned<String>>,
     pub(super) collision: Option<Spanned<String>>,
     pub(super) tolerance: Option<Spanned<Number>>,
+    pub(super) ends: Option<Spanned<Number>>,
 }
 
 /// A `[[body]]`.

@@ -25,6 +25,7 @@ pub(crate) fn write(scene: &Scene) -> String {
         collision: Some(spanned(collision_name(scene.collision).to_owned())),
         tolerance: (scene.tolerance != Settings::default().tolerance)
             .then(|| spanned(Number(scene.tolerance))),
+        ends: scene.ends.map(|ends| spanned(Number(ends))),
     };
     let file = File {
         header,

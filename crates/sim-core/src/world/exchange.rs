@@ -1,6 +1,6 @@
 //! What two bodies that meet exchange.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use super::{Collision, scene::Scene, state::State};
 use crate::{
@@ -24,6 +24,8 @@ pub struct Impact {
     pub point: DVec3,
     /// Where the bodies were then, m; in the discrete modes too, though they go back from there.
     pub positions: (DVec3, DVec3),
+    /// How their shapes were turned into the world then; not at all where bodies do not turn.
+    pub rotations: (DQuat, DQuat),
     /// Unit normal, from the first body to the second.
     pub normal: DVec3,
     /// Impulse on the second body along the normal, and on the first against it, N s.
@@ -34,11 +36,12 @@ pub struct Impact {
     pub feature: Option<Feature>,
 }
 
-/// When two bodies have an impact, s, and where they are then, m.
+/// When two bodies have an impact, s, where they are then, m, and how they are turned.
 #[derive(Clone, Copy)]
 pub(super) struct Instant {
     pub(super) time: f64,
     pub(super) positions: (DVec3, DVec3),
+    pub(super) rotations: (DQuat, DQuat),
 }
 
 impl Scene<'_> {
@@ -105,6 +108,8 @@ impl Scene<'_> {
         Instant {
             time: self.time + part * self.settings.dt,
             positions: (place(i), place(j)),
+            // The discrete modes turn nothing.
+            rotations: (DQuat::IDENTITY, DQuat::IDENTITY),
         }
     }
 
@@ -148,6 +153,7 @@ impl Scene<'_> {
             bodies,
             point: contact.point,
             positions: at.positions,
+            rotations: at.rotations,
             normal: contact.normal,
             impulse,
             speeds,

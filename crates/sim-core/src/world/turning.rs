@@ -122,12 +122,14 @@ impl Bodies {
     /// Turns a body's shape into the world.
     pub(super) fn rotation_in(&self, state: &State, body: usize) -> DQuat {
         match self.turners.slot(body) {
-            Some(slot) => {
-                let axes = self.turners.inertia[slot].axes();
-                (state.turned[slot].rotation * axes.inverse()).normalize()
-            }
+            Some(slot) => self.rotation_of(slot, &state.turned[slot]),
             None => DQuat::IDENTITY,
         }
+    }
+
+    /// The same of a body that turns, by its slot.
+    pub(super) fn rotation_of(&self, slot: usize, turned: &Turned) -> DQuat {
+        (turned.rotation * self.turners.inertia[slot].axes().inverse()).normalize()
     }
 
     /// The centre of mass in the shape's frame, m, of a body that turns; of others the place is the origin.

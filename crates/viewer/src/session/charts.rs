@@ -39,7 +39,7 @@ struct Part {
 }
 
 /// All plots, in the order in which they are offered.
-pub static CHARTS: [Chart; 5] = [
+pub static CHARTS: [Chart; 6] = [
     Chart {
         title: "Energy",
         unit: "J",
@@ -106,6 +106,35 @@ pub static CHARTS: [Chart; 5] = [
                 name: "z",
                 colour: SECOND,
                 value: |s| Some(s.momentum.z),
+            },
+        ],
+    },
+    Chart {
+        title: "Angular momentum",
+        unit: "kg m²/s",
+        meaning: "About the origin, Σ x × m v + I ω: its size, and its parts along x, y and z. What acts along the \
+                  line to the origin, or between bodies that turn, does not change it",
+        logarithmic: false,
+        main: Part {
+            name: "size",
+            colour: RUN,
+            value: |s| Some(s.angular_momentum.length()),
+        },
+        parts: &[
+            Part {
+                name: "x",
+                colour: FIRST,
+                value: |s| Some(s.angular_momentum.x),
+            },
+            Part {
+                name: "y",
+                colour: THIRD,
+                value: |s| Some(s.angular_momentum.y),
+            },
+            Part {
+                name: "z",
+                colour: SECOND,
+                value: |s| Some(s.angular_momentum.z),
             },
         ],
     },
@@ -208,6 +237,17 @@ impl Session {
         let mut curves: Vec<Curve> = others.collect();
         curves.push(curve(&own, &chart.main));
         curves
+    }
+
+    /// The title of the chart that tells most beside the energy: of what turns, else of errors where they are
+    /// known, else of what moves.
+    pub fn telling_chart(&self) -> &'static str {
+        let mut samples = self.playback().samples();
+        match samples.any(|sample| sample.error.is_some()) {
+            _ if super::turns(self.world()) => "Angular momentum",
+            true => "Path error",
+            false => "Momentum",
+        }
     }
 
     /// Speed against error: of the run and of each variant the decimal logarithms of the real time for

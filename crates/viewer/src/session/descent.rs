@@ -26,10 +26,24 @@ pub struct Level {
     boxes: [Vec<(usize, bool)>; 2],
 }
 
+/// One comparison of the descent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pair {
+    /// The boxes, by their places among [`Bvh::boxes`].
+    boxes: [usize; 2],
+    /// Whether they meet.
+    pub meet: bool,
+    /// How many pairs of the boxes in them come next if they meet; none where neither has boxes in it, and
+    /// triangles are tested.
+    pub below: usize,
+}
+
 /// The boxes of a tree in the order of [`Bvh::boxes`], each with the places of its children.
 struct Tree {
     boxes: Vec<Aabb>,
     children: Vec<Vec<usize>>,
+    /// Each place, in order.
+    itself: Vec<usize>,
 }
 
 impl Tree {
@@ -47,26 +61,76 @@ impl Tree {
             boxes.push(aabb);
             children.push(Vec::new());
         }
-        Self { boxes, children }
+        Self {
+            itself: (0..boxes.len()).collect(),
+            boxes,
+            children,
+        }
     }
+
+    /// What a box is compared by on the way down: the boxes in it, or itself where it is a leaf.
+    fn below(&self, n: usize) -> &[usize] {
+        match self.children[n].is_empty() {
+            true => &self.itself[n..=n],
+            false => &self.children[n],
+        }
+    }
+
+    /// The pairs that come after two boxes that meet; none after two leaves.
+    fn after(&self, other: &Self, [a, b]: [usize; 2]) -> Vec<[usize; 2]> {
+        if self.children[a].is_empty() && other.children[b].is_empty() {
+            return Vec::new();
+        }
+        let others = other.below(b);
+        let all = self.below(a).iter();
+        all.flat_map(|&a| others.iter().map(move |&b| [a, b]))
+            .collect()
+    }
+
+    /// Whether a box meets one of another mesh, which is displaced.
+    fn meets(&self, other: &Self, [a, b]: [usize; 2], offset: DVec3) -> bool {
+        let (a, b) = (self.boxes[a], other.boxes[b]);
+        let apart = b.centre() + offset - a.centre();
+        let reach = a.half_extent() + b.half_extent();
+        apart.abs().cmple(reach).all()
+    }
+}
+
+/// All comparisons one after the other, each pair of boxes followed by what is in it, as a search goes that
+/// looks for all hits.
+pub fn pairs(first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Pair> {
+    let (first, second) = (Tree::of(first), Tree::of(second));
+    let mut left = vec![[0, 0]];
+    let mut pairs = Vec::new();
+    while let Some(boxes) = left.pop() {
+        if pairs.len() == MOST_PAIRS {
+            break;
+        }
+        let meet = first.meets(&second, boxes, offset);
+        let after = first.after(&second, boxes);
+        pairs.push(Pair {
+            boxes,
+            meet,
+            below: after.len(),
+        });
+        if meet {
+            left.extend(after.into_iter().rev());
+        }
+    }
+    pairs
 }
 
 /// All levels, from the two boxes around everything to pairs of leaves, with the second mesh displaced.
 pub fn descent(first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Level> {
     let (first, second) = (Tree::of(first), Tree::of(second));
-    let mut pairs = vec![(0, 0)];
+    let mut pairs = vec![[0, 0]];
     let mut levels = Vec::new();
     while !pairs.is_empty() && pairs.len() <= MOST_PAIRS {
-        let meets = |&(a, b): &(usize, usize)| {
-            let (a, b) = (first.boxes[a], second.boxes[b]);
-            let apart = b.centre() + offset - a.centre();
-            let reach = a.half_extent() + b.half_extent();
-            apart.abs().cmple(reach).all()
-        };
-        let meeting: Vec<(usize, usize)> = pairs.iter().copied().filter(|p| meets(p)).collect();
-        let listed = |of: fn(&(usize, usize)) -> usize| {
-            let mut boxes: Vec<(usize, bool)> = pairs.iter().map(|p| (of(p), false)).collect();
-            boxes.extend(meeting.iter().map(|p| (of(p), true)));
+        let meets = |&&pair: &&[usize; 2]| first.meets(&second, pair, offset);
+        let meeting: Vec<[usize; 2]> = pairs.iter().filter(meets).copied().collect();
+        let listed = |of: usize| {
+            let mut boxes: Vec<(usize, bool)> = pairs.iter().map(|p| (p[of], false)).collect();
+            boxes.extend(meeting.iter().map(|p| (p[of], true)));
             // Of each box the last entry, which says whether any pair meets.
             boxes.sort_unstable();
             boxes.dedup_by(|later, kept| {
@@ -79,23 +143,11 @@ pub fn descent(first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Level> {
         levels.push(Level {
             compared: pairs.len(),
             meeting: meeting.len(),
-            boxes: [listed(|p| p.0), listed(|p| p.1)],
+            boxes: [listed(0), listed(1)],
         });
         // Both go down; a leaf waits for the other to come to its leaves.
-        let below = |tree: &Tree, n: usize| match tree.children[n].is_empty() {
-            true => vec![n],
-            false => tree.children[n].clone(),
-        };
-        pairs = meeting
-            .iter()
-            .filter(|&&(a, b)| !first.children[a].is_empty() || !second.children[b].is_empty())
-            .flat_map(|&(a, b)| {
-                let others = below(&second, b);
-                below(&first, a)
-                    .into_iter()
-                    .flat_map(move |a| others.clone().into_iter().map(move |b| (a, b)))
-            })
-            .collect();
+        let below = meeting.iter().flat_map(|&pair| first.after(&second, pair));
+        pairs = below.collect();
     }
     levels
 }
@@ -103,25 +155,42 @@ pub fn descent(first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Level> {
 impl Session {
     /// The descent for the two bodies that are compared, as they are now.
     pub fn descent(&mut self) -> Vec<Level> {
-        let (Contest::Pair(i, j) | Contest::Apart(i, j)) = self.contest() else {
-            return Vec::new();
-        };
-        self.world.build_bvhs();
-        let (Some(first), Some(second)) = (self.world.bvh(i), self.world.bvh(j)) else {
-            return Vec::new();
-        };
-        let offset = self.world.position(j) - self.world.position(i);
-        descent(first, second, offset)
+        self.descend(descent).unwrap_or_default()
     }
 
-    /// Goes up or down in the descent that is shown; shows it if it was not.
+    /// Its comparisons one by one.
+    pub fn pairs(&mut self) -> Vec<Pair> {
+        self.descend(pairs).unwrap_or_default()
+    }
+
+    /// Looks at the trees of the two bodies that are compared, the second displaced.
+    fn descend<T>(&mut self, look: impl Fn(&Bvh, &Bvh, DVec3) -> T) -> Option<T> {
+        let (Contest::Pair(i, j) | Contest::Apart(i, j)) = self.contest() else {
+            return None;
+        };
+        self.world.build_bvhs();
+        let offset = self.world.position(j) - self.world.position(i);
+        Some(look(self.world.bvh(i)?, self.world.bvh(j)?, offset))
+    }
+
+    /// Goes up or down in the descent that is shown, level by level; shows it if it was not.
     pub fn step_descent(&mut self, by: isize) {
         let deepest = self.descent().len().saturating_sub(1);
+        self.display.pair = None;
         let shown = &mut self.display.descent;
         *shown = Some(shown.map_or(0, |level| level.saturating_add_signed(by).min(deepest)));
     }
 
-    /// The boxes of the level shown: those that come into question for the next one, and the others.
+    /// Goes to the next comparison of the descent or to one before, or begins with the first.
+    pub fn step_pair(&mut self, by: isize) {
+        let last = self.pairs().len().saturating_sub(1);
+        self.display.descent.get_or_insert(0);
+        let shown = &mut self.display.pair;
+        *shown = Some(shown.map_or(0, |pair| pair.saturating_add_signed(by).min(last)));
+    }
+
+    /// The boxes of the level shown: those that come into question for the next one, and the others. Or those
+    /// of one comparison, among those that were found to meet before.
     pub(super) fn add_descent(&mut self, lines: &mut Vec<Line>) {
         let Some(shown) = self.display.descent else {
             return;
@@ -129,26 +198,67 @@ impl Session {
         let (Contest::Pair(i, j) | Contest::Apart(i, j)) = self.contest() else {
             return;
         };
-        let levels = self.descent();
-        let Some(level) = levels.get(shown.min(levels.len().saturating_sub(1))) else {
-            return;
+        let listed = match self.display.pair {
+            None => self.level_boxes(shown),
+            Some(shown) => self.pair_boxes(shown),
         };
-        for (body, listed) in [i, j].into_iter().zip(&level.boxes) {
+        for (body, listed) in [i, j].into_iter().zip(listed) {
             let Some(bvh) = self.world.bvh(body) else {
                 continue;
             };
             let boxes: Vec<Aabb> = bvh.boxes().map(|(_, aabb)| aabb).collect();
             let origin = self.world.position(body);
-            for &(n, meets) in listed {
+            for (n, colour, width) in listed {
                 let (middle, half) = (boxes[n].centre(), boxes[n].half_extent());
                 let edges = super::overlaps::edges(middle, half);
                 lines.extend(edges.map(|(from, to)| Line {
                     from: origin + from,
                     to: origin + to,
-                    colour: if meets { MEET } else { APART },
-                    width: if meets { 2.2 } else { 1.5 },
+                    colour,
+                    width,
                 }));
             }
         }
     }
+
+    fn level_boxes(&mut self, shown: usize) -> [Vec<Drawn>; 2] {
+        let levels = self.descent();
+        let Some(level) = levels.get(shown.min(levels.len().saturating_sub(1))) else {
+            return Default::default();
+        };
+        let drawn = |&(n, meets): &(usize, bool)| match meets {
+            true => (n, MEET, 2.2),
+            false => (n, APART, 1.5),
+        };
+        let of = |which: usize| level.boxes[which].iter().map(drawn).collect();
+        [of(0), of(1)]
+    }
+
+    fn pair_boxes(&mut self, shown: usize) -> [Vec<Drawn>; 2] {
+        let pairs = self.pairs();
+        let Some(now) = pairs.get(shown.min(pairs.len().saturating_sub(1))) else {
+            return Default::default();
+        };
+        let before = &pairs[..shown.min(pairs.len())];
+        let of = |which: usize| {
+            let mut met: Vec<usize> = before
+                .iter()
+                .filter(|pair| pair.meet)
+                .map(|pair| pair.boxes[which])
+                .collect();
+            met.sort_unstable();
+            met.dedup();
+            let [red, green, blue, _] = MEET;
+            let faint = [red, green, blue, 0.35];
+            let now = (now.boxes[which], if now.meet { MEET } else { APART }, 4.0);
+            met.into_iter()
+                .map(|n| (n, faint, 1.0))
+                .chain([now])
+                .collect()
+        };
+        [of(0), of(1)]
+    }
 }
+
+/// A box of a tree by its place, its colour, and the width of its edges.
+type Drawn = (usize, [f32; 4], f32);

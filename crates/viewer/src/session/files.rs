@@ -39,6 +39,7 @@ impl Session {
             method: settings.method,
             collision: settings.collision,
             tolerance: settings.tolerance,
+            ends: None,
             bodies: Vec::new(),
             forces: Vec::new(),
         };

@@ -119,7 +119,7 @@ impl Session {
         }
     }
 
-    fn bounds_unturned(&self, i: usize) -> Bounds {
+    pub(super) fn bounds_unturned(&self, i: usize) -> Bounds {
         let bounds = self.world.shape(i).and_then(Shape::bounds);
         bounds.map_or_else(Bounds::default, |[low, high]| Bounds {
             centre: (low + high) * 0.5,

@@ -13,7 +13,7 @@ pub(super) const MOST: usize = 200;
 const SHOWN: f64 = 0.5;
 /// Rounding of the time of the picture, in steps.
 const NOW: f64 = 1e-6;
-const ORANGE: [f32; 3] = [1.0, 0.45, 0.05];
+pub(super) const ORANGE: [f32; 3] = [1.0, 0.45, 0.05];
 /// Length of a normal: in half sizes of the smaller body, and at least in distances of the camera.
 const LENGTH: f64 = 1.6;
 const LEAST_LENGTH: f64 = 0.03;
@@ -41,15 +41,13 @@ impl Session {
     /// What touches, each point as a dot, its normal as a thin line, and on it the impulse on the second body, or on
     /// the first where nothing moves that, as an arrow, as long as it is strong. The bodies do not hide them.
     pub(super) fn add_impacts(&self, panes: &mut Vec<Pane>, marks: &mut Vec<Line>) {
-        let slack = NOW * self.world.settings().dt;
-        // Those that the picture has come to.
+        let slack = self.slack();
         let now = self.shown_time() + slack;
-        let impacts: Vec<&Impact> = self.impacts.0.iter().filter(|i| i.time <= now).collect();
-        let latest = impacts.iter().map(|impact| impact.time).fold(0.0, f64::max) - slack;
-        let strongest = impacts.iter().map(|impact| impact.impulse);
-        let strongest = strongest.fold(f64::MIN_POSITIVE, f64::max);
+        let latest = self.seen_impacts().map(|impact| impact.time);
+        let latest = latest.fold(0.0, f64::max) - slack;
+        let strongest = self.strongest_impulse().unwrap_or(f64::MIN_POSITIVE);
         let [_, _, backward] = self.camera.axes();
-        for impact in impacts {
+        for impact in self.seen_impacts() {
             let age = (now - impact.time) / SHOWN;
             let fresh = (1.0 - age).clamp(0.0, 1.0).powi(2) as f32;
             // Of the latest instant alone, or that of a crowd would be a tangle.
@@ -83,6 +81,26 @@ impl Session {
             line(tip, tip - 2.0 * HEAD * arrow - aside, width);
             line(impact.point, impact.point, 3.0 * width);
         }
+    }
+
+    /// Those that the picture has come to.
+    fn seen_impacts(&self) -> impl Iterator<Item = &Impact> {
+        let now = self.shown_time() + self.slack();
+        self.impacts
+            .0
+            .iter()
+            .filter(move |impact| impact.time <= now)
+    }
+
+    /// Rounding of the time of the picture, s.
+    fn slack(&self) -> f64 {
+        NOW * self.world.settings().dt
+    }
+
+    /// The strongest impulse that is drawn, N s: the arrows are compared with it.
+    pub(super) fn strongest_impulse(&self) -> Option<f64> {
+        let drawn = self.seen_impacts().filter(|_| self.display.impacts);
+        drawn.map(|impact| impact.impulse).reduce(f64::max)
     }
 
     fn normal_length(&self, impact: &Impact) -> f64 {

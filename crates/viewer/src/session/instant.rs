@@ -1,17 +1,20 @@
-//! The instant that is drawn: between two states bodies go straight, and where they have impacts in the
-//! step, through the places of these at their times.
+//! The instant that is drawn: between two states bodies go straight and turn evenly, and where they have
+//! impacts in the step, through the poses that they have in these at their times.
 
 use sim_core::{Collision, DQuat, DVec3, Impact, World};
 
 use super::{Session, State, clock};
 
 /// A state counts as reached this part of a step before it.
-const SAME: f64 = 1e-9;
+pub(super) const SAME: f64 = 1e-9;
 
 /// Where bodies have impacts within the step that led to the state looked at, in the order of bodies and
 /// times.
 #[derive(Debug, Default)]
 pub(super) struct Passes(Vec<Pass>);
+
+/// Where what moves of a body is, m, and how its shape is turned.
+type Placed = (DVec3, DQuat);
 
 /// A body at an impact.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +23,7 @@ struct Pass {
     /// Part of the step.
     part: f64,
     place: DVec3,
+    rotation: DQuat,
 }
 
 impl Passes {
@@ -34,7 +38,13 @@ impl Passes {
         let both = |impact: &Impact| {
             let part = ((impact.time - begin) / settings.dt).clamp(0.0, 1.0);
             let ((i, j), (a, b)) = (impact.bodies, impact.positions);
-            [(i, a), (j, b)].map(|(body, place)| Pass { body, part, place })
+            let (first, second) = impact.rotations;
+            [(i, a, first), (j, b, second)].map(|(body, place, rotation)| Pass {
+                body,
+                part,
+                place,
+                rotation,
+            })
         };
         let mut all: Vec<Pass> = impacts.iter().flat_map(both).collect();
         all.sort_by(|a, b| a.body.cmp(&b.body).then(a.part.total_cmp(&b.part)));
@@ -79,7 +89,14 @@ impl Session {
 
     /// How body `i` is drawn turned.
     pub(super) fn shown_rotation(&self, i: usize) -> DQuat {
-        self.world.interpolated_pose(i, self.shown_part()).1
+        match self.shown_part() {
+            _ if !self.world.turns(i) => DQuat::IDENTITY,
+            1.0 => self.world.rotation(i),
+            part => {
+                let [(from, a), (to, b)] = self.legs(i, part);
+                a.1.slerp(b.1, ((part - from) / (to - from)).clamp(0.0, 1.0))
+            }
+        }
     }
 
     /// Where what moves of body `i` is drawn, m: its centre of mass if it turns, else its origin.
@@ -88,7 +105,7 @@ impl Session {
             1.0 => self.world.position(i),
             part => {
                 let [(from, a), (to, b)] = self.legs(i, part);
-                a.lerp(b, ((part - from) / (to - from)).clamp(0.0, 1.0))
+                a.0.lerp(b.0, ((part - from) / (to - from)).clamp(0.0, 1.0))
             }
         }
     }
@@ -100,7 +117,7 @@ impl Session {
             return self.world.velocity(i);
         }
         let [(from, a), (to, b)] = self.legs(i, part);
-        (b - a) / ((to - from) * self.world.settings().dt)
+        (b.0 - a.0) / ((to - from) * self.world.settings().dt)
     }
 
     /// Where a body has passed in this step, up to the instant that is drawn, m.
@@ -111,20 +128,23 @@ impl Session {
         passed.map(|pass| pass.place)
     }
 
-    /// The part of the step and the place, m, that a body comes from at a part of the step, and those
-    /// that it goes to.
-    fn legs(&self, i: usize, part: f64) -> [(f64, DVec3); 2] {
+    /// The part of the step and the pose that a body comes from at a part of the step, and those that it
+    /// goes to: places, m, of what moves, and rotations.
+    fn legs(&self, i: usize, part: f64) -> [(f64, Placed); 2] {
         let passes = self.passes.of_body(i).iter();
-        let mut from = (0.0, self.world.previous_position(i));
+        let start = self.world.interpolated_pose(i, 0.0).1;
+        let mut from = (0.0, (self.world.previous_position(i), start));
         for pass in passes {
             // Of several at one time the first.
+            let there = (pass.part, (pass.place, pass.rotation));
             if pass.part >= part && pass.part > from.0 {
-                return [from, (pass.part, pass.place)];
+                return [from, there];
             }
-            from = (pass.part, pass.place);
+            from = there;
         }
         // At the end of a step that ends with an impact there is no way left.
-        [from, (1.0_f64.max(from.0 + SAME), self.world.position(i))]
+        let end = (self.world.position(i), self.world.rotation(i));
+        [from, (1.0_f64.max(from.0 + SAME), end)]
     }
 
     /// Holds still at a simulated time, s, within the step that leads past it; beyond what is kept at

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use sim_core::{Collision, DVec3, Profile, StepError, World};
 
-use super::instant::Passes;
+use super::instant::{Passes, SAME};
 use super::playback::Moment;
 use super::{
     Exact, Impacts, MAX_RATE, MIN_RATE, Remedy, Sample, Session, State, Trails, impacts, missed,
@@ -123,7 +123,7 @@ impl Session {
                 if steps == 0 {
                     self.figures.steps_per_frame = 0;
                 }
-                steps
+                steps.min(self.steps_to_the_end())
             }
             State::Paused if !self.under_way => std::mem::take(&mut self.steps_wanted),
             State::Paused | State::Layout => 0,
@@ -155,6 +155,7 @@ impl Session {
             return;
         }
         self.under_way = false;
+        let left = self.time_left();
         self.world = done.world;
         self.exact = done.exact;
         if done.taken > 0 {
@@ -193,6 +194,33 @@ impl Session {
                     self.notices.offer("step", remedy);
                 }
             }
+        }
+        self.hold_at_the_end(left);
+    }
+
+    /// Steps until what the scene shows is over, at least one; as many as one likes where it never is, or
+    /// where it is over already.
+    fn steps_to_the_end(&self) -> u32 {
+        let left = self.time_left().map(|left| left / self.world.settings().dt);
+        left.map_or(u32::MAX, |steps| (steps.ceil() as u32).max(1))
+    }
+
+    /// Simulated time until what the scene shows is over, s, where that is to come.
+    fn time_left(&self) -> Option<f64> {
+        let slack = SAME * self.world.settings().dt;
+        let left = self.scene.ends? - self.world.time();
+        (left > slack).then_some(left)
+    }
+
+    /// Holds still where what the scene shows is over, once.
+    fn hold_at_the_end(&mut self, came_from: Option<f64>) {
+        if let (Some(_), None, Some(ends)) = (came_from, self.time_left(), self.scene.ends)
+            && self.state == State::Running
+        {
+            self.pause();
+            self.instant = None;
+            let text = format!("The scene ends here, at {ends} s. Space goes on, R goes back.");
+            self.notices.info("end", text);
         }
     }
 

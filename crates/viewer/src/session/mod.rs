@@ -9,6 +9,7 @@
 //! Nothing here draws, opens windows or reads a clock: see `picture` for what is drawn, and
 //! [`Session::due`] for how time comes in and steps are taken.
 
+mod arrows;
 mod axes;
 mod ball;
 mod charts;
@@ -50,11 +51,12 @@ use std::time::Duration;
 use scene::{Scene, SceneBody};
 use sim_core::{Collision, FixedStep, Method, Settings, World};
 
+pub use arrows::Scale;
 pub use axes::AxisMarks;
 use ball::Balls;
 pub use charts::{CHARTS, Chart, Curve, on_dark};
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
-pub use descent::{Level, descent};
+pub use descent::{Level, Pair, descent, pairs};
 pub use exact::Exact;
 pub use figures::{Drift, Figures, Reference};
 pub use history::Leaving;
@@ -208,6 +210,9 @@ impl Session {
         // Where paths are curved, they show what a method does; those of a crowd hide it.
         let few = session.world.len() <= MOST_TRAILS;
         session.show_trails(few && session.is_pushed());
+        // Of a crowd that turns they would hide it too.
+        let turning = (0..session.world.len()).filter(|&i| session.world.turns(i));
+        session.display.spins = turning.count() == 1;
         session.begin_record();
         session.frame_opening();
         session.view.home = Some(session.camera);
@@ -405,6 +410,7 @@ impl Session {
             && let Ok(clock) = clock(settings.dt, self.speed)
         {
             self.clock = clock;
+            self.trails.pace(settings.dt);
         }
         self.scene.dt = settings.dt;
         self.scene.method = settings.method;

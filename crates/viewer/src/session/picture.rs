@@ -5,14 +5,13 @@ use sim_core::{DVec3, Shape};
 use super::Session;
 use super::framing::Bounds;
 use super::overlaps::edges;
-use crate::picture::{Arrow, Line, Model, PALETTE, Picture};
+use crate::picture::{Line, Model, PALETTE, Picture};
 
-/// Velocity arrows.
-const BLUE: [f32; 3] = [0.10, 0.35, 1.0];
-/// Force arrows.
-const RED: [f32; 3] = [0.85, 0.12, 0.10];
 /// Half-spaces that have no colour of their own.
 const SLATE: [f32; 3] = [0.40, 0.45, 0.52];
+
+/// What bodies at rest are nearly as light as.
+const GREY: f32 = 0.62;
 
 /// Which boxes of the bounding volume hierarchies are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +39,13 @@ pub struct Display {
     pub forces: bool,
     /// Metres that a force arrow is long for each newton.
     pub arrow_metres: f64,
+    /// Arrows of angular velocity and of angular momentum on all bodies that turn rather than on the
+    /// selected one.
+    pub spins: bool,
+    /// Metres that an arrow is long for each rad/s.
+    pub spin_metres: f64,
+    /// Metres that an arrow is long for each kg m²/s.
+    pub momentum_metres: f64,
     /// The ground grid.
     pub grid: bool,
     /// Letters and numbers on the axes, where there is a grid.
@@ -50,12 +56,16 @@ pub struct Display {
     pub wireframe: bool,
     /// Where bodies have been; see [`Session::show_trails`].
     pub trails: bool,
+    /// Bodies that stand still in grey.
+    pub rest: bool,
     /// Springs, anchors and centres of attraction.
     pub ties: bool,
     /// Points, normals and impulses of late impacts. Off, none are listed.
     pub impacts: bool,
     /// The level of the descent through two hierarchies that is shown, if one is.
     pub descent: Option<usize>,
+    /// The comparison of it that is shown instead, if one is.
+    pub pair: Option<usize>,
     /// Bodies between the last two states while running, rather than at the last one.
     pub between: bool,
 }
@@ -73,14 +83,19 @@ impl Default for Display {
             arrow_time: 0.5,
             forces: false,
             arrow_metres: 0.1,
+            spins: false,
+            spin_metres: 0.1,
+            momentum_metres: 1.0,
             grid: true,
             numbers: true,
             names: false,
             wireframe: false,
             trails: false,
+            rest: false,
             ties: true,
             impacts: true,
             descent: None,
+            pair: None,
             between: true,
         }
     }
@@ -114,16 +129,14 @@ impl Session {
                     mesh,
                     position: self.shown_position(i),
                     rotation: self.shown_rotation(i),
-                    colour: self.colour(i),
+                    colour: match self.display.rest && self.is_at_rest(i) {
+                        true => self.colour(i).map(|part| GREY + 0.15 * (part - GREY)),
+                        false => self.colour(i),
+                    },
                     selected,
                 });
             }
-            if selected || self.display.all_velocities {
-                picture.arrows.extend(self.velocity_arrow(i));
-            }
-            if self.display.forces {
-                picture.arrows.extend(self.force_arrow(i));
-            }
+            self.add_arrows(i, &mut picture);
             let all = self.display.bvh.every_body || self.selection.is_none();
             if self.display.bvh.shown && (selected || all) {
                 self.add_boxes(i, &mut picture.lines);
@@ -172,6 +185,13 @@ impl Session {
         self.scene.bodies[i].colour.unwrap_or(default)
     }
 
+    /// Whether a body that can move stands still, to the last bit.
+    pub fn is_at_rest(&self, i: usize) -> bool {
+        let world = &self.world;
+        let still = world.velocity(i) == DVec3::ZERO && world.spin(i) == DVec3::ZERO;
+        still && world.kind(i).is_movable()
+    }
+
     /// Number of levels in the deepest hierarchy among the meshes; builds those missing.
     pub fn bvh_depth(&mut self) -> usize {
         self.world.build_bvhs();
@@ -211,41 +231,22 @@ impl Session {
             .min(deepest);
     }
 
-    fn velocity_arrow(&self, i: usize) -> Option<Arrow> {
-        self.arrow(i, self.shown_velocity(i) * self.display.arrow_time, BLUE)
-    }
-
-    fn force_arrow(&self, i: usize) -> Option<Arrow> {
-        let force = self.world.applied_force(i);
-        self.arrow(i, force * self.display.arrow_metres, RED)
-    }
-
-    /// From the surface of the body's box, so that a short arrow is not hidden inside it.
-    fn arrow(&self, i: usize, span: DVec3, colour: [f32; 3]) -> Option<Arrow> {
-        let direction = span.try_normalize()?;
-        let Bounds { centre, half } = self.bounds(i);
-        let place = match self.world.shape(i) {
-            Some(Shape::HalfSpace { .. }) => self.foot(i, self.room().0),
-            _ => self.shown_position(i) + centre,
-        };
-        let half = if half == DVec3::ZERO {
-            DVec3::splat(0.05)
-        } else {
-            half
-        };
-        let exit = (half / direction.abs()).min_element();
-        let from = place + direction * exit;
-        Some(Arrow {
-            from,
-            to: from + span,
-            colour,
-            radius: (0.07 * half.max_element()) as f32,
-        })
-    }
-
     fn add_boxes(&self, i: usize, lines: &mut Vec<Line>) {
-        let Some(bvh) = self.world.bvh(i) else { return };
         let view = self.display.bvh;
+        let Some(bvh) = self.world.bvh(i) else {
+            // What has no triangles has one box.
+            let Bounds { centre, half } = self.bounds(i);
+            if half != DVec3::ZERO && (view.every_depth || view.depth == 0) {
+                let edges = edges(self.shown_position(i) + centre, half);
+                lines.extend(edges.map(|(from, to)| Line {
+                    from,
+                    to,
+                    colour: depth_colour(0, 1),
+                    width: 1.5,
+                }));
+            }
+            return;
+        };
         let levels = bvh.depth();
         let chosen = view.depth.min(levels.saturating_sub(1));
         let (origin, rotation) = (self.shown_position(i), self.shown_rotation(i));

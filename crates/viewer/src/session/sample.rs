@@ -19,6 +19,8 @@ pub struct Sample {
     pub potential: f64,
     /// Momentum, kg m/s.
     pub momentum: DVec3,
+    /// Angular momentum about the origin, kg m²/s: of all that moves, and of how it turns.
+    pub angular_momentum: DVec3,
     /// Largest distance of a body from its exact place, m, where that is known.
     pub error: Option<f64>,
     /// Real time that the step took, s; none of a state that no step led to.
@@ -41,6 +43,7 @@ impl Sample {
             turning: turns(world).then(|| world.turning_energy()),
             potential: world.potential_energy(),
             momentum: world.momentum(),
+            angular_momentum: world.angular_momentum_about(DVec3::ZERO),
             error,
             cost,
             phases: None,
@@ -75,7 +78,7 @@ pub struct Column {
 }
 
 /// Every figure, in the order of the tables.
-pub static COLUMNS: [Column; 16] = [
+pub static COLUMNS: [Column; 19] = [
     Column {
         name: "time_s",
         value: |s| Some(s.time),
@@ -107,6 +110,18 @@ pub static COLUMNS: [Column; 16] = [
     Column {
         name: "momentum_z_kg_m_s",
         value: |s| Some(s.momentum.z),
+    },
+    Column {
+        name: "angular_momentum_x_kg_m2_s",
+        value: |s| Some(s.angular_momentum.x),
+    },
+    Column {
+        name: "angular_momentum_y_kg_m2_s",
+        value: |s| Some(s.angular_momentum.y),
+    },
+    Column {
+        name: "angular_momentum_z_kg_m2_s",
+        value: |s| Some(s.angular_momentum.z),
     },
     Column {
         name: "path_error_m",

@@ -76,6 +76,8 @@ pub(super) struct Studio {
     waiting: Option<Shooting>,
     /// Of what is waiting or under way, and whether it is a film.
     reel: Option<(Reel, bool)>,
+    /// When the next film begins, s, if not where what is kept does.
+    from: Option<f64>,
 }
 
 impl Session {
@@ -85,7 +87,21 @@ impl Session {
         self.shoot(vec![picture], size);
     }
 
-    /// Lets the run that is kept, up to where it is looked at, be drawn into a file at the speed that is
+    /// Lets the next film begin at a state that is kept, or no longer if it does.
+    pub fn begin_film_at(&mut self, state: usize) {
+        let time = self.playback.samples().nth(state).map(|sample| sample.time);
+        self.studio.from = time.filter(|_| self.film_start() != time);
+    }
+
+    /// When the next film begins, s, if that was chosen and is kept.
+    pub fn film_start(&self) -> Option<f64> {
+        let [first, last] = self.playback.span();
+        self.studio
+            .from
+            .filter(|from| (first..=last).contains(from))
+    }
+
+    /// Lets the run that is kept, from where the film is to begin up to where it is looked at, be drawn into a file at the speed that is
     /// set, in the proportions of a size in pixels: its last 12 s where it takes longer.
     pub fn shoot_film(&mut self, [width, height]: [u32; 2]) {
         if self.state == State::Layout || self.playback.len() < 2 {
@@ -97,6 +113,10 @@ impl Session {
         let (now, instant) = (self.playback.now(), self.instant);
         let apart = self.speed * f64::from(DELAY) / TICKS;
         let [first, _] = self.playback.span();
+        let first = self
+            .film_start()
+            .filter(|&from| from < end)
+            .unwrap_or(first);
         let most = MOST_PICTURES
             .min(MOST_MODELS / self.world.len().max(1))
             .max(2);

@@ -550,3 +550,34 @@ fn opens_imports_and_saves() {
     );
     std::fs::remove_dir_all(&folder).expect("the folder is removed");
 }
+
+#[test]
+fn a_scene_holds_once_where_it_ends() {
+    let text =
+        "rate = 7\nends = 1\n[[body]]\nname = 'stone'\nvelocity = [1, 0, 0]\nmesh = 'cube.obj'";
+    let scene = Scene::parse(text, Path::new("end.toml")).expect("the text is a scene");
+    let mut session = Session::new(scene).expect("a world");
+    let go_on = |session: &mut Session| {
+        (0..200).for_each(|_| advance(session, FRAME, free()));
+    };
+    session.start();
+    go_on(&mut session);
+    assert_eq!(
+        (session.state(), session.world().steps()),
+        (State::Paused, 7)
+    );
+    assert!(!session.is_between(), "its last state is in the picture");
+    let told = session
+        .notices()
+        .iter()
+        .any(|notice| notice.text.contains("ends here, at 1 s"));
+    assert!(told);
+    session.start();
+    go_on(&mut session);
+    assert_eq!(session.state(), State::Running);
+    assert!(session.world().time() > 3.0);
+    session.reset();
+    session.start();
+    go_on(&mut session);
+    assert_eq!(session.world().steps(), 7, "and again after a reset");
+}

@@ -44,9 +44,15 @@ pub(super) fn parts(world: &World, impact: &Impact) -> [Option<Part>; 2] {
         .map(Some);
     }
     let ((i, j), (a, b)) = (impact.bodies, impact.positions);
-    [(i, a, impact.normal), (j, b, -impact.normal)].map(|(body, place, outward)| {
+    let (first, second) = impact.rotations;
+    let sides = [(i, a, first, impact.normal), (j, b, second, -impact.normal)];
+    sides.map(|(body, place, rotation, outward)| {
         let mesh = world.mesh(body)?;
-        at(mesh, world.bvh(body)?, impact.point - place, outward)
+        // In the frame of the mesh; of what turns the centre of mass is what has a place.
+        let back = rotation.inverse();
+        let centre = world.inertia(body).map(|inertia| inertia.centre());
+        let point = back * (impact.point - place) + centre.unwrap_or_default();
+        at(mesh, world.bvh(body)?, point, back * outward)
     })
 }
 

@@ -1,6 +1,6 @@
 //! The four labs: in which order their scenes are shown, and a guided tour of them.
 
-use sim_core::{Collision, Method};
+use sim_core::{Collision, DVec3, Method};
 
 use super::Session;
 
@@ -40,8 +40,8 @@ pub struct Attempt {
 /// Steps to just before the cube hits the cow at 60 Hz.
 const BEFORE_THE_COW: u32 = 44;
 
-/// The course.
-pub static LABS: [Lab; 4] = [
+/// The four labs of the course, and what is beyond them.
+pub static LABS: [Lab; 5] = [
     Lab {
         title: "1 Forward Euler",
         scenes: &["parabola", "spring"],
@@ -344,6 +344,51 @@ pub static LABS: [Lab; 4] = [
             },
         ],
     },
+    Lab {
+        title: "Beyond: bodies that turn",
+        scenes: &["tennis-racket", "cubes-turning"],
+        stops: &[
+            Stop {
+                title: "A racket that flips over",
+                scene: "tennis-racket",
+                watch: "The box turns about the middle one of its three axes. The green arrow is its angular \
+                        velocity ω, the dark red one its angular momentum L. Nothing acts on it, so L stays. \
+                        Watch after some seconds how ω leaves it, and the box flips over.",
+                attempts: &[
+                    Attempt {
+                        title: "About the middle axis",
+                        set_up: Session::start,
+                    },
+                    Attempt {
+                        title: "About the long axis",
+                        set_up: |session| spin(session, DVec3::new(5.0, 0.001, 0.0)),
+                    },
+                    Attempt {
+                        title: "About the short axis",
+                        set_up: |session| spin(session, DVec3::new(0.001, 5.0, 0.0)),
+                    },
+                ],
+                question: "Why does turning about the middle axis not last?",
+                answer: "Energy and angular momentum both stay. About the axes of the greatest and of the least \
+                         moment of inertia no other turning near by has the same two, so a small push stays \
+                         small. About the middle one there is, and it leads away, round to the other side, and \
+                         back.",
+            },
+            Stop {
+                title: "Half of the energy turns",
+                scene: "cubes-turning",
+                watch: "Twenty cubes fly about and do not turn at first. Impacts are off centre, and make them \
+                        turn. Watch in the plot of the energy what is in turning, and the total.",
+                attempts: &[Attempt {
+                    title: "Let them meet",
+                    set_up: Session::start,
+                }],
+                question: "Why is it half of the energy in the end, and not all or a tenth?",
+                answer: "A cube has three directions to move along and three axes to turn about. Impacts share the \
+                         energy among all six, on average alike: half is in moving, half in turning.",
+            },
+        ],
+    },
 ];
 
 /// What is in no lab.
@@ -370,7 +415,7 @@ impl Session {
         self.open(stop.scene);
         self.set_speed(1.0);
         self.compare.on = false;
-        self.display.descent = None;
+        (self.display.descent, self.display.pair) = (None, None);
         self.display.bvh.shown = false;
         if let Some(attempt) = stop.attempts.get(attempt) {
             (attempt.set_up)(self);
@@ -384,6 +429,14 @@ fn step_by(session: &mut Session, name: &str) {
     if let Some(method) = Method::named(name) {
         session.set_method(method);
     }
+}
+
+/// Lets the first body turn in another way.
+fn spin(session: &mut Session, spin: DVec3) {
+    session.select(Some(0));
+    session.set_spin(spin);
+    session.select(None);
+    session.start();
 }
 
 fn beside_exact(session: &mut Session, rate: f64) {

@@ -7,7 +7,9 @@ use sim_core::{DVec3, World};
 use super::Session;
 use crate::picture::Line;
 
-/// Steps that a path goes back.
+/// Simulated time that a path goes back at least, s, and its points: each is of a step, or where steps are
+/// short, of the last one of several.
+const TIME: f64 = 10.0;
 const LONGEST: usize = 600;
 /// Points of all paths together.
 const MOST_POINTS: usize = 60_000;
@@ -16,21 +18,37 @@ const MOST_POINTS: usize = 60_000;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Trails {
     bodies: usize,
-    /// A column of positions for each step, the latest last.
+    /// Columns of positions, the latest last.
     points: VecDeque<DVec3>,
+    /// Steps from one column to the next.
+    stride: u64,
+    /// Steps since the start.
+    steps: u64,
 }
 
 impl Trails {
     /// Begins afresh where the bodies of a world are.
     pub(super) fn begin(&mut self, world: &World) {
-        self.bodies = world.len();
-        self.points.clear();
-        self.extend(&positions(world).collect::<Vec<_>>());
+        (self.bodies, self.points) = (world.len(), positions(world).collect());
+        self.pace(world.settings().dt);
+    }
+
+    /// Notes from the latest column on steps of another length, s.
+    pub(super) fn pace(&mut self, dt: f64) {
+        let stride = TIME / (LONGEST as f64 * dt);
+        (self.stride, self.steps) = ((stride.round() as u64).max(1), 0);
     }
 
     /// Takes in the positions after some steps, and forgets those of long ago.
     pub(super) fn extend(&mut self, positions: &[DVec3]) {
-        self.points.extend(positions);
+        for column in positions.chunks_exact(self.bodies.max(1)) {
+            // What is between two columns that stay gives way to the latest.
+            if !self.steps.is_multiple_of(self.stride.max(1)) {
+                self.points.truncate(self.points.len() - self.bodies);
+            }
+            self.steps += 1;
+            self.points.extend(column);
+        }
         let kept = self.bodies * LONGEST.min(MOST_POINTS / self.bodies.max(1));
         self.points.drain(..self.points.len().saturating_sub(kept));
     }
@@ -73,7 +91,8 @@ impl Session {
         let mut from = None;
         let passed = self.passed_places(i);
         for (n, to) in points.take(whole).chain(passed).chain([end]).enumerate() {
-            let age = (n as f32 / whole.max(1) as f32).min(1.0);
+            // The oldest part stays in sight.
+            let age = 0.3 + 0.7 * (n as f32 / whole.max(1) as f32).min(1.0);
             if let Some(from) = from.filter(|&from| from != to) {
                 lines.push(Line {
                     from,

@@ -63,8 +63,11 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
 }
 
 fn buttons(ui: &mut egui::Ui, session: &mut Session) {
-    let running = session.state() == State::Running;
-    let start = if running { "⏸ Pause" } else { "▶ Start" };
+    let start = match session.state() {
+        State::Layout => "▶ Start",
+        State::Running => "⏸ Pause",
+        State::Paused => "▶ Go on",
+    };
     let button = Button::new(RichText::new(say(start)).strong()).min_size(egui::vec2(78.0, 26.0));
     if ui
         .add(button)

@@ -6,6 +6,7 @@ use sim_core::DVec3;
 
 use super::field;
 use super::handles::Handles;
+use crate::number;
 use crate::session::{Session, State};
 use crate::words::say;
 
@@ -149,6 +150,17 @@ fn turning(
     let meaning = "Angular velocity ω about the axes of the world";
     if let Some(value) = field::vector(ui, "Spin", "rad/s", meaning, spin) {
         session.set_spin(value);
+    }
+    let Some(i) = session.selection() else { return };
+    let world = session.world();
+    let three = |v: DVec3| [v.x, v.y, v.z].map(number::figure).join("  ");
+    let meaning = "Angular momentum about the centre of mass, L = I ω, kg m²/s, along the axes of the world. In \
+                   free flight it stays, while ω need not";
+    field::figure(ui, "L, kg m²/s", meaning, three(world.angular_momentum(i)));
+    if let Some(inertia) = world.inertia(i) {
+        let meaning = "Principal moments of inertia, kg m²: how hard it is to turn the body about its three own \
+                       axes. About the one with the middle moment no turning lasts";
+        field::figure(ui, "I, kg m²", meaning, three(inertia.moments()));
     }
 }
 

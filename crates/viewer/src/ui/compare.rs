@@ -49,7 +49,7 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
             ))
             .changed()
         {
-            session.display.descent = shown.then_some(0);
+            (session.display.descent, session.display.pair) = (shown.then_some(0), None);
         }
         if shown {
             if ui.button("◀").on_hover_text(say("One level up")).clicked() {
@@ -62,11 +62,25 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
             {
                 session.step_descent(1);
             }
+            ui.label(RichText::new(say("one pair")).weak());
+            let hint = "The comparison before (J)";
+            if ui.button("⏴").on_hover_text(say(hint)).clicked() {
+                session.step_pair(-1);
+            }
+            let hint =
+                "The next comparison (K): one pair of boxes after the other, as a search goes";
+            if ui.button("⏵").on_hover_text(say(hint)).clicked() {
+                session.step_pair(1);
+            }
         }
     });
     let Some(shown) = session.display.descent else {
         return;
     };
+    if let Some(shown) = session.display.pair {
+        ui.label(RichText::new(say(pair_text(session, shown))).weak());
+        return;
+    }
     let levels = session.descent();
     let last = levels.len().saturating_sub(1);
     let text = match levels.get(shown.min(last)) {
@@ -79,6 +93,31 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
         ),
     };
     ui.label(RichText::new(say(text)).weak());
+}
+
+/// What a comparison of the descent tells.
+fn pair_text(session: &mut Session, shown: usize) -> String {
+    let pairs = session.pairs();
+    let shown = shown.min(pairs.len().saturating_sub(1));
+    let Some(pair) = pairs.get(shown) else {
+        return "It takes two bodies with meshes.".to_owned();
+    };
+    let (now, all) = (
+        number::count(shown as f64 + 1.0),
+        number::count(pairs.len() as f64),
+    );
+    let below = pair.below;
+    match pair.meet {
+        false => {
+            format!("Pair {now} of {all}: the boxes are apart, and all in them is left out.")
+        }
+        true if below == 0 => {
+            format!("Pair {now} of {all}: two leaves meet, and their triangles are tested.")
+        }
+        true => format!(
+            "Pair {now} of {all}: the boxes meet, and {below} pairs of boxes in them come next."
+        ),
+    }
 }
 
 fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {

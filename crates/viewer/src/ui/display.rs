@@ -4,7 +4,7 @@ use egui::{RichText, Slider};
 
 use super::field;
 use crate::number;
-use crate::session::{Session, Side};
+use crate::session::{Session, Side, turns};
 use crate::words::say;
 
 pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
@@ -96,11 +96,14 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
                 .on_hover_text(say("Length of an arrow for each newton"));
         });
     });
+    if turns(session.world()) {
+        spins(ui, session);
+    }
     ui.horizontal(|ui| {
         let mut trails = session.display.trails;
         if ui
             .checkbox(&mut trails, say("Trails"))
-            .on_hover_text(say("Where bodies have been in the last 600 steps (T)"))
+            .on_hover_text(say("Where bodies have been in the last 10 s, or the last 600 steps where these take longer (T)"))
             .changed()
         {
             session.show_trails(trails);
@@ -115,12 +118,50 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             "Bodies on their way from state to state, through the places of their impacts at the times of \
              these. Otherwise they jump from state to state, as they are stepped",
         ));
+    ui.checkbox(&mut session.display.rest, say("Grey at rest"))
+        .on_hover_text(say("Bodies that stand still are grey"));
     ui.checkbox(&mut session.display.impacts, say("Impacts"))
         .on_hover_text(say(
             "What of each body touches, in violet; points of contact with their normals, and the impulses as \
              arrows, compared with the strongest in sight. They fade within half a second of simulated time",
         ));
     boxes(ui, session);
+}
+
+/// Arrows of how bodies turn.
+fn spins(ui: &mut egui::Ui, session: &mut Session) {
+    let display = &mut session.display;
+    ui.horizontal(|ui| {
+        field::label(ui, "Turning", "Green and dark red arrows");
+        ui.checkbox(&mut display.spins, say("of every body that turns"))
+            .on_hover_text(say(
+                "Angular velocity ω along the axis, which is drawn too: seen from the tip the body turns \
+                 counterclockwise. And angular momentum L = I ω. Otherwise of the selected body",
+            ));
+    });
+    let rows = [
+        (
+            "  ω",
+            &mut display.spin_metres,
+            " m s/rad",
+            "Length of an arrow for each rad/s of angular velocity",
+        ),
+        (
+            "  L",
+            &mut display.momentum_metres,
+            " m/(kg m²/s)",
+            "Length of an arrow for each kg m²/s of angular momentum",
+        ),
+    ];
+    for (name, scale, unit, meaning) in rows {
+        ui.horizontal(|ui| {
+            field::label(ui, name, meaning);
+            let slider = Slider::new(scale, 1e-4..=1e3)
+                .logarithmic(true)
+                .suffix(unit);
+            ui.add(slider).on_hover_text(say(meaning));
+        });
+    }
 }
 
 fn boxes(ui: &mut egui::Ui, session: &mut Session) {

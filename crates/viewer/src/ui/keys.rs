@@ -15,7 +15,7 @@ struct Shortcut {
     act: fn(&mut Ui, &mut Session, Key),
 }
 
-static SHORTCUTS: [Shortcut; 24] = [
+static SHORTCUTS: [Shortcut; 25] = [
     Shortcut {
         keys: &[Key::Space],
         label: "Space",
@@ -117,6 +117,12 @@ static SHORTCUTS: [Shortcut; 24] = [
         label: "N",
         meaning: "descent",
         act: |_, session, _| session.step_descent(1),
+    },
+    Shortcut {
+        keys: &[Key::J, Key::K],
+        label: "J K",
+        meaning: "pairs of boxes",
+        act: |_, session, key| session.step_pair(if key == Key::J { -1 } else { 1 }),
     },
     Shortcut {
         keys: &[Key::T],
@@ -230,7 +236,7 @@ static WITH_CTRL: [WithCtrl; 10] = [
     }),
 ];
 
-static GESTURES: [(&str, &str); 7] = [
+static GESTURES: [(&str, &str); 8] = [
     ("Click", "select a body"),
     ("Drag left or right", "orbit"),
     ("Drag middle, Shift + drag", "pan"),
@@ -239,6 +245,7 @@ static GESTURES: [(&str, &str); 7] = [
         "pull it by a spring; let go to throw it",
     ),
     ("Wheel", "zoom to the pointer"),
+    ("Right button + W A S D Q E", "fly; the mouse looks around"),
     ("Drop a file", "add a mesh or open a scene"),
     ("Drag a number", "change it; click to type"),
 ];
@@ -251,7 +258,7 @@ pub(super) fn commands() -> impl Iterator<Item = (&'static str, &'static str, Do
     let plain = SHORTCUTS.iter().flat_map(|shortcut| {
         // Keys that do different things, such as the sides to look from, are a command each.
         let keys = match shortcut.label {
-            "1 2 3" | "[ ]" | "U I" => shortcut.keys,
+            "1 2 3" | "[ ]" | "U I" | "J K" => shortcut.keys,
             _ => &shortcut.keys[..1],
         };
         keys.iter().map(move |&key| {
@@ -262,6 +269,8 @@ pub(super) fn commands() -> impl Iterator<Item = (&'static str, &'static str, Do
                 Key::Num3 => "look from the top",
                 Key::U => "last impact",
                 Key::I => "next impact",
+                Key::J => "last pair of boxes",
+                Key::K => "next pair of boxes",
                 Key::OpenBracket => "boxes one level up",
                 Key::CloseBracket => "boxes one level down",
                 _ => shortcut.meaning,
@@ -288,6 +297,10 @@ pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session)
         if ctx.input_mut(|input| input.consume_key(held.modifiers, held.key)) {
             (held.act)(state, session);
         }
+    }
+    // While the right button is held, keys fly.
+    if ctx.input(|i| i.pointer.secondary_down()) {
+        return;
     }
     for shortcut in &SHORTCUTS {
         for &key in shortcut.keys {
@@ -358,5 +371,8 @@ pub(super) fn show_help(ctx: &egui::Context, open: &mut bool) {
                         ui.end_row();
                     }
                 });
+            ui.separator();
+            let about = format!("Cowbell {}, MIT or Apache-2.0", env!("CARGO_PKG_VERSION"));
+            ui.label(RichText::new(say(about)).weak());
         });
 }

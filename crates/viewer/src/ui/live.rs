@@ -6,7 +6,7 @@ use sim_core::{Impact, Overlap, Shape};
 
 use super::{field, style};
 use crate::number;
-use crate::session::{Session, State};
+use crate::session::{Session, State, turns};
 use crate::words::say;
 
 /// Pairs in overlap that are named; more would cover the picture.
@@ -105,6 +105,21 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
          from outside, or an immovable body was there to be hit",
         drift.momentum_text().unwrap_or_else(none),
     );
+    if turns(world) {
+        let l = world.angular_momentum_about(sim_core::DVec3::ZERO);
+        field::figure(
+            ui,
+            "Angular m.",
+            "Angular momentum about the origin, L = Σ x × m v + I ω, kg m²/s",
+            [l.x, l.y, l.z].map(number::figure).join("  ") + " kg m²/s",
+        );
+        field::figure(
+            ui,
+            "Turning",
+            "What of the kinetic energy is in how bodies turn, Σ ½ L · ω",
+            number::energy(world.turning_energy()),
+        );
+    }
     field::figure(
         ui,
         "Path error",
@@ -127,6 +142,29 @@ fn time(session: &Session) -> String {
 
 fn impacts(ui: &mut egui::Ui, session: &Session) {
     let world = session.world();
+    let bodies = 0..world.len();
+    let triangles = bodies.clone().filter_map(|i| world.mesh(i));
+    let triangles: usize = triangles.map(|mesh| mesh.triangles().len()).sum();
+    field::figure(
+        ui,
+        "Bodies",
+        "Bodies, those of them that can move and stand still, and triangles of all meshes",
+        format!(
+            "{}, {} at rest; {} triangles",
+            world.len(),
+            bodies.filter(|&i| session.is_at_rest(i)).count(),
+            number::count(triangles as f64)
+        ),
+    );
+    field::figure(
+        ui,
+        "Contacts",
+        "Contacts that last, in the continuous mode",
+        session
+            .playback()
+            .sample()
+            .map_or_else(|| "-".to_owned(), |sample| sample.contacts.to_string()),
+    );
     field::figure(
         ui,
         "Impacts",

@@ -11,20 +11,11 @@ use crate::session::{CHARTS, Chart, Curve, Session, State};
 use crate::words::say;
 
 /// Which plots are shown.
+#[derive(Default)]
 pub(super) struct Plots {
-    shown: [bool; CHARTS.len()],
+    /// Those that the person has chosen; until then those that suit the scene.
+    chosen: Option<[bool; CHARTS.len()]>,
     precision: bool,
-}
-
-impl Default for Plots {
-    fn default() -> Self {
-        let mut shown = [false; CHARTS.len()];
-        (shown[0], shown[1]) = (true, true);
-        Self {
-            shown,
-            precision: false,
-        }
-    }
 }
 
 /// Width below which a plot is not worth drawing, points.
@@ -33,8 +24,9 @@ const LEAST_WIDTH: f32 = 150.0;
 impl Plots {
     /// Shows the plots chosen side by side.
     pub(super) fn show(&mut self, ui: &mut egui::Ui, session: &mut Session) {
+        let mut shown = self.shown(session);
         ui.horizontal_wrapped(|ui| {
-            for (chart, shown) in CHARTS.iter().zip(&mut self.shown) {
+            for (chart, shown) in CHARTS.iter().zip(&mut shown) {
                 ui.toggle_value(shown, say(chart.title))
                     .on_hover_text(say(chart.meaning));
             }
@@ -47,18 +39,31 @@ impl Plots {
                 super::export::buttons(ui, self, session);
             });
         });
-        let chosen = CHARTS.iter().zip(self.shown);
+        if shown != self.shown(session) {
+            self.chosen = Some(shown);
+        }
+        let chosen = CHARTS.iter().zip(shown);
         session.profiled = chosen
             .into_iter()
             .any(|(chart, shown)| shown && chart.title == "Step cost");
         self.draw(ui, session);
     }
 
+    /// The plots chosen, or else energy and what more can be told of this scene.
+    fn shown(&self, session: &Session) -> [bool; CHARTS.len()] {
+        self.chosen.unwrap_or_else(|| {
+            let second = session.telling_chart();
+            CHARTS
+                .each_ref()
+                .map(|chart| chart.title == "Energy" || chart.title == second)
+        })
+    }
+
     /// The plots alone.
     pub(super) fn draw(&self, ui: &mut egui::Ui, session: &mut Session) {
         let chosen: Vec<&Chart> = CHARTS
             .iter()
-            .zip(self.shown)
+            .zip(self.shown(session))
             .filter_map(|(chart, shown)| shown.then_some(chart))
             .collect();
         let room = ui.available_size();
@@ -152,6 +157,10 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
     if curves.iter().all(|curve| curve.points.len() < 2) {
         let why = match session.state() {
             _ if session.playback().len() < 2 => "Start, and curves grow here.",
+            // It has no logarithm.
+            _ if chart.title == "Path error" && session.path_error() == Some(0.0) => {
+                "The error is 0: every body is where it would be exactly."
+            }
             _ if chart.title == "Path error" => "The exact path is not known here.",
             _ => "Nothing yet.",
         };

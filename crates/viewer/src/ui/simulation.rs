@@ -67,7 +67,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             .show_ui(ui, |ui| {
                 for method in METHODS {
                     let chosen = ui
-                        .selectable_label(method == now.method, method.title)
+                        .selectable_label(method == now.method, say(method.title))
                         .on_hover_text(about(method))
                         .clicked();
                     if chosen {

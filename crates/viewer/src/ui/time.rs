@@ -83,8 +83,8 @@ fn keep(ui: &mut egui::Ui, state: &Ui, session: &mut Session) {
     } else if ui
         .button(say("GIF"))
         .on_hover_text(say(
-            "Draw the run that is kept, up to here, as a moving picture at the speed that is set: its last \
-             12 s where it takes longer. F12 draws the picture as it is now",
+            "Draw the run that is kept, from its start or the green mark up to here, as a moving picture at \
+             the speed that is set: its last 12 s where it takes longer. F12 draws the picture as it is now",
         ))
         .clicked()
     {
@@ -131,22 +131,31 @@ fn line(ui: &mut egui::Ui, session: &mut Session) {
         let mark = Stroke::new(3.0, style::RED.of(ui.visuals()));
         painter.vline(place(time), rect.y_range(), mark);
     }
+    if let Some(time) = session.film_start() {
+        let mark = Stroke::new(3.0, style::GREEN.of(ui.visuals()));
+        painter.vline(place(time), rect.y_range(), mark);
+    }
     let hand = Stroke::new(2.0, ui.visuals().strong_text_color());
     painter.vline(place(now), rect.y_range(), hand);
     let pointed = response.interact_pointer_pos().or(response.hover_pos());
+    let shift = ui.input(|i| i.modifiers.shift);
     if let Some(at) = pointed
         && session.state() != State::Layout
-        && (response.clicked() || response.dragged())
+        && (response.clicked() || response.dragged() && !shift)
     {
         let away = |time: &f64| (place(*time) - at.x).abs();
         let impacts = session.playback().contact_times();
         let impact = impacts.min_by(|a, b| away(a).total_cmp(&away(b)));
-        match impact.filter(|time| response.clicked() && away(time) <= SNAP) {
+        match impact.filter(|time| response.clicked() && !shift && away(time) <= SNAP) {
             Some(time) => session.go_to_time(time),
             None => {
                 let part = f64::from((at.x - left) / (right - left).max(1.0));
                 let time = first + part.clamp(0.0, 1.0) * long;
-                session.go_to(session.playback().nearest(time));
+                let state = session.playback().nearest(time);
+                match shift {
+                    true => session.begin_film_at(state),
+                    false => session.go_to(state),
+                }
             }
         }
     }
@@ -155,7 +164,7 @@ fn line(ui: &mut egui::Ui, session: &mut Session) {
         "{} states kept, from {first:.3} to {last:.3} s, at most {}, in about {} of memory: the run since \
          the start or the last change. Drag to go there; a click on an impact (orange) goes to its \
          instant within the step (U and I go from one to the next). Red is where bodies passed \
-         through each other between two steps.",
+         through each other between two steps. Shift and a click lets a film begin there (green).",
         number::count(kept.len() as f64),
         number::count(kept.capacity() as f64),
         number::bytes(kept.bytes()),

@@ -47,6 +47,7 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
         let list = ComboBox::from_id_salt("variant method")
             .selected_text(say(settings.method.title))
             .width(118.0)
+            .truncate()
             .height(340.0)
             .show_ui(ui, |ui| {
                 for method in METHODS {
@@ -73,6 +74,7 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
         let list = ComboBox::from_id_salt("variant collision")
             .selected_text(say(collision_name(settings.collision)))
             .width(62.0)
+            .truncate()
             .show_ui(ui, |ui| {
                 for how in [Collision::Continuous, Collision::Bvh, Collision::Naive] {
                     ui.selectable_value(&mut settings.collision, how, say(collision_name(how)));

@@ -1,6 +1,6 @@
 //! The picture, and what the mouse does on it.
 
-use egui::{Align2, Color32, CornerRadius, PointerButton, Pos2, Rect, Sense, TextureId};
+use egui::{Align2, Color32, CornerRadius, Key, PointerButton, Pos2, Rect, Sense, TextureId};
 
 use scene::shown;
 use sim_core::DVec3;
@@ -12,10 +12,15 @@ use crate::words::say;
 
 /// Turn of the camera by a drag across the whole height of the picture, radians.
 const TURN: f64 = 4.0;
+/// Distances to the target that are flown in a second of real time, and the longest frame, s, that counts.
+const FLIGHT: f64 = 1.0;
+const LONGEST_FRAME: f32 = 0.1;
 /// Names written at a time.
 const MOST_NAMES: usize = 300;
 /// Growth of the zoom by a wheel's travel of one point.
 const ZOOM: f64 = 0.003;
+/// Width of the arrows beside their scales, points.
+const ARROW: f32 = 26.0;
 
 /// Shows the picture in the room that is left; returns its rectangle, in points.
 pub(super) fn show(
@@ -40,7 +45,7 @@ pub(super) fn show(
     }
     // Before the handles, which lie over the picture.
     let held = pull(ui, &response, aspect, session);
-    if !held {
+    if !held && !fly(ui, &response, session) {
         drag(ui, &response, session);
     }
     if response.hovered() {
@@ -58,6 +63,7 @@ pub(super) fn show(
     handles.show(ui, rect, aspect, session);
     number_axes(ui, rect, aspect, session);
     name_bodies(ui, rect, aspect, session);
+    tell_scales(ui, rect, session);
     point_out(ui, rect, aspect, session);
     offer_drop(ui, rect);
     rect
@@ -88,6 +94,31 @@ fn pull(ui: &egui::Ui, response: &egui::Response, aspect: f64, session: &mut Ses
         session.let_go();
     }
     session.is_pulling()
+}
+
+/// Flies while the right button and keys are held. Whether it does.
+fn fly(ui: &egui::Ui, response: &egui::Response, session: &mut Session) -> bool {
+    let held = response.is_pointer_button_down_on();
+    let way = ui.input(|i| {
+        let axis = |more: Key, less: Key| {
+            f64::from(i8::from(i.key_down(more)) - i8::from(i.key_down(less)))
+        };
+        let way = DVec3::new(
+            axis(Key::D, Key::A),
+            axis(Key::E, Key::Q),
+            axis(Key::W, Key::S),
+        );
+        let flies = held && i.pointer.secondary_down() && way != DVec3::ZERO;
+        flies.then(|| FLIGHT * f64::from(i.stable_dt.min(LONGEST_FRAME)) * way)
+    });
+    let Some(way) = way else { return false };
+    session.camera.fly(way);
+    let moved = response.drag_delta() / response.rect.height();
+    session
+        .camera
+        .look(TURN * f64::from(moved.x), -TURN * f64::from(moved.y));
+    ui.ctx().request_repaint();
+    true
 }
 
 fn drag(ui: &egui::Ui, response: &egui::Response, session: &mut Session) {
@@ -173,6 +204,44 @@ fn number_axes(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
         for (point, value) in axis.marks {
             write(point, crate::number::tidy(value), &small, style::AXIS_INK);
         }
+    }
+}
+
+/// Tells in a corner what the arrows in the picture are, and to which scale.
+fn tell_scales(ui: &egui::Ui, rect: Rect, session: &Session) {
+    let scales = session.scales();
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let painter = ui.painter().with_clip_rect(rect);
+    let texts: Vec<_> = scales
+        .iter()
+        .map(|scale| {
+            let text = format!("{}  {}", say(scale.name), say(&scale.text));
+            painter.layout_no_wrap(text, font.clone(), Color32::WHITE)
+        })
+        .collect();
+    let size = |of: fn(egui::Vec2) -> f32| texts.iter().map(move |text| of(text.size()));
+    let (width, height) = (
+        size(|s| s.x).fold(0.0, f32::max),
+        size(|s| s.y).sum::<f32>(),
+    );
+    let margin = egui::vec2(6.0, 4.0);
+    let room = egui::vec2(ARROW + width, height) + 2.0 * margin;
+    // Not where it would cover the picture.
+    if texts.is_empty() || room.x > 0.5 * rect.width() || room.y > 0.3 * rect.height() {
+        return;
+    }
+    let corner = rect.left_bottom() + egui::vec2(8.0, -8.0 - room.y);
+    let back = Rect::from_min_size(corner, room);
+    painter.rect_filled(back, CornerRadius::same(4), style::OVER_PICTURE);
+    let mut at = corner + margin;
+    for (scale, text) in scales.iter().zip(texts) {
+        let middle = at + egui::vec2(0.0, 0.5 * text.size().y);
+        let colour = style::word(scale.colour, &egui::Visuals::dark());
+        let line = egui::Stroke::new(2.0, colour);
+        painter.arrow(middle, egui::vec2(ARROW - 8.0, 0.0), line);
+        let below = text.size().y;
+        painter.galley(at + egui::vec2(ARROW, 0.0), text, Color32::WHITE);
+        at.y += below;
     }
 }
 

@@ -188,7 +188,8 @@ mod tests {
     #[test]
     fn what_tables_offer_is_in_every_language() {
         use crate::session::{BEYOND, CHARTS, LABS, PRESETS, Session};
-        let scene = scene::SCENES[0].scene().expect("the first scene");
+        // One in which bodies turn, so that there are all curves.
+        let scene = scene::Scene::load("tennis-racket").expect("in the gallery");
         let session = Session::new(scene).expect("a session");
         let mut texts: Vec<&str> = vec![BEYOND];
         for method in sim_core::METHODS {

@@ -17,7 +17,10 @@ use super::{
     solver::ContactSolver,
 };
 use crate::{
-    collide::turning::{ContactPoint, Moving, Turning, features_within},
+    collide::{
+        Contact,
+        turning::{ContactPoint, Moving, Turning, features_within},
+    },
     impulse::arms::{self, Arms, Twist, Yielding},
 };
 
@@ -197,7 +200,19 @@ impl EventLoop<'_> {
                 mean(&|arms| arms.opening(&island.twists)),
             );
             let at = self.view().instant(event.bodies, time);
-            let impact = scene.impact(event.bodies, &event.contact, (impulse, speeds), at);
+            // Of several features that touch at once the event has one, and its normal may be any between
+            // those of its faces: what is told is what is given.
+            let sum = |of: &dyn Fn(&Arms) -> DVec3| {
+                parts().map(|(arms, given)| given * of(arms)).sum::<DVec3>()
+            };
+            let total = sum(&|arms| arms.normal);
+            let contact = Contact {
+                point: at.positions.0 + sum(&|arms| arms.arms.0) / impulse,
+                normal: total.try_normalize().unwrap_or(event.contact.normal),
+                ..event.contact
+            };
+            let told = (total.length(), speeds);
+            let impact = scene.impact(event.bodies, &contact, told, at);
             self.note_impact(impact);
         }
         Ok(())

@@ -2,6 +2,8 @@
 
 use alloc::vec::Vec;
 
+use glam::DQuat;
+
 use super::super::{exchange::Instant, layout::Layout, order::ordinal, scene::Scene};
 use super::{
     contact_set::{ContactConstraint, ContactSet},
@@ -84,8 +86,8 @@ impl<'a> View<'a> {
         Event::impact(time, constraint.bodies, contact, 0.0, &self.paths.version)
     }
 
-    /// Where two bodies are that have an impact at a time, s from the step's start, at which the trajectories
-    /// of those that it moves start.
+    /// Where two bodies are and how they are turned that have an impact at a time, s from the step's start, at
+    /// which the trajectories of those that it moves start.
     pub(super) fn instant(&self, bodies: (usize, usize), time: f64) -> Instant {
         let scene = self.scene;
         let place = |body: usize| match scene.bodies.is_movable(body) {
@@ -95,9 +97,17 @@ impl<'a> View<'a> {
                 scene.before.position[body].lerp(self.paths.end.position[body], part)
             }
         };
+        let turned = |body: usize| match scene.bodies.turners.slot(body) {
+            Some(slot) => {
+                let there = self.motion().turned_at(slot, body, time);
+                scene.bodies.rotation_of(slot, &there)
+            }
+            None => DQuat::IDENTITY,
+        };
         Instant {
             time: scene.time + time,
             positions: (place(bodies.0), place(bodies.1)),
+            rotations: (turned(bodies.0), turned(bodies.1)),
         }
     }
 }

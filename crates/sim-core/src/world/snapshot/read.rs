@@ -164,6 +164,15 @@ impl World {
         let (closing, parting) = impact.speeds;
         check_numbers("impact", &[impact.time, impact.impulse, closing, parting])?;
         check_unit("impact", impact.normal)?;
+        let (first, second) = impact.rotations;
+        if ![first, second]
+            .iter()
+            .all(|turned| turned.is_finite() && turned.is_normalized())
+        {
+            return Err(
+                "the latest impact is of bodies that are not turned by unit quaternions".into(),
+            );
+        }
         let Some(feature) = impact.feature else {
             return Ok(());
         };

@@ -46,3 +46,25 @@ fn the_last_level_has_the_leaves_that_the_query_tests() {
     session.step_descent(-1);
     assert_eq!(session.display.descent, Some(levels.len() - 2));
 }
+
+#[test]
+fn the_descent_pair_by_pair_compares_what_the_levels_do() {
+    let mut session = cow();
+    assert_eq!(session.pairs().len(), 1, "apart");
+    session.set_position(session.world().position(0) + DVec3::new(0.0, 0.5, 0.0));
+    let (levels, pairs) = (session.descent(), session.pairs());
+    let compared: usize = levels.iter().map(|level| level.compared).sum();
+    let meeting: usize = levels.iter().map(|level| level.meeting).sum();
+    assert_eq!(pairs.len(), compared);
+    assert_eq!(pairs.iter().filter(|pair| pair.meet).count(), meeting);
+    // Where two boxes meet, the next comparison is of what is in them.
+    let first = pairs.first().expect("one");
+    assert!(first.meet && first.below > 0);
+    let plain = session.picture().lines.len();
+    session.step_pair(1);
+    assert_eq!(session.picture().lines.len(), plain + 24, "two boxes");
+    (0..pairs.len() + 5).for_each(|_| session.step_pair(1));
+    assert_eq!(session.display.pair, Some(pairs.len() - 1), "it ends");
+    session.step_descent(-1);
+    assert_eq!(session.display.pair, None, "level by level again");
+}

@@ -245,6 +245,57 @@ fn trails_are_kept_for_scenes_with_forces_and_bounded() {
 }
 
 #[test]
+fn trails_go_back_as_far_however_short_the_steps_are() {
+    let mut session = gallery("kepler");
+    let long = |session: &mut Session| {
+        let lines = session.picture().lines;
+        lines
+            .iter()
+            .map(|line| line.from.distance(line.to))
+            .sum::<f64>()
+    };
+    let mut lengths = Vec::new();
+    for rate in [60.0, 1000.0, 4000.0] {
+        session.reset();
+        session.set_rate(rate);
+        session.start();
+        for _ in 0..300 {
+            advance(&mut session, FRAME, free());
+        }
+        assert!(session.trails.len() <= 2 * 601, "{}", session.trails.len());
+        lengths.push(long(&mut session));
+    }
+    // 5 s of the same ellipse, in more than 600 steps too.
+    for length in &lengths {
+        assert!((length / lengths[0] - 1.0).abs() < 0.02, "{lengths:?}");
+    }
+}
+
+#[test]
+fn what_is_at_rest_is_told_and_grey_where_that_is_wished() {
+    let mut session = gallery("bounce");
+    session.start();
+    for _ in 0..400 {
+        advance(&mut session, FRAME, free());
+    }
+    let world = session.world();
+    let resting: Vec<usize> = (0..world.len())
+        .filter(|&i| session.is_at_rest(i))
+        .collect();
+    assert_eq!(resting.len(), 1, "the ball, not the floor");
+    let before = session.picture().models[0].colour;
+    session.display.rest = true;
+    let after = session.picture().models[0].colour;
+    let spread =
+        |c: [f32; 3]| c.into_iter().fold(0.0, f32::max) - c.into_iter().fold(1.0, f32::min);
+    assert!(spread(after) < 0.3 * spread(before), "{before:?} {after:?}");
+    session.reset();
+    session.start();
+    advance(&mut session, FRAME, free());
+    assert_eq!(session.picture().models[0].colour, before, "it flies");
+}
+
+#[test]
 fn specks_are_dots_that_can_be_picked() {
     let mut session = gallery("pleiades");
     session.show_trails(false);

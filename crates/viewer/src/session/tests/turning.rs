@@ -25,6 +25,10 @@ fn turning() -> Session {
     Session::new(scene).expect("the scene makes a world")
 }
 
+fn gallery(name: &str) -> Session {
+    Session::new(Scene::load(name).expect("a gallery scene")).expect("a world")
+}
+
 fn poses(session: &Session) -> Vec<(DVec3, DQuat)> {
     let world = session.world();
     (0..world.len())
@@ -122,4 +126,155 @@ fn discrete_modes_say_that_they_turn_nothing_and_what_does() {
     assert_eq!(session.state(), State::Paused);
     let text = complaint(&mut session, "step").expect("a notice");
     assert!(text.contains("continuous"), "{text}");
+}
+
+/// Two cubes, one of them spinning, that meet off centre, and one that falls on a corner.
+fn meeting() -> Session {
+    let text = "rate = 7
+        [[body]]
+        name = 'left'
+        mesh = 'cube.obj'
+        position = [-1.5, 5.4, 0]
+        velocity = [2, 0, 0]
+        turns = true
+        spin = [0, 0, 2]
+        [[body]]
+        name = 'right'
+        mesh = 'cube.obj'
+        position = [0, 5, 0]
+        turns = true
+        [[body]]
+        name = 'falling'
+        mesh = 'cube.obj'
+        rotation = [45, 0, 0]
+        position = [20, 2, 0]
+        velocity = [0, -1, 0]
+        turns = true
+        spin = [0, 0, 1]
+        [[body]]
+        name = 'floor'
+        half-space = [0, 1, 0]
+    ";
+    let scene = Scene::parse(text, Path::new("meeting.toml")).expect("the text is a scene");
+    Session::new(scene).expect("the scene makes a world")
+}
+
+#[test]
+fn bodies_are_drawn_as_they_are_turned_when_they_touch() {
+    use crate::session::Part;
+    let mut session = meeting();
+    session.start();
+    go_on(&mut session, 150);
+    session.go_to(0);
+    let (mut of_cubes, mut on_floor) = (0, 0);
+    for _ in 0..2 {
+        session.go_to_impact(true);
+        assert!(session.is_between(), "no state is at the impact");
+        let seen = session.shown_time();
+        let kept = session.playback().past().last().expect("a state");
+        let same = |impact: &&sim_core::Impact| (impact.time - seen).abs() < 1e-9;
+        let impact = kept.impacts.iter().find(same).expect("one then").clone();
+        let picture = session.picture();
+        // The corners of a cube as it is drawn, from the plane of what it hits.
+        let corners = |body: usize| {
+            let model = &picture.models[body];
+            let corners = model.mesh.vertices().iter();
+            let placed = |v: &sim_core::Vec3| model.position + model.rotation * v.as_dvec3();
+            corners.map(placed).collect::<Vec<_>>()
+        };
+        let reach = |body: usize, along: DVec3| {
+            let heights = corners(body).into_iter().map(|v| v.dot(along));
+            heights.fold(f64::NEG_INFINITY, f64::max)
+        };
+        let (i, j) = impact.bodies;
+        let (plane, parts) = (impact.point.dot(impact.normal), session.touching(&impact));
+        if j == 3 || i == 3 {
+            on_floor += 1;
+            let down = reach(2, DVec3::NEG_Y);
+            assert!(down.abs() < 1e-6, "{down}");
+            let part = parts[usize::from(j == 2)];
+            let is_corner = matches!(part, Some(Part::Corner(_)) | Some(Part::Edge(_)));
+            assert!(is_corner, "{parts:?}");
+        } else {
+            of_cubes += 1;
+            // An edge has met the middle of a face, on which the impulse stands.
+            assert!(
+                (impact.normal - DVec3::X).length() < 1e-9,
+                "{}",
+                impact.normal
+            );
+            // Both reach the plane of the contact, and none goes beyond.
+            let (first, second) = (reach(i, impact.normal), -reach(j, -impact.normal));
+            assert!((first - plane).abs() < 1e-6, "{first} of {plane}");
+            assert!((second - plane).abs() < 1e-6, "{second} of {plane}");
+        }
+    }
+    assert_eq!((of_cubes, on_floor), (1, 1));
+}
+
+#[test]
+fn arrows_show_how_bodies_turn_to_a_scale_that_is_told() {
+    let mut session = gallery("tennis-racket");
+    let momentum = session.world().angular_momentum(0);
+    let spin = session.world().spin(0);
+    let picture = session.picture();
+    let [first, second] = picture.arrows[..] else {
+        panic!("{} arrows", picture.arrows.len());
+    };
+    let near = |a: DVec3, b: DVec3| assert!(a.distance(b) < 1e-9, "{a} is not {b}");
+    near(first.to - first.from, momentum);
+    near(second.to - second.from, 0.1 * spin);
+    let told: Vec<_> = session
+        .scales()
+        .into_iter()
+        .map(|s| (s.name, s.text))
+        .collect();
+    assert_eq!(
+        told,
+        [
+            ("angular velocity", "1 m: 10 rad/s".to_owned()),
+            ("angular momentum", "1 m: 1 kg m²/s".to_owned()),
+        ]
+    );
+    // In flight the angular momentum stays where it is, however the box flips, and the other does not.
+    session.start();
+    let mut most: f64 = 0.0;
+    for _ in 0..600 {
+        advance(&mut session, FRAME, free());
+        let [later, other] = session.picture().arrows[..] else {
+            panic!("both are there");
+        };
+        near(later.from, first.from);
+        near(later.to, first.to);
+        most = most.max(other.to.distance(second.to));
+    }
+    assert!(most > 0.1, "{most}");
+    session.display.spins = false;
+    assert!(session.picture().arrows.is_empty() && session.scales().is_empty());
+    session.select(Some(0));
+    assert_eq!(session.picture().arrows.len(), 2, "of the selected body");
+    // Of a crowd they are asked for.
+    assert!(gallery("cubes-turning").picture().arrows.is_empty());
+}
+
+#[test]
+fn angular_momentum_is_noted_and_stays() {
+    let mut session = meeting();
+    let free = session.world().angular_momentum_about(DVec3::ZERO);
+    session.start();
+    go_on(&mut session, 60);
+    let all: Vec<DVec3> = session
+        .playback()
+        .samples()
+        .map(|s| s.angular_momentum)
+        .collect();
+    assert!(all.len() > 5 && all[0] == free);
+    let of_cubes = session.world().impacts() == 1;
+    assert!(of_cubes, "{} impacts", session.world().impacts());
+    for now in all {
+        assert!(
+            now.distance(free) < 1e-9 * free.length(),
+            "{now} is not {free}"
+        );
+    }
 }
