@@ -18,13 +18,10 @@ const SLOW: [&str; 2] = ["herd", "bin"];
 fn gallery() -> impl Iterator<Item = (Scene, Collision)> {
     scene::SCENES.iter().flat_map(|entry| {
         let scene = entry.scene().expect("a gallery scene");
-        // The discrete modes turn nothing, and snapshots hold nothing that turns.
-        let turns = scene.bodies.iter().any(|body| body.turn.is_some());
         let is_fast = |mode: &Collision| *mode != Collision::Naive || !SLOW.contains(&entry.name);
         MODES
             .into_iter()
             .filter(is_fast)
-            .filter(move |_| !turns)
             .map(move |mode| (scene.clone(), mode))
     })
 }

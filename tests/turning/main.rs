@@ -1,5 +1,6 @@
 //! Bodies that turn, against closed forms.
 
+mod discrete;
 mod flight;
 mod impacts;
 mod rest;

@@ -2,7 +2,7 @@
 
 use kit::{bodies, shapes, worlds};
 use sim_core::{
-    Body, BodyKind, Collision, DQuat, DVec3, Inertia, Settings, Shape, StepError, Turn, World,
+    Body, BodyKind, DQuat, DVec3, Inertia, Settings, Shape, Turn, World,
     WorldError,
 };
 
@@ -253,15 +253,4 @@ fn what_cannot_turn_is_refused_by_name() {
         world.set_kind(1, BodyKind::Static),
         Err(WorldError::TurningKind { body: 1 })
     );
-    let settings = Settings {
-        collision: Collision::Bvh,
-        ..Settings::default()
-    };
-    world.set_settings(settings).unwrap();
-    let hash = world.state_hash();
-    assert!(matches!(
-        world.step(),
-        Err(StepError::TurnsDiscretely { .. })
-    ));
-    assert_eq!(world.state_hash(), hash);
 }

@@ -276,10 +276,6 @@ impl World {
         }
         match self.settings.collision {
             Collision::Naive | Collision::Bvh => {
-                let mut turning = self.bodies.turners.body.iter();
-                if let Some(&body) = turning.find(|&&body| self.bodies.tumbles(body)) {
-                    return Err((body, Cause::TurnsDiscretely));
-                }
                 self.turn_freely()?;
                 self.collide_discretely();
                 Ok(())
