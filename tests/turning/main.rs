@@ -3,5 +3,6 @@
 mod discrete;
 mod flight;
 mod impacts;
+mod overlaps;
 mod rest;
 mod times;

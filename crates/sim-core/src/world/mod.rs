@@ -493,6 +493,7 @@ impl World {
         Layout {
             bodies: &self.bodies,
             at: &self.current.position,
+            turned: &self.current.turned,
             before: &self.previous,
             contacts: &self.contacts,
             overlaps: &self.overlaps,

@@ -128,17 +128,22 @@ impl Bodies {
 
     /// Turns a body's shape into the world.
     pub(super) fn rotation_in(&self, state: &State, body: usize) -> DQuat {
+        self.rotation_among(&state.turned, body)
+    }
+
+    /// The same with how bodies are turned by slot.
+    pub(super) fn rotation_among(&self, turned: &[Turned], body: usize) -> DQuat {
         match self.turners.slot(body) {
             Some(slot) => {
                 let axes = self.turners.inertia[slot].axes();
-                (state.turned[slot].rotation * axes.inverse()).normalize()
+                (turned[slot].rotation * axes.inverse()).normalize()
             }
             None => DQuat::IDENTITY,
         }
     }
 
     /// The centre of mass in the shape's frame, m, of a body that turns; of others the place is the origin.
-    fn centre_of(&self, body: usize) -> DVec3 {
+    pub(super) fn centre_of(&self, body: usize) -> DVec3 {
         let slot = self.turners.slot(body);
         slot.map_or(DVec3::ZERO, |slot| self.turners.inertia[slot].centre())
     }
