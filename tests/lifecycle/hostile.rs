@@ -155,13 +155,21 @@ fn what_is_wrong_is_said() {
             json!([0, 0, 0, 2]),
             "not a unit quaternion",
         ),
-        ("/bodies/6/turn/torque", json!([0, 1e101, 0]), "torque of body 6"),
+        (
+            "/bodies/6/turn/torque",
+            json!([0, 1e101, 0]),
+            "torque of body 6",
+        ),
         (
             "/bodies/8/turn/torque",
             json!([0, 1, 0]),
             "body 8: nothing turns it",
         ),
-        ("/bodies/0/turn", turn.clone(), "half-space, which cannot turn"),
+        (
+            "/bodies/0/turn",
+            turn.clone(),
+            "half-space, which cannot turn",
+        ),
         ("/ignored/0", json!([1, 77]), "no body 77"),
         ("/forces/2/spring/bodies", json!([1, 1]), "two different"),
         ("/forces/2/spring/bodies", json!([1, 50]), "no body 50"),

@@ -12,7 +12,7 @@ use sim_core::{Collision, World};
 const MODES: [Collision; 3] = [Collision::Continuous, Collision::Bvh, Collision::Naive];
 
 /// Scenes in which the naive search takes minutes; the BVH has the same answers.
-const SLOW: [&str; 2] = ["herd", "bin"];
+const SLOW: [&str; 3] = ["herd", "bin", "cows-turning"];
 
 /// Every scene of the gallery in every mode.
 fn gallery() -> impl Iterator<Item = (Scene, Collision)> {

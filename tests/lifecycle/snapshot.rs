@@ -4,8 +4,8 @@ use kit::bodies::{at, immovable, wall};
 use kit::shapes::{ball, cube, cuboid};
 use kit::worlds::{add_gravity, step, world};
 use sim_core::{
-    Body, BodyKind, BodyLaw, BodyMotion, Collision, DQuat, DVec3, Force, Groups, Law, METHODS, Mesh,
-    Method, PairLaw, PairMotion, Settings, Turn, World,
+    Body, BodyKind, BodyLaw, BodyMotion, Collision, DQuat, DVec3, Force, Groups, Law, METHODS,
+    Mesh, Method, PairLaw, PairMotion, Settings, Turn, World,
 };
 
 use super::{gallery, world_of};

@@ -3,7 +3,8 @@
 
 use kit::{bodies, random::Random, shapes, worlds};
 use sim_core::{
-    Body, Collision, DQuat, DVec3, Settings, Shape, Turn, World, collide::{Placement, naive},
+    Body, Collision, DQuat, DVec3, Settings, Shape, Turn, World,
+    collide::{Placement, naive},
 };
 
 const DISCRETE: [Collision; 2] = [Collision::Bvh, Collision::Naive];
@@ -108,7 +109,12 @@ fn is_dense(world: &World) -> bool {
 fn no_two_meet_after_a_step_and_energy_and_momentum_stay() {
     let mut impacts = 0;
     let (cow, bar) = (shapes::cow(), shapes::cuboid([0.1, 0.8, 0.1]));
-    for (seed, is_closed, first) in [(1, true, &cow), (2, true, &bar), (3, false, &cow), (4, false, &bar)] {
+    for (seed, is_closed, first) in [
+        (1, true, &cow),
+        (2, true, &bar),
+        (3, false, &cow),
+        (4, false, &bar),
+    ] {
         let mut world = crowd(seed, Collision::Bvh, is_closed, first);
         assert_eq!(world.overlapping(), [], "{seed}");
         let (energy, momentum) = (world.kinetic_energy(), world.momentum());
@@ -144,7 +150,8 @@ fn no_two_meet_after_a_step_and_energy_and_momentum_stay() {
 #[test]
 fn naive_and_bvh_are_the_same_to_the_bit() {
     for seed in [5, 6] {
-        let [mut bvh, mut naive] = DISCRETE.map(|collision| crowd(seed, collision, true, &shapes::cuboid([0.1, 0.8, 0.1])));
+        let [mut bvh, mut naive] = DISCRETE
+            .map(|collision| crowd(seed, collision, true, &shapes::cuboid([0.1, 0.8, 0.1])));
         for step in 0..240 {
             worlds::step(&mut bvh, 1);
             worlds::step(&mut naive, 1);
@@ -227,7 +234,12 @@ fn a_cube_that_lands_flat_does_not_turn() {
     for collision in DISCRETE {
         let floor = bodies::immovable(bodies::at(&shapes::cuboid([3.0, 1.0, 3.0]), DVec3::NEG_Y));
         let velocity = DVec3::new(0.25, -2.0, 0.0);
-        let cube = turning(&shapes::cuboid([0.5; 3]), DVec3::Y, velocity, Turn::default());
+        let cube = turning(
+            &shapes::cuboid([0.5; 3]),
+            DVec3::Y,
+            velocity,
+            Turn::default(),
+        );
         let mut world = worlds::world_of(settings(collision, 0.1), [floor, cube]);
         worlds::step(&mut world, 6);
         assert!(world.impacts() > 0);

@@ -1,10 +1,7 @@
 //! Turning bodies that lie, slide, stack, tip and fall: what anybody does first.
 
 use kit::{bodies, shapes, worlds};
-use sim_core::{
-    Body, BodyKind, DQuat, DVec3, Inertia, Settings, Shape, Turn, World,
-    WorldError,
-};
+use sim_core::{Body, BodyKind, DQuat, DVec3, Inertia, Settings, Shape, Turn, World, WorldError};
 
 const G: f64 = 9.81;
 

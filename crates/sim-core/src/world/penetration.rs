@@ -9,7 +9,10 @@ use alloc::vec::Vec;
 use glam::DVec3;
 
 use super::{World, layout::Layout};
-use crate::{Shape, collide::{Form, ball_meets, first_contact, parting_normals, reach, snap}};
+use crate::{
+    Shape,
+    collide::{Form, ball_meets, first_contact, parting_normals, reach, snap},
+};
 
 /// Halvings of the length at which a direction parts a pair: as good as 12 digits.
 const HALVINGS: usize = 40;
@@ -194,7 +197,12 @@ impl Layout<'_> {
             let rotation = self.rotation(body);
             compass().map(move |way| rotation * way)
         });
-        for way in known.map(|known| known.normal).chain(both).chain(compass()).chain(turned) {
+        for way in known
+            .map(|known| known.normal)
+            .chain(both)
+            .chain(compass())
+            .chain(turned)
+        {
             if !ways.contains(&way) {
                 ways.push(way);
             }

@@ -167,6 +167,10 @@ impl Bodies {
         let (Some(first), Some(second)) = (self.mesh(i), self.mesh(j)) else {
             return self.meet_in(state, i, j);
         };
+        let swept = |body: usize| self.swept_box(body, state.position[body], state.position[body]);
+        if !swept(i).meets(&swept(j)) {
+            return false;
+        }
         let placed = |body: usize| (state.position[body], self.rotation_in(state, body));
         let (a, b) = (placed(i), placed(j));
         let between = self.between((i, a), (j, b));
@@ -271,9 +275,9 @@ impl Bodies {
             };
         }
         let inertia = match self.turners.slot(body) {
-            Some(slot) if self.tumbles(body) => {
-                self.turners.inverse_inertia(slot, state.turned[slot].rotation)
-            }
+            Some(slot) if self.tumbles(body) => self
+                .turners
+                .inverse_inertia(slot, state.turned[slot].rotation),
             _ => DMat3::ZERO,
         };
         Yielding {

@@ -345,7 +345,12 @@ impl DiscreteStep<'_> {
         let closing = velocity(i) - velocity(j);
         let exchange = closing.try_normalize().and_then(|normal| {
             let masses = (bodies.mass[i], bodies.mass[j]);
-            impulse::between((masses.0, velocity(i)), (masses.1, velocity(j)), normal, restitution)
+            impulse::between(
+                (masses.0, velocity(i)),
+                (masses.1, velocity(j)),
+                normal,
+                restitution,
+            )
         });
         for body in [i, j].into_iter().filter(|&body| bodies.is_movable(body)) {
             if let Some(slot) = bodies.turners.slot(body) {
