@@ -15,22 +15,21 @@ const MODES: [(&str, Collision); 3] = [
 ];
 
 /// What is not run, and why.
-const LEFT_OUT: [(&str, &str, &str); 7] = [
+const LEFT_OUT: [(&str, &str, &str); 2] = [
     (
         "herd",
         "naive",
         "cows against cows take minutes; the BVH has the same answers",
     ),
     ("bin", "naive", "the same"),
-    (
-        "cubes-turning",
-        "continuous",
-        "sums over features of what turns are in the order of bodies",
-    ),
-    ("cubes-turning", "bvh", "the discrete modes turn nothing"),
-    ("cubes-turning", "naive", "the same"),
-    ("tennis-racket", "bvh", "the same"),
-    ("tennis-racket", "naive", "the same"),
+];
+
+/// Scenes in which what turns is hit: sums over features that touch are in the order of bodies.
+const TURNING: [&str; 4] = [
+    "cubes-turning",
+    "cube-cow-spin",
+    "cows-turning",
+    "nut-on-bolt",
 ];
 
 /// The bodies of a scene in another order: `order[i]` is where the one that comes to place `i` was.
@@ -314,6 +313,10 @@ fn forces_are_summed_in_no_order_of_bodies() {
 fn the_order_of_bodies_changes_no_bit_of_the_gallery() {
     let mut wrong = Vec::new();
     for entry in SCENES {
+        if TURNING.contains(&entry.name) {
+            println!("{} is left out: what turns is hit in it", entry.name);
+            continue;
+        }
         for (mode, collision) in MODES {
             let is_named = |named: &&(&str, &str, &str)| (named.0, named.1) == (entry.name, mode);
             if let Some((.., why)) = LEFT_OUT.iter().find(is_named) {

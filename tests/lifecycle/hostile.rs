@@ -114,6 +114,7 @@ fn bytes_that_have_been_changed_are_refused_or_sound() {
 #[test]
 fn what_is_wrong_is_said() {
     let whole = serde_json::to_value(motley()).expect("a value");
+    let turn = whole.pointer("/bodies/6/turn").expect("it turns").clone();
     for (place, value, said) in [
         ("/version", json!(99), "version 99"),
         ("/bodies/1/mass", json!(-1.0), "mass of body 1"),
@@ -123,6 +124,51 @@ fn what_is_wrong_is_said() {
             "/bodies/1/previous_position",
             json!([1e300, 0, 0]),
             "previous position",
+        ),
+        (
+            "/bodies/6/turn/now/rotation",
+            json!([0.5, 0.5, 0.5, 0.6]),
+            "rotation of body 6 must be a quaternion of unit length",
+        ),
+        (
+            "/bodies/6/turn/before/rotation",
+            json!([0, 0, 0, 0]),
+            "rotation of body 6 must be a quaternion of unit length",
+        ),
+        (
+            "/bodies/6/turn/now/momentum",
+            json!([1e300, 0, 0]),
+            "angular momentum of body 6",
+        ),
+        (
+            "/bodies/6/turn/inertia/moments",
+            json!([1e-250, 1e-250, 1e-250]),
+            "spin of body 6",
+        ),
+        (
+            "/bodies/6/turn/inertia/moments",
+            json!([1, 1, 3]),
+            "none may be more than the two others",
+        ),
+        (
+            "/bodies/6/turn/inertia/axes",
+            json!([0, 0, 0, 2]),
+            "not a unit quaternion",
+        ),
+        (
+            "/bodies/6/turn/torque",
+            json!([0, 1e101, 0]),
+            "torque of body 6",
+        ),
+        (
+            "/bodies/8/turn/torque",
+            json!([0, 1, 0]),
+            "body 8: nothing turns it",
+        ),
+        (
+            "/bodies/0/turn",
+            turn.clone(),
+            "half-space, which cannot turn",
         ),
         ("/ignored/0", json!([1, 77]), "no body 77"),
         ("/forces/2/spring/bodies", json!([1, 1]), "two different"),

@@ -12,19 +12,16 @@ use sim_core::{Collision, World};
 const MODES: [Collision; 3] = [Collision::Continuous, Collision::Bvh, Collision::Naive];
 
 /// Scenes in which the naive search takes minutes; the BVH has the same answers.
-const SLOW: [&str; 2] = ["herd", "bin"];
+const SLOW: [&str; 3] = ["herd", "bin", "cows-turning"];
 
 /// Every scene of the gallery in every mode.
 fn gallery() -> impl Iterator<Item = (Scene, Collision)> {
     scene::SCENES.iter().flat_map(|entry| {
         let scene = entry.scene().expect("a gallery scene");
-        // The discrete modes turn nothing, and snapshots hold nothing that turns.
-        let turns = scene.bodies.iter().any(|body| body.turn.is_some());
         let is_fast = |mode: &Collision| *mode != Collision::Naive || !SLOW.contains(&entry.name);
         MODES
             .into_iter()
             .filter(is_fast)
-            .filter(move |_| !turns)
             .map(move |mode| (scene.clone(), mode))
     })
 }

@@ -1,11 +1,11 @@
 //! A world that is written and read goes on to the bit.
 
-use kit::bodies::{at, wall};
-use kit::shapes::{ball, cube};
+use kit::bodies::{at, immovable, wall};
+use kit::shapes::{ball, cube, cuboid};
 use kit::worlds::{add_gravity, step, world};
 use sim_core::{
-    Body, BodyKind, BodyLaw, BodyMotion, DVec3, Force, Groups, Law, METHODS, Mesh, Method, PairLaw,
-    PairMotion, Settings, World,
+    Body, BodyKind, BodyLaw, BodyMotion, Collision, DQuat, DVec3, Force, Groups, Law, METHODS,
+    Mesh, Method, PairLaw, PairMotion, Settings, Turn, World,
 };
 
 use super::{gallery, world_of};
@@ -117,7 +117,26 @@ pub(crate) fn motley() -> World {
         position: 9.0 * DVec3::X,
         ..Body::default()
     };
-    let mut world = world([first, floor].into_iter().chain(cubes).chain([lift]));
+    let turn = Turn {
+        rotation: DQuat::from_rotation_x(0.4),
+        spin: DVec3::new(0.3, 5.0, -2.0),
+        torque: 0.1 * DVec3::Z,
+        inertia: None,
+    };
+    let tumbling = Body {
+        turn: Some(turn),
+        ..at(&cuboid([0.2, 0.3, 0.4]), DVec3::new(1.5, 1.0, 1.5))
+    };
+    let rolling = Body {
+        turn: Some(turn),
+        ..at(&ball(0.3), DVec3::new(-1.5, 1.0, 1.5))
+    };
+    let turntable = Body {
+        turn: Some(turn),
+        ..immovable(at(&cuboid([0.5, 0.1, 0.5]), DVec3::new(1.5, 0.0, 1.5)))
+    };
+    let bodies = [first, floor].into_iter().chain(cubes);
+    let mut world = world(bodies.chain([lift, tumbling, rolling, turntable]));
     add_gravity(&mut world, -9.81 * DVec3::Y);
     let forces = [
         Force::Gravitation { constant: 0.01 },
@@ -173,6 +192,42 @@ fn all_that_a_world_has_goes_on_and_handles_stay() {
             assert!(other.ignored_pairs().eq(world.ignored_pairs()));
             assert_eq!(other.settings(), world.settings());
         }
+    }
+}
+
+#[test]
+fn how_bodies_turn_goes_on_to_the_bit_in_every_mode() {
+    for collision in [Collision::Continuous, Collision::Bvh, Collision::Naive] {
+        let mut world = motley();
+        let settings = Settings {
+            collision,
+            ..*world.settings()
+        };
+        world.set_settings(settings).expect("settings");
+        let tumbling = world.len() - 4;
+        assert!(world.turns(tumbling));
+        for number in 0..120 {
+            let mut others = again(&world);
+            world.step().expect("a step");
+            for (how, other) in &mut others {
+                other.step().expect("a step");
+                let what = || format!("{collision:?}, step {number}, {how}");
+                assert_eq!(other.state_hash(), world.state_hash(), "{}", what());
+                for body in 0..world.len() {
+                    assert_eq!(other.turn(body), world.turn(body), "{}", what());
+                    assert_eq!(
+                        other.interpolated_pose(body, 0.25),
+                        world.interpolated_pose(body, 0.25)
+                    );
+                    let momentum = other.angular_momentum(body);
+                    assert_eq!(momentum, world.angular_momentum(body));
+                }
+                assert_eq!(other.impacts(), world.impacts());
+            }
+        }
+        // What turns has met something.
+        let turned = |body: usize| world.turns(body) && world.velocity(body) != DVec3::ZERO;
+        assert!((0..world.len()).any(turned));
     }
 }
 

@@ -1,6 +1,8 @@
 //! Bodies that turn, against closed forms.
 
+mod discrete;
 mod flight;
 mod impacts;
+mod overlaps;
 mod rest;
 mod times;

@@ -1,10 +1,7 @@
 //! Turning bodies that lie, slide, stack, tip and fall: what anybody does first.
 
 use kit::{bodies, random::Random, shapes, worlds};
-use sim_core::{
-    Body, BodyKind, Collision, DQuat, DVec3, Inertia, Settings, Shape, StepError, Turn, World,
-    WorldError,
-};
+use sim_core::{Body, BodyKind, DQuat, DVec3, Inertia, Settings, Shape, Turn, World, WorldError};
 
 const G: f64 = 9.81;
 
@@ -314,15 +311,4 @@ fn what_cannot_turn_is_refused_by_name() {
         world.set_kind(1, BodyKind::Static),
         Err(WorldError::TurningKind { body: 1 })
     );
-    let settings = Settings {
-        collision: Collision::Bvh,
-        ..Settings::default()
-    };
-    world.set_settings(settings).unwrap();
-    let hash = world.state_hash();
-    assert!(matches!(
-        world.step(),
-        Err(StepError::TurnsDiscretely { .. })
-    ));
-    assert_eq!(world.state_hash(), hash);
 }

@@ -116,6 +116,22 @@ pub static SCENES: &[GalleryScene] = &[
         name: "cubes-turning",
         text: include_str!("../assets/scenes/cubes-turning.toml"),
     },
+    GalleryScene {
+        name: "wobbling-plate",
+        text: include_str!("../assets/scenes/wobbling-plate.toml"),
+    },
+    GalleryScene {
+        name: "cube-cow-spin",
+        text: include_str!("../assets/scenes/cube-cow-spin.toml"),
+    },
+    GalleryScene {
+        name: "cows-turning",
+        text: include_str!("../assets/scenes/cows-turning.toml"),
+    },
+    GalleryScene {
+        name: "nut-on-bolt",
+        text: include_str!("../assets/scenes/nut-on-bolt.toml"),
+    },
 ];
 
 /// A scene of the gallery.

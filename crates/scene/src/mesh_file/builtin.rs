@@ -8,7 +8,7 @@ use sim_core::Mesh;
 use super::{Format, read};
 
 /// The built-in meshes, by the file name that scenes use.
-pub static BUILTIN_MESHES: [BuiltinMesh; 4] = [
+pub static BUILTIN_MESHES: [BuiltinMesh; 6] = [
     BuiltinMesh {
         name: "cube.obj",
         bytes: include_bytes!("../../assets/meshes/cube.obj"),
@@ -27,6 +27,16 @@ pub static BUILTIN_MESHES: [BuiltinMesh; 4] = [
     BuiltinMesh {
         name: "funnel.obj",
         bytes: include_bytes!("../../assets/meshes/funnel.obj"),
+        mesh: OnceLock::new(),
+    },
+    BuiltinMesh {
+        name: "bolt.obj",
+        bytes: include_bytes!("../../assets/meshes/bolt.obj"),
+        mesh: OnceLock::new(),
+    },
+    BuiltinMesh {
+        name: "nut.obj",
+        bytes: include_bytes!("../../assets/meshes/nut.obj"),
         mesh: OnceLock::new(),
     },
 ];

@@ -47,7 +47,11 @@ impl TryFrom<Unchecked> for Inertia {
     type Error = InertiaError;
 
     fn try_from(read: Unchecked) -> Result<Inertia, InertiaError> {
-        Inertia::new(read.moments, read.axes, read.centre)
+        let inertia = Inertia::new(read.moments, read.axes, read.centre)?;
+        // What has been written is read to the bit: to make it of length 1 once more would round it.
+        let is_unit = (read.axes.length_squared() - 1.0).abs() <= 8.0 * f64::EPSILON;
+        let axes = if is_unit { read.axes } else { inertia.axes };
+        Ok(Inertia { axes, ..inertia })
     }
 }
 

@@ -7,7 +7,9 @@
 //! the world in overlap.
 //!
 //! Those that touch first on the way go first, and those that touch at the same time go together. So
-//! the order of bodies has no say in it.
+//! the order of bodies has no say in it. `turning` has what is different where bodies turn.
+
+mod turning;
 
 use alloc::{
     collections::{BTreeMap, BinaryHeap},
@@ -65,6 +67,8 @@ struct Meeting {
     were_back: (bool, bool),
     /// Its point is in the world; `None` where nothing moves them.
     contact: Option<Contact>,
+    /// How near each other features are there that touch, m; 0 where neither turns.
+    near: f64,
 }
 
 impl Ord for Meeting {
@@ -202,7 +206,7 @@ impl DiscreteStep<'_> {
                 .flat_map(|meeting| [meeting.bodies.0, meeting.bodies.1])
             {
                 if !mem::replace(&mut is_back[body], true) {
-                    self.end.position[body] = self.scene.before.position[body];
+                    self.put_back(body);
                     put_back.push(body);
                 }
             }
@@ -221,6 +225,14 @@ impl DiscreteStep<'_> {
         (discrete.is_back, discrete.put_back) = (is_back, put_back);
     }
 
+    /// Puts a body back to where the step began, and as it was turned there.
+    fn put_back(&mut self, body: usize) {
+        self.end.position[body] = self.scene.before.position[body];
+        if let Some(slot) = self.scene.bodies.turners.slot(body) {
+            self.end.turned[slot].rotation = self.scene.before.turned[slot].rotation;
+        }
+    }
+
     /// Every other body whose box meets that of a body on the way of the step.
     fn each_near(&self, body: usize, mut found: impl FnMut(usize)) {
         if self.is_few() {
@@ -237,18 +249,25 @@ impl DiscreteStep<'_> {
     }
 
     fn meeting_of(&self, (i, j): (usize, usize), is_back: &[bool]) -> Meeting {
-        let contact = self.scene.contact_on_way(self.end, i, j);
+        let were_back = (is_back[i], is_back[j]);
+        let (contact, near) = match self.scene.bodies.pair_tumbles(i, j) {
+            true => self.turning_contact_on_way((i, j), were_back),
+            false => (self.scene.contact_on_way(self.end, i, j), 0.0),
+        };
         Meeting {
             time: contact.as_ref().map_or(1.0, |contact| contact.time),
             bodies: (i, j),
-            were_back: (is_back[i], is_back[j]),
+            were_back,
             contact,
+            near,
         }
     }
 
     /// Lets bodies that touch at the same time part by their restitution.
     fn exchange_at_once(&mut self, group: &[Meeting]) {
-        if let [only] = group {
+        if let [only] = group
+            && !self.scene.bodies.pair_tumbles(only.bodies.0, only.bodies.1)
+        {
             if let Some(contact) = &only.contact {
                 self.note_exchange(only.bodies, contact);
             }
@@ -280,7 +299,12 @@ impl DiscreteStep<'_> {
             .collect();
         in_pieces.sort_by_key(|&(piece, _)| piece);
         for piece in in_pieces.chunk_by(|a, b| a.0 == b.0) {
+            let turns = |(_, touching): &(usize, Touching)| {
+                let [i, j] = touching.bodies;
+                self.scene.bodies.pair_tumbles(i, j)
+            };
             match piece {
+                _ if piece.iter().any(turns) => self.reflect_turning(piece),
                 [(_, only)] => self.note_exchange(only.pair(), &only.contact),
                 _ => self.reflect_piece(piece),
             }
@@ -302,6 +326,11 @@ impl DiscreteStep<'_> {
                 contact.normal
             },
             contact,
+            near: meeting.near,
+            were_back: match is_turned {
+                true => [meeting.were_back.1, meeting.were_back.0],
+                false => [meeting.were_back.0, meeting.were_back.1],
+            },
         })
     }
 
@@ -455,6 +484,9 @@ struct Touching {
     normal: DVec3,
     /// Of the lower body and the higher.
     contact: Contact,
+    /// Of these bodies, as in [`Meeting`].
+    near: f64,
+    were_back: [bool; 2],
     /// Whether the first is the higher.
     is_turned: bool,
 }

@@ -197,14 +197,6 @@ pub enum StepError {
         /// Where forces get stiffer still on a stable way, a run with this `dt` says so in its turn.
         stable_dt: f64,
     },
-    /// A body that turns in a discrete mode.
-    #[error("step {step}: body {body} turns, which needs continuous collisions")]
-    TurnsDiscretely {
-        /// Index of the body.
-        body: usize,
-        /// The step that failed, from 1.
-        step: u64,
-    },
     /// A body turns too fast to be followed.
     #[error("step {step}: body {body} cannot be turned: {error}")]
     Turning {
@@ -285,7 +277,6 @@ impl StepError {
             | StepError::TooManySteps { body, .. }
             | StepError::Squeezed { body, .. }
             | StepError::Turning { body, .. }
-            | StepError::TurnsDiscretely { body, .. }
             | StepError::TooManyImpacts { body, .. } => body,
         }
     }

@@ -47,6 +47,14 @@ pub(super) struct Instant {
 impl Scene<'_> {
     /// Whether two bodies meet where they are at the end of the step, as the mode has it.
     pub(super) fn meet(&self, end: &State, i: usize, j: usize) -> bool {
+        if self.bodies.pair_tumbles(i, j) {
+            // Whoever asks, vertices are placed in the frame of the lower one.
+            let (i, j) = (i.min(j), i.max(j));
+            return match self.settings.collision {
+                Collision::Naive => self.bodies.meet_naively_in(end, i, j),
+                Collision::Bvh | Collision::Continuous => self.bodies.meet_in(end, i, j),
+            };
+        }
         let offset = end.position[j] - end.position[i];
         let meshes = match self.settings.collision {
             Collision::Naive => self.bodies.mesh(i).zip(self.bodies.mesh(j)),

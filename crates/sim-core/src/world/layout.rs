@@ -1,8 +1,13 @@
 //! Where bodies are, and what of that is rounding.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
-use super::{bodies::Bodies, continuous::ContactSet, overlap::Overlaps, state::State};
+use super::{
+    bodies::Bodies,
+    continuous::ContactSet,
+    overlap::Overlaps,
+    state::{State, Turned},
+};
 use crate::{Shape, collide};
 
 /// The gap of bodies in contact, in units in the last place of the largest coordinate about.
@@ -20,6 +25,8 @@ pub(super) struct Layout<'a> {
     pub(super) bodies: &'a Bodies,
     /// Where they are, m.
     pub(super) at: &'a [DVec3],
+    /// How those are turned there that turn, by slot.
+    pub(super) turned: &'a [Turned],
     /// Their motion where the step began.
     pub(super) before: &'a State,
     pub(super) contacts: &'a ContactSet,
@@ -63,6 +70,33 @@ impl Layout<'_> {
             }
             _ => RESOLUTION_ULPS * f64::EPSILON * far,
         }
+    }
+
+    /// Whether two bodies meet as they are turned, the second one at an offset from the first. Trees must be there.
+    pub(super) fn meet(&self, i: usize, j: usize, offset: DVec3) -> bool {
+        if !self.bodies.pair_tumbles(i, j) {
+            return self.bodies.meet_built(i, j, offset);
+        }
+        let first = (i, (DVec3::ZERO, self.rotation(i)));
+        let second = (j, (offset, self.rotation(j)));
+        self.bodies.meet_placed(first, second)
+    }
+
+    /// How a body's shape is turned: into the world.
+    pub(super) fn rotation(&self, body: usize) -> DQuat {
+        self.bodies.rotation_among(self.turned, body)
+    }
+
+    /// How far a body reaches about its position against a normal, as it is turned, m; the tree over its mesh
+    /// must be there.
+    pub(super) fn reach_against(&self, body: usize, normal: DVec3) -> Option<f64> {
+        let form = self.bodies.form(body)?;
+        if !self.bodies.tumbles(body) {
+            return Some(collide::reach(form, normal).0);
+        }
+        let rotation = self.rotation(body);
+        let centre = normal.dot(rotation * self.bodies.centre_of(body));
+        Some(collide::reach(form, rotation.inverse() * normal).0 + centre)
     }
 
     /// Where two bodies in overlap should part to: out of a half-space, or along the line of their

@@ -276,10 +276,6 @@ impl World {
         }
         match self.settings.collision {
             Collision::Naive | Collision::Bvh => {
-                let mut turning = self.bodies.turners.body.iter();
-                if let Some(&body) = turning.find(|&&body| self.bodies.tumbles(body)) {
-                    return Err((body, Cause::TurnsDiscretely));
-                }
                 self.turn_freely()?;
                 self.collide_discretely();
                 Ok(())
@@ -497,6 +493,7 @@ impl World {
         Layout {
             bodies: &self.bodies,
             at: &self.current.position,
+            turned: &self.current.turned,
             before: &self.previous,
             contacts: &self.contacts,
             overlaps: &self.overlaps,

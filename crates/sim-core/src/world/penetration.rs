@@ -9,7 +9,10 @@ use alloc::vec::Vec;
 use glam::DVec3;
 
 use super::{World, layout::Layout};
-use crate::collide::{Form, ball_meets, first_contact, parting_normals, reach, snap};
+use crate::{
+    Shape,
+    collide::{Form, ball_meets, first_contact, parting_normals, reach, snap},
+};
 
 /// Halvings of the length at which a direction parts a pair: as good as 12 digits.
 const HALVINGS: usize = 40;
@@ -39,7 +42,8 @@ pub struct Overlap {
     /// the way of, and for two boxes of which neither fits into the other. Otherwise `depth` is an upper
     /// bound: that of the shortest of the ways out along the normals of up to 32 faces that are met, the
     /// line of the centres, and the 26 directions to the faces, edges and corners of a cube, bettered
-    /// by the surfaces that are met on the way.
+    /// by the surfaces that are met on the way. Of two bodies of which one turns it is that of the line of
+    /// the centres and of 26 such directions in the world and in the frame of each that turns.
     pub is_least: bool,
 }
 
@@ -57,7 +61,8 @@ impl World {
     /// The pairs of bodies that are in each other, one of which may move, in order: those that were put
     /// into the world so, and have not parted since.
     ///
-    /// No start is refused: bodies in overlap are held as they are, get no deeper and gain no energy, two
+    /// No start is refused: bodies in overlap are held as they are, get no deeper and gain no energy; those of
+    /// which one turns pass through each other until they are apart; two
     /// that are immovable touch nothing of each other, and what is wholly inside a closed mesh does not
     /// overlap it, as a mesh is a surface and its inside a room. [`World::separate`] moves overlaps apart.
     ///
@@ -77,6 +82,9 @@ impl World {
             return None;
         }
         let found = layout.penetration(i, j, offset);
+        if self.bodies.pair_tumbles(i, j) && found.depth <= layout.flush(i, j) {
+            return None;
+        }
         Some(Overlap {
             bodies: (i, j),
             normal: found.normal,
@@ -114,6 +122,9 @@ impl Layout<'_> {
     pub(super) fn penetration(&self, i: usize, j: usize, offset: DVec3) -> Penetration {
         self.bodies.need_bvh(i);
         self.bodies.need_bvh(j);
+        if self.bodies.pair_tumbles(i, j) {
+            return self.turning_penetration(i, j, offset);
+        }
         let Some((first, second)) = self.bodies.forms(i, j) else {
             return self.unknown_penetration(i, j);
         };
@@ -129,6 +140,35 @@ impl Layout<'_> {
             normal,
             depth,
             is_least: is_least(first, second, offset, depth) || self.are_boxes_in_boxes(i, j),
+        }
+    }
+
+    /// The same of two bodies of which one turns, as they are turned.
+    fn turning_penetration(&self, i: usize, j: usize, offset: DVec3) -> Penetration {
+        let out_of = |normal: DVec3, body: usize, place: DVec3| {
+            let depth = self.reach_against(body, normal)? - normal.dot(place);
+            Some((normal, depth.max(0.0)))
+        };
+        let plane = match (self.bodies.shape(i), self.bodies.shape(j)) {
+            (Some(&Shape::HalfSpace { normal }), _) => out_of(normal, j, offset),
+            (_, Some(&Shape::HalfSpace { normal })) => {
+                let out = out_of(normal, i, -offset);
+                out.map(|(normal, depth)| (-normal, depth))
+            }
+            _ => None,
+        };
+        let is_least = plane.is_some();
+        let found = plane.or_else(|| {
+            let directions = self.ways_out(i, j, offset);
+            self.shortest_out((i, j), offset, &directions)
+        });
+        match found {
+            Some((normal, depth)) => Penetration {
+                normal,
+                depth,
+                is_least,
+            },
+            None => self.unknown_penetration(i, j),
         }
     }
 
@@ -152,7 +192,17 @@ impl Layout<'_> {
         let mut ways: Vec<DVec3> = alloc::vec![self.apart_along(i, j)];
         let both = surfaces.iter().flat_map(|&normal| [normal, -normal]);
         let known = self.contacts.of_pair(i, j).filter(|known| known.is_overlap);
-        for way in known.map(|known| known.normal).chain(both).chain(compass()) {
+        let turning = [i, j].into_iter().filter(|&body| self.bodies.tumbles(body));
+        let turned = turning.flat_map(|body| {
+            let rotation = self.rotation(body);
+            compass().map(move |way| rotation * way)
+        });
+        for way in known
+            .map(|known| known.normal)
+            .chain(both)
+            .chain(compass())
+            .chain(turned)
+        {
             if !ways.contains(&way) {
                 ways.push(way);
             }
@@ -168,7 +218,7 @@ impl Layout<'_> {
         offset: DVec3,
         directions: &[DVec3],
     ) -> Option<(DVec3, f64)> {
-        let is_apart = |by: DVec3| !self.bodies.meet_built(i, j, offset + by);
+        let is_apart = |by: DVec3| !self.meet(i, j, offset + by);
         let some_part = |far: f64| directions.iter().any(|&way| is_apart(far * way));
         let (least, most) = (self.hover_gap(i, j), self.farthest_out(i, j));
         // What is held is about as deep as it was.

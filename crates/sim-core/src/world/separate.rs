@@ -13,7 +13,7 @@ use glam::DVec3;
 use super::{World, layout::Layout, penetration::compass};
 use crate::{
     Shape,
-    collide::{first_contact, reach, snap},
+    collide::{first_contact, snap},
 };
 
 /// Rounds in which planes are added, at most.
@@ -111,7 +111,7 @@ impl Separation<'_> {
             .layout
             .bodies
             .near_pairs(place, |body| 8.0 * self.layout.hover_gap(body, body));
-        pairs.retain(|&(i, j)| self.layout.bodies.meet_built(i, j, place[j] - place[i]));
+        pairs.retain(|&(i, j)| self.layout.meet(i, j, place[j] - place[i]));
         pairs
     }
 
@@ -258,7 +258,7 @@ impl Separation<'_> {
                 let swept = |body: usize, at: DVec3| self.layout.bodies.swept_box(body, at, at);
                 self.layout.bodies.may_meet(i, j)
                     && (is_wall || swept(body, at).meets(&swept(other, place[other])))
-                    && self.layout.bodies.meet_built(i, j, offset)
+                    && self.layout.meet(i, j, offset)
             };
             there.iter().filter(meets).copied().collect()
         };
@@ -324,7 +324,7 @@ impl Separation<'_> {
             let &Shape::HalfSpace { normal } = self.layout.bodies.shape(wall)? else {
                 return None;
             };
-            let (reach, _) = reach(self.layout.bodies.form(body)?, normal);
+            let reach = self.layout.reach_against(body, normal)?;
             let level = normal.dot(place[wall]) + reach + self.layout.hover_gap(wall, body);
             Some((normal, level))
         };

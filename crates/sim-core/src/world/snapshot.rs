@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize, Serializer, ser};
 
 use super::{
     Bundled, Groups, Impact, Settings, World, continuous::ContactConstraint, handle::Slot,
-    marks::KeptMotion,
+    marks::KeptMotion, turning::TurningState,
 };
 use crate::{BodyKind, Force, Shape};
 
 /// Grows where the format changes: a world of another version is refused.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -67,6 +67,9 @@ struct BodyState {
     friction: f64,
     groups: Groups,
     user_data: u64,
+    /// Of a body that turns. Worlds of the first version had none.
+    #[serde(default)]
+    turn: Option<TurningState>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -92,7 +95,7 @@ struct Growth {
 /// # Errors
 ///
 /// Where a force is a law from outside ([`Force::Body`], [`Force::Pair`]), or the method is not in
-/// [`METHODS`](crate::METHODS): they are code. And where a body turns, which has no text yet.
+/// [`METHODS`](crate::METHODS): they are code.
 impl Serialize for World {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let mut forces = self.forces().iter();
@@ -100,11 +103,6 @@ impl Serialize for World {
         if let Some(index) = forces.position(|force| law(&force)) {
             return Err(ser::Error::custom(format!(
                 "force {index} is a law from outside: it is code, which has no text"
-            )));
-        }
-        if let Some(body) = self.turning_bodies().next() {
-            return Err(ser::Error::custom(format!(
-                "body {body} turns: worlds with bodies that turn cannot be written yet"
             )));
         }
         Snapshot::of(self).serialize(to)
@@ -131,6 +129,7 @@ impl Snapshot {
             friction: world.friction(i),
             groups: world.groups(i),
             user_data: world.user_data(i),
+            turn: world.turning_state(i),
         };
         Snapshot {
             version: VERSION,

@@ -16,6 +16,11 @@ pub(super) struct State {
 
 /// How a body is turned, and turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub(super) struct Turned {
     /// Turns principal axes into the world.
     pub(super) rotation: DQuat,

@@ -462,7 +462,6 @@ impl World {
                 method,
                 stable_dt,
             },
-            Cause::TurnsDiscretely => StepError::TurnsDiscretely { body, step },
             Cause::Turning(error) => StepError::Turning { body, step, error },
             Cause::Failure(Failure::NotConverged { iterations, .. }) => StepError::NotConverged {
                 body,
@@ -560,6 +559,4 @@ pub(super) enum Cause {
     Failure(Failure),
     /// A rotation that cannot be followed.
     Turning(FlightError),
-    /// A turning body among others in a discrete mode.
-    TurnsDiscretely,
 }

@@ -50,6 +50,13 @@ impl Turners {
         (slot != NONE).then_some(slot as usize)
     }
 
+    /// The inverse inertia in the world of a body whose principal axes are turned by a rotation, 1/(kg m²).
+    pub(super) fn inverse_inertia(&self, slot: usize, axes: DQuat) -> DMat3 {
+        let axes = DMat3::from_quat(axes);
+        let inverse = DMat3::from_diagonal(self.inertia[slot].moments().recip());
+        axes * inverse * axes.transpose()
+    }
+
     fn push(&mut self, body: usize, turn: Prepared) {
         self.slot.resize(body, NONE);
         self.slot.push(self.body.len() as u32);
@@ -121,8 +128,13 @@ impl Bodies {
 
     /// Turns a body's shape into the world.
     pub(super) fn rotation_in(&self, state: &State, body: usize) -> DQuat {
+        self.rotation_among(&state.turned, body)
+    }
+
+    /// The same with how bodies are turned by slot.
+    pub(super) fn rotation_among(&self, turned: &[Turned], body: usize) -> DQuat {
         match self.turners.slot(body) {
-            Some(slot) => self.rotation_of(slot, &state.turned[slot]),
+            Some(slot) => self.rotation_of(slot, &turned[slot]),
             None => DQuat::IDENTITY,
         }
     }
@@ -133,7 +145,7 @@ impl Bodies {
     }
 
     /// The centre of mass in the shape's frame, m, of a body that turns; of others the place is the origin.
-    fn centre_of(&self, body: usize) -> DVec3 {
+    pub(super) fn centre_of(&self, body: usize) -> DVec3 {
         let slot = self.turners.slot(body);
         slot.map_or(DVec3::ZERO, |slot| self.turners.inertia[slot].centre())
     }
@@ -152,6 +164,31 @@ impl Bodies {
         self.meet_placed((i, placed(i)), (j, placed(j)))
     }
 
+    /// The same by every edge of one mesh against every triangle of the other, where both are meshes.
+    pub(super) fn meet_naively_in(&self, state: &State, i: usize, j: usize) -> bool {
+        let (Some(first), Some(second)) = (self.mesh(i), self.mesh(j)) else {
+            return self.meet_in(state, i, j);
+        };
+        let swept = |body: usize| self.swept_box(body, state.position[body], state.position[body]);
+        if !swept(i).meets(&swept(j)) {
+            return false;
+        }
+        let placed = |body: usize| (state.position[body], self.rotation_in(state, body));
+        let (a, b) = (placed(i), placed(j));
+        let between = self.between((i, a), (j, b));
+        turned_place(a.1, b.1, between)
+            .is_some_and(|place| collide::naive::intersect(first, second, place))
+    }
+
+    /// From the origin of one body's shape to that of another one's, placed and turned as told, m.
+    fn between(
+        &self,
+        (i, (x, first)): (usize, (DVec3, DQuat)),
+        (j, (y, second)): (usize, (DVec3, DQuat)),
+    ) -> DVec3 {
+        (y - second * self.centre_of(j)) - (x - first * self.centre_of(i))
+    }
+
     /// Whether two bodies meet at their places and turned as told, by the exact test.
     pub(super) fn meet_placed(
         &self,
@@ -160,15 +197,14 @@ impl Bodies {
     ) -> bool {
         self.need_bvh(i);
         self.need_bvh(j);
-        let between = (y - second * self.centre_of(j)) - (x - first * self.centre_of(i));
+        let between = self.between((i, (x, first)), (j, (y, second)));
         match (self.shape(i), self.shape(j)) {
             (Some(Shape::Mesh(_)), Some(Shape::Mesh(_))) => {
                 let (Some(a), Some(b)) = (self.bvh(i), self.bvh(j)) else {
                     return false;
                 };
-                let to_first = first.inverse();
-                let place = Placement::turned((to_first * second).normalize(), to_first * between);
-                place.is_some_and(|place| collide::tree::intersect(a, b, place))
+                turned_place(first, second, between)
+                    .is_some_and(|place| collide::tree::intersect(a, b, place))
             }
             // Balls and planes do not turn: in the frame of the other one.
             (Some(Shape::Mesh(_)), Some(other)) => {
@@ -241,11 +277,9 @@ impl Bodies {
             };
         }
         let inertia = match self.turners.slot(body) {
-            Some(slot) if self.tumbles(body) => {
-                let axes = DMat3::from_quat(state.turned[slot].rotation);
-                let inverse = DMat3::from_diagonal(self.turners.inertia[slot].moments().recip());
-                axes * inverse * axes.transpose()
-            }
+            Some(slot) if self.tumbles(body) => self
+                .turners
+                .inverse_inertia(slot, state.turned[slot].rotation),
             _ => DMat3::ZERO,
         };
         Yielding {
@@ -253,6 +287,12 @@ impl Bodies {
             inertia,
         }
     }
+}
+
+/// Where a mesh is in the frame of another one, both turned, their origins apart by a vector in the world, m.
+fn turned_place(first: DQuat, second: DQuat, between: DVec3) -> Option<Placement> {
+    let to_first = first.inverse();
+    Placement::turned((to_first * second).normalize(), to_first * between)
 }
 
 impl Turned {
@@ -263,6 +303,18 @@ impl Turned {
             momentum: rotation * (inertia.moments() * (rotation.inverse() * spin)),
         }
     }
+}
+
+/// What a body that turns is, and how it is turned.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TurningState {
+    pub(super) inertia: Inertia,
+    pub(super) torque: DVec3,
+    pub(super) now: Turned,
+    /// Where the last step began.
+    pub(super) before: Turned,
 }
 
 /// What turns of a body, checked.
@@ -299,26 +351,56 @@ pub(super) fn prepared(index: usize, turn: Turn, body: &Body) -> Result<Prepared
         inertia = steady.map_err(refused)?;
         torque = DVec3::ZERO;
     }
-    let centre = inertia.centre();
-    let radius = match &body.shape {
+    let rotation = (turn.rotation.normalize() * inertia.axes()).normalize();
+    Ok(Prepared {
+        turned: Turned::spinning(&inertia, rotation, turn.spin),
+        radius: radius_about(body.shape.as_ref(), inertia.centre()),
+        inertia,
+        torque,
+    })
+}
+
+/// The farthest point of a shape from a centre in its frame, m.
+fn radius_about(shape: Option<&Shape>, centre: DVec3) -> f64 {
+    match shape {
         Some(Shape::Mesh(mesh)) => mesh
             .vertices()
             .iter()
             .map(|v| (v.as_dvec3() - centre).length())
             .fold(0.0, f64::max),
-        &Some(Shape::Sphere { radius }) => radius + centre.length(),
+        Some(&Shape::Sphere { radius }) => radius + centre.length(),
         Some(Shape::HalfSpace { .. }) | None => 0.0,
-    };
-    let rotation = (turn.rotation.normalize() * inertia.axes()).normalize();
-    Ok(Prepared {
-        turned: Turned::spinning(&inertia, rotation, turn.spin),
-        inertia,
-        torque,
-        radius,
-    })
+    }
 }
 
 impl World {
+    /// Lets a body turn that has just been added, as it was turned before and is now, to the bit.
+    #[cfg(feature = "serde")]
+    pub(super) fn resume_turn(&mut self, body: usize, turn: TurningState) {
+        let prepared = Prepared {
+            radius: radius_about(self.shape(body), turn.inertia.centre()),
+            inertia: turn.inertia,
+            torque: turn.torque,
+            turned: turn.now,
+        };
+        self.push_turn(body, prepared);
+        if let Some(previous) = self.previous.turned.last_mut() {
+            *previous = turn.before;
+        }
+    }
+
+    /// What a body that turns is, and how it was turned before and is now.
+    #[cfg(feature = "serde")]
+    pub(super) fn turning_state(&self, body: usize) -> Option<TurningState> {
+        let slot = self.bodies.turners.slot(body)?;
+        Some(TurningState {
+            inertia: self.bodies.turners.inertia[slot],
+            torque: self.bodies.turners.torque[slot],
+            now: self.current.turned[slot],
+            before: self.previous.turned[slot],
+        })
+    }
+
     /// Lets a body turn that has just been added.
     pub(super) fn push_turn(&mut self, body: usize, turn: Prepared) {
         self.current.turned.push(turn.turned);

@@ -189,10 +189,6 @@ impl Session {
                 if let Some(rate) = stable_rate(&error) {
                     self.notices.offer("step", Remedy::Rate(rate));
                 }
-                if let StepError::TurnsDiscretely { .. } = error {
-                    let remedy = Remedy::Collision(Collision::Continuous);
-                    self.notices.offer("step", remedy);
-                }
             }
         }
         self.hold_at_the_end(left);

@@ -56,6 +56,10 @@ static PICTURES: &[(&str, &[u8])] = pictures![
     "pleiades",
     "tennis-racket",
     "cubes-turning",
+    "wobbling-plate",
+    "cube-cow-spin",
+    "cows-turning",
+    "nut-on-bolt",
 ];
 
 pub(super) fn show(ctx: &egui::Context, gallery: &mut Gallery, session: &mut Session) {

@@ -77,6 +77,7 @@ impl Correction<'_> {
         Layout {
             bodies: self.scene.bodies,
             at: &self.end.position,
+            turned: &self.end.turned,
             before: self.scene.before,
             contacts: self.contacts,
             overlaps: self.scene.overlaps,

@@ -41,6 +41,7 @@ impl<'a> View<'a> {
         Layout {
             bodies: self.scene.bodies,
             at: &self.paths.end.position,
+            turned: &self.paths.end.turned,
             before: self.scene.before,
             contacts: self.contacts,
             overlaps: self.scene.overlaps,

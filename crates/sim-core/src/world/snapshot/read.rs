@@ -1,11 +1,12 @@
 //! A snapshot to a world: whatever stands in it, the world is sound, or there is an error.
 
 use alloc::{collections::BTreeMap, format, string::String, string::ToString, vec::Vec};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
-use super::{BodyState, Growth, KnownOverlap, Snapshot, VERSION};
+use super::{BodyState, Growth, KnownOverlap, Snapshot, TurningState, VERSION};
 use crate::{
-    Body, Feature, Impact, Shape, World,
+    Body, Feature, Impact, Shape, World, WorldError,
+    rotation::spin,
     world::{
         continuous::{ContactConstraint, ContactSet, Continuous},
         error::{LARGEST, check_body, check_shape, check_vector},
@@ -109,8 +110,13 @@ impl World {
                 turn: None,
             };
             check_body(index, &body).map_err(|error| error.to_string())?;
+            let turn = data.turn.map(|turn| turn.checked(index, &body));
+            let turn = turn.transpose()?;
             self.push(body);
             self.previous.position[index] = data.previous_position;
+            if let Some(turn) = turn {
+                self.resume_turn(index, turn);
+            }
         }
         Ok(())
     }
@@ -234,6 +240,38 @@ impl World {
     fn is_there(&self, body: usize) -> Result<(), String> {
         self.check_body(body).map_err(|error| error.to_string())
     }
+}
+
+impl TurningState {
+    /// The same, if a body can turn so.
+    fn checked(self, index: usize, body: &Body) -> Result<TurningState, String> {
+        if let Some(Shape::HalfSpace { .. }) = body.shape {
+            let error = WorldError::TurningHalfSpace { body: index };
+            return Err(error.to_string());
+        }
+        let moments = self.inertia.moments();
+        if !body.kind.is_movable() && (self.torque != DVec3::ZERO || moments != DVec3::ONE) {
+            return Err(format!(
+                "body {index}: nothing turns it, so its torque is 0 and its moments are 1"
+            ));
+        }
+        check_vector(index, "torque", self.torque).map_err(|error| error.to_string())?;
+        for turned in [&self.before, &self.now] {
+            if !is_unit(turned.rotation) {
+                return Err(WorldError::Rotation { body: index }.to_string());
+            }
+            let spin = spin(moments, turned.rotation, turned.momentum);
+            for (field, vector) in [("angular momentum", turned.momentum), ("spin", spin)] {
+                check_vector(index, field, vector).map_err(|error| error.to_string())?;
+            }
+        }
+        Ok(self)
+    }
+}
+
+/// Whether a quaternion is of length 1, as a step leaves it.
+fn is_unit(rotation: DQuat) -> bool {
+    (rotation.length_squared() - 1.0).abs() <= UNIT
 }
 
 /// A shape as a world holds it: a normal, of length 1 already, must not be rounded once more.
