@@ -80,9 +80,10 @@
 //!
 //! # Limits
 //!
-//! - Bodies turn where they have a [`Turn`], in the continuous mode and without friction. In contact they drift, which
-//!   is of first order; what touches too often in a step stands still for the rest of it; overlaps of turning
-//!   bodies are passed through.
+//! - Bodies turn where they have a [`Turn`], without friction. In contact they are pushed by forces that are constant
+//!   for what is left of a step: what slides on its faces is exact, what tips or spins there loses energy to second
+//!   order, and may gain some to third. What touches too often in a step stands still for the rest of it. Turning
+//!   bodies that are put into each other pass through each other until they are apart.
 //! - Ways that bend under forces are searched along chords. A graze shallower than a thousandth of
 //!   the smaller body may be missed within a step; never an overlap at its end.
 //! - In a heap whose contacts are solved at once, contacts close ahead of their time by up to a step,

@@ -379,12 +379,12 @@ fn the_cost_of_phases_is_measured_while_it_is_plotted() {
 }
 
 /// What is the same in every language: names, and what scenes of the gallery call their bodies.
-const COMMON: [&str; 52] = [
+const COMMON: [&str; 53] = [
     "BVH", "RK4", "CSV", "PNG", "Hz", "Verlet", "Blanes", "Moan", "Kahan", "Li", "Radau", "IIA",
     "Dormand", "Prince", "English", "Ctrl", "Shift", "Alt", "Esc", "Del", "PgDn", "Home", "kg",
     "ms", "mm", "toml", "cow", "cube", "cube-cow", "obj", "Page", "Down", "left", "plate",
     "bullet", "right", "light", "heavy", "sphere", "kin", "pot", "cos", "sin", "mu", "dt", "dx",
-    "inf", "kB", "rad", "racket", "Cowbell", "Apache",
+    "inf", "cm", "kB", "rad", "racket", "Cowbell", "Apache",
 ];
 
 /// The words of a text that are of no language but English.

@@ -63,6 +63,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         let list = ComboBox::from_id_salt("integrator")
             .selected_text(say(now.method.title))
             .width(ui.available_width() - 8.0)
+            .truncate()
             .height(340.0)
             .show_ui(ui, |ui| {
                 for method in METHODS {

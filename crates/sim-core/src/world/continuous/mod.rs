@@ -16,8 +16,8 @@
 //!    [`progress`] and [`crush`] stop a step that would have no end.
 //! 6. [`position_correction`]: an exact test makes sure that no two bodies meet.
 //!
-//! [`turning_search`], [`turning_response`]: the same for bodies that turn, which are in no island: they bounce with
-//! their lever arms, or stay in contact for the rest of the step.
+//! [`turning_search`], [`turning_response`], [`turning_rest`]: the same for bodies that turn, which are in no island:
+//! they bounce with their lever arms, or stay in contact for the rest of the step, by constant forces.
 //!
 //! [`held_overlaps`]: where bodies that were placed in overlap would get deeper, all of it is done again
 //! with the two held.
