@@ -44,17 +44,22 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
     settings.tolerance = own.tolerance;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let list = ComboBox::from_id_salt("variant method")
-            .selected_text(say(settings.method.title))
-            .width(118.0)
-            .truncate()
-            .height(340.0)
-            .show_ui(ui, |ui| {
-                for method in METHODS {
-                    ui.selectable_value(&mut settings.method, method, say(method.title));
-                }
-            })
-            .response;
+        let list = ui.scope(|ui| {
+            // Names are cut where the list ends, not where the panel does.
+            ui.set_max_width(118.0);
+            ComboBox::from_id_salt("variant method")
+                .selected_text(say(settings.method.title))
+                .width(118.0)
+                .truncate()
+                .height(340.0)
+                .show_ui(ui, |ui| {
+                    for method in METHODS {
+                        ui.selectable_value(&mut settings.method, method, say(method.title));
+                    }
+                })
+                .response
+        });
+        let list = list.inner;
         field::named(&list, "Integrator of the variant", settings.method.title);
         let now = 1.0 / settings.dt;
         let mut rate = now;
