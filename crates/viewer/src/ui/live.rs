@@ -111,7 +111,7 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
             ui,
             "Angular m.",
             "Angular momentum about the origin, L = Σ x × m v + I ω, kg m²/s",
-            [l.x, l.y, l.z].map(number::figure).join("  ") + " kg m²/s",
+            number::figure(l.length()) + " kg m²/s",
         );
         field::figure(
             ui,
