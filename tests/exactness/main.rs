@@ -14,3 +14,4 @@ mod shapes;
 mod sheets;
 mod slides;
 mod stacks;
+mod stars;

@@ -88,6 +88,35 @@ fn stars_that_fall_into_each_other_bounce_and_keep_their_energy() {
     }
 }
 
+/// Two stars on a parabola about each other whose nearest point is within the touching distance by a
+/// part: they touch slowly or fast along the line of their centres, and a hundred times faster across it. However
+/// soon forces seem to bring them back, they part as they came.
+#[test]
+fn stars_that_graze_each_other_part_as_they_came() {
+    let (radius, mass) = (1e-3_f64, [4.0_f64, 7.0]);
+    let both = mass[0] + mass[1];
+    for nearest in [0.99995, 0.995, 0.9, 0.75, 0.5] {
+        let nearest = 2.0 * radius * nearest;
+        let across = (2.0 * both * nearest).sqrt();
+        let along = -(2.0 * both - across * across).sqrt();
+        let relative = DVec3::new(along, across, 0.0);
+        for method in adaptive() {
+            let stars = [
+                star(mass[0], radius, DVec3::ZERO, -mass[1] / both * relative),
+                star(mass[1], radius, DVec3::X, mass[0] / both * relative),
+            ];
+            let mut world = gravitating(method, 1.0 / 240.0, &stars);
+            let drift = drift(&mut world, 60);
+            let what = format!("{}, nearest {nearest}", method.name);
+            assert!(
+                matches!(drift, Ok(drift) if drift < 1e-8),
+                "{what}: {drift:?}"
+            );
+            assert_eq!(world.impacts(), 1, "{what}");
+        }
+    }
+}
+
 /// A method of a fixed step that finds no motion through the centre is not asked for one.
 #[test]
 fn implicit_methods_are_asked_for_no_motion_through_a_star() {

@@ -88,9 +88,19 @@ pub(super) enum Course {
 impl View<'_> {
     /// The height of a flight that is too short to be one, m, and its speed, m/s, under an
     /// acceleration, m/s²: up for half of the time, and down for the other.
-    pub(super) fn shortest_hop(&self, acceleration: f64, is_bundled: bool) -> (f64, f64) {
+    pub(super) fn shortest_hop(
+        &self,
+        (i, j): (usize, usize),
+        acceleration: f64,
+        is_bundled: bool,
+    ) -> (f64, f64) {
         let rise = 0.5 * self.shortest_flight(is_bundled) * self.scene.settings.dt;
-        (0.5 * rise * rise * acceleration, rise * acceleration)
+        let height = 0.5 * rise * rise * acceleration;
+        let most = self.layout().hover_gap(i, j);
+        match height > most && self.are_steep(i, j) {
+            true => (most, libm::sqrt(2.0 * acceleration * most)),
+            false => (height, rise * acceleration),
+        }
     }
 
     /// What is within reach of the second body of a pair against a normal, from an offset on. Other
@@ -140,7 +150,7 @@ impl View<'_> {
         let (i, j) = constraint.bodies;
         let hover = self.layout().hover_gap(i, j);
         let is_bundled = self.contacts.is_bundled(i) || self.contacts.is_bundled(j);
-        let (height, _) = self.shortest_hop(self.greatest_push(i, j), is_bundled);
+        let (height, _) = self.shortest_hop((i, j), self.greatest_push(i, j), is_bundled);
         let start = &self.paths.start;
         let closing = (start.velocity[i] - start.velocity[j]).dot(constraint.normal);
         let reach = match is_bundled {

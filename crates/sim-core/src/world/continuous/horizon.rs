@@ -28,6 +28,7 @@ use super::{
     event::{Event, EventKind, Outcome},
     event_loop::EventLoop,
     trajectory::Motion,
+    view::View,
 };
 use crate::{
     Force, Shape,
@@ -44,6 +45,19 @@ impl Motion<'_> {
     pub(super) fn horizon(&self, body: usize) -> f64 {
         let known = self.paths.horizons.known.get(body).copied();
         known.unwrap_or(self.scene.settings.dt)
+    }
+}
+
+impl View<'_> {
+    /// Whether forces on one of two bodies may grow without bound, under a method that follows them however short
+    /// the time is in which they change.
+    pub(super) fn are_steep(&self, i: usize, j: usize) -> bool {
+        if !self.scene.settings.method.adaptive {
+            return false;
+        }
+        let forced = [i, j].map(|body| self.motion().coupled_group(body));
+        let mut forced = forced.into_iter().flatten();
+        forced.any(|(bodies, is_coupled)| self.scene.are_forces_steep(&bodies, is_coupled))
     }
 }
 
@@ -139,16 +153,21 @@ impl Scene<'_> {
     fn has_horizon(&self, block: &Block<'_>) -> bool {
         self.settings.collision == crate::Collision::Continuous
             && self.bodies.solid.len() > 1
-            && self.forces.list.iter().any(|force| match force {
-                Force::Attraction { body, .. } | Force::Body { body, .. } => {
-                    body.is_none_or(|body| block.bodies.contains(&body))
-                }
-                Force::Gravitation { .. } => block.is_coupled,
-                Force::Pair { bodies, .. } => {
-                    bodies.is_none_or(|[first, _]| block.bodies.contains(&first))
-                }
-                _ => false,
-            })
+            && self.are_forces_steep(&block.bodies, block.is_coupled)
+    }
+
+    /// Whether forces on some bodies, which couple them or not, may grow without bound.
+    fn are_forces_steep(&self, bodies: &Range<usize>, is_coupled: bool) -> bool {
+        self.forces.list.iter().any(|force| match force {
+            Force::Attraction { body, .. } | Force::Body { body, .. } => {
+                body.is_none_or(|body| bodies.contains(&body))
+            }
+            Force::Gravitation { .. } => is_coupled,
+            Force::Pair { bodies: pair, .. } => {
+                pair.is_none_or(|[first, _]| bodies.contains(&first))
+            }
+            _ => false,
+        })
     }
 
     /// Whether some of these bodies come to touch each other, or what stands or moves on whatever comes, on

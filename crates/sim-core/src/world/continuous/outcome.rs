@@ -5,6 +5,10 @@
 //! them apart ([`super::contact_set`]), for the rest of the step and in the next ones, until they
 //! move apart. So a ball comes to rest after finitely many bounces.
 //!
+//! Where forces may grow without bound, a step is no measure of how soon: bodies that touch in passing are
+//! turned out of each other's way long before its end. There they stay in contact only where they would part by
+//! no more than the gap of contacts.
+//!
 //! Bodies that keep a part of their speed only come to rest as well where what is left moves them by
 //! no more than a rounding in a step; and where they are caught among others, so that impacts follow
 //! each other faster and faster though nothing presses these two together (inelastic collapse;
@@ -125,7 +129,15 @@ impl View<'_> {
         // Back after the time 2 v / a.
         let is_bundled = self.is_bundled(i) || self.is_bundled(j);
         let flight = self.shortest_flight(is_bundled);
-        let is_short = |speed: f64, push: f64| 2.0 * speed <= flight * push;
+        let is_steep = self.are_steep(i, j);
+        let is_short = |speed: f64, push: f64| {
+            // As high as 0.5 v² / a.
+            let is_high = || {
+                let hover = self.layout().hover_gap(i, j);
+                0.5 * speed * speed * self.scene.settings.dt > hover * push
+            };
+            2.0 * speed <= flight * push && !(is_steep && is_high())
+        };
         if load_speed > 0.0 && is_short(lasting, load_speed) {
             return false;
         }

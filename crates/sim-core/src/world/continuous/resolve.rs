@@ -131,7 +131,7 @@ impl EventLoop<'_> {
             for mut event in soon {
                 let (gap, opening) = self.gap_before(&event, time)?;
                 let push = self.view().greatest_push(event.bodies.0, event.bodies.1);
-                let (height, speed) = self.view().shortest_hop(push, is_bundled);
+                let (height, speed) = self.view().shortest_hop(event.bodies, push, is_bundled);
                 let is_hop = gap <= height && opening <= speed;
                 if is_hop || is_bundled {
                     self.classify_at_its_time(&mut event)?;

@@ -453,6 +453,17 @@ impl<'a> Motion<'a> {
             let relative = push[j] - push[i];
             return 0.125 * relative.abs();
         }
+        let length = |body: usize| self.horizon(body) - self.paths.since[body];
+        let h = length(i);
+        // What is stepped together is bent alike by what acts on both, which bends neither as seen from the other.
+        if h > 0.0 && self.paths.since[i] == self.paths.since[j] && h == length(j) {
+            let (start, end) = (&self.paths.start, &self.paths.end);
+            let from = start.position[j] - start.position[i];
+            let chord = (end.position[j] - end.position[i]) - from;
+            let before = chord - h * (start.velocity[j] - start.velocity[i]);
+            let after = chord - h * (end.velocity[j] - end.velocity[i]);
+            return 0.25 * (before.abs() + after.abs()) / (h * h);
+        }
         let of = |body: usize| {
             let h = self.horizon(body) - self.paths.since[body];
             let deviation = self.chord_deviation(body);

@@ -37,9 +37,18 @@ impl ContactSolver<'_> {
         let rounding = 4.0 * f64::EPSILON * fastest;
         let count = island.constraints.len();
         let constraint = |k: usize| &self.contacts.all()[island.constraints[k]];
-        let hop: Vec<f64> = (0..count)
-            .map(|k| 0.5 * self.view().shortest_flight(is_bundled) * constraint(k).load_speed)
-            .collect();
+        let hop = |k: usize| {
+            let (view, load) = (self.view(), constraint(k).load_speed);
+            let ((i, j), usual) = (constraint(k).bodies, view.shortest_flight(is_bundled));
+            match view.are_steep(i, j) {
+                true => {
+                    view.shortest_hop((i, j), load / self.scene.settings.dt, is_bundled)
+                        .1
+                }
+                false => 0.5 * usual * load,
+            }
+        };
+        let hop: Vec<f64> = (0..count).map(hop).collect();
         // Slower than this a gap grows by less than that of contacts in a step, or than a hop counts.
         let still = |k: usize| {
             let (i, j) = constraint(k).bodies;
