@@ -79,7 +79,21 @@ fn bin() -> Scene {
     }
 }
 
-fn cases() -> [Case; 5] {
+/// A cow that falls on her feet, spinning.
+fn spinning_cow() -> Scene {
+    let floor = item(Form::Wall(DVec3::Y), DVec3::ZERO, DVec3::ZERO);
+    let cow = Item {
+        spin: DVec3::new(3.0, 4.0, 0.0),
+        ..item(Form::Mesh(builtin("cow.obj")), 5.0 * DVec3::Y, DVec3::ZERO)
+    };
+    Scene {
+        gravity: -9.81 * DVec3::Y,
+        restitution: 0.3,
+        ..turning(Scene::new(vec![floor, cow]))
+    }
+}
+
+fn cases() -> [Case; 6] {
     let cow = || Form::Mesh(builtin("cow.obj"));
     let brick = Item {
         spin: DVec3::new(1.0, 2.0, 3.0),
@@ -122,6 +136,13 @@ fn cases() -> [Case; 5] {
             1e-13,
         ),
         case("8 cubes in a bin", bin(), 120, 120, f64::INFINITY),
+        case(
+            "a cow falls, spinning",
+            spinning_cow(),
+            600,
+            600,
+            f64::INFINITY,
+        ),
     ]
 }
 

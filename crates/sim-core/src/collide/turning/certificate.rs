@@ -1,9 +1,7 @@
-//! How long a direction keeps two sets of points apart.
+//! How long boxes, and balls about centres of mass, are apart.
 //!
-//! With the gap `s` between two points along a direction, its derivative `w`, and all that is known of
-//! its second derivative being that it is at least `q`, the gap is at least `s + w t + q t²/2`. With the
-//! second derivative `c` at the start and a bound `J` on the third, it is at least
-//! `s + w t + c t²/2 - J t³/6`, which up to a time `m` is at least the parabola with `q = c - J m/3`.
+//! With the gap `s` along a direction, its derivative `w`, and all that is known of its second derivative
+//! being that it is at least `q`, the gap is at least `s + w t + q t²/2`.
 //!
 //! Rounding: with `S` all lengths together, placed coordinates are right to 16 roundings of `S`, so `s` is
 //! lowered by 32, and `w` by 32 of all speeds, `q` by 64 of all accelerations.

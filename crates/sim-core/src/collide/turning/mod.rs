@@ -3,8 +3,8 @@
 //! A *certificate* is a direction that keeps two sets of points apart for some time: let `s` be the gap
 //! along it now, `w` how fast that changes, and the second derivative of every point's place be bounded;
 //! then the gap is above a parabola, and until that has its root the sets are apart (a plane lies between
-//! their hulls, which a rigid motion moves with their points). `certificate` has the parabolas, and for
-//! triangles a cubic.
+//! their hulls, which a rigid motion moves with their points). `certificate` has the parabolas for
+//! boxes; `separation` has directions for sets of points: triangles, points, and boxes as a whole.
 //!
 //! A queue holds pairs of boxes and of triangles, each with the time until which it is certified. The
 //! pair with the least time is looked at: boxes are split into pairs of what is in them, triangles are

@@ -250,24 +250,26 @@ impl<const L: usize> Course<L> {
         (lowest, slope)
     }
 
-    #[inline]
-    fn highest(&self, t: f64, common: f64) -> (f64, f64) {
-        let (mut highest, mut slope) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-        for ((at, speed), bend) in self.at.iter().zip(&self.speed).zip(&self.bend) {
-            let bend = (bend - common).max(0.0);
-            let height = at + t * (speed + 0.5 * t * bend);
-            if height >= highest {
-                let steepest = if height > highest {
-                    f64::NEG_INFINITY
-                } else {
-                    slope
-                };
-                slope = steepest.max(speed + t * bend);
-                highest = height;
-            }
+    /// The same seen from the other side, where what is highest is lowest.
+    fn reversed(self) -> Course<L> {
+        Course {
+            at: self.at.map(|at| -at),
+            speed: self.speed.map(|speed| -speed),
+            bend: self.bend.map(|bend| -bend),
         }
-        (highest, slope)
     }
+}
+
+/// The least gap after a time above the highest of a set, which is given reversed, and below the lowest of
+/// another one, and its slope.
+fn gap_after<const M: usize, const N: usize>(
+    (below, above): (&Course<M>, &Course<N>),
+    (common, floor): (f64, &Floor),
+    t: f64,
+) -> (f64, f64) {
+    let (below, above) = (below.lowest(t, -common), above.lowest(t, common));
+    let least = floor.at(t);
+    (above.0 + below.0 + least.0, above.1 + below.1 + least.1)
 }
 
 /// The least of a gap and of its derivatives beside what points have of them.
@@ -414,11 +416,8 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
         };
         // By the second derivatives and a bound on the third,
         let common = a.bend[(0..M).find(|&k| low[k] == top).unwrap_or(0)];
-        let by_third = |t: f64| {
-            let (below, above) = (a.highest(t, common), b.lowest(t, common));
-            let least = floor.at(t);
-            (above.0 - below.0 + least.0, above.1 - below.1 + least.1)
-        };
+        let mut a = a.reversed();
+        let by_third = |t: f64| gap_after((&a, &b), (common, &floor), t);
         let mut lasts = self.lasts;
         // the best so far is not beaten by what fails before.
         if lasts == 0.0 || by_third(lasts.min(left)).0 > 0.0 {
@@ -436,21 +435,8 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
                 third: 0.0,
                 ..floor
             };
-            let (a, b) = (
-                Course {
-                    bend: [0.0; M],
-                    ..a
-                },
-                Course {
-                    bend: [0.0; N],
-                    ..b
-                },
-            );
-            let by_second = |t: f64| {
-                let (below, above) = (a.highest(t, 0.0), b.lowest(t, 0.0));
-                let least = floor.at(t);
-                (above.0 - below.0 + least.0, above.1 - below.1 + least.1)
-            };
+            (a.bend, b.bend) = ([0.0; M], [0.0; N]);
+            let by_second = |t: f64| gap_after((&a, &b), (0.0, &floor), t);
             lasts = lasts.max(root(left, by_second));
         }
         if lasts > self.lasts {

@@ -4,8 +4,9 @@
 //! the norm of kinetic energy, which takes energy only. Then each contact pushes with a constant force `f`,
 //! along a constant direction at constant arms, so that bodies go along parabolas and turn under constant
 //! torques, which is exact ([`crate::rotation`]). Forces are those after which no gap is less than its room,
-//! at the end of the step and at times within, and no gap begins to close: `0 <= f ⟂ g(τ) - room >= 0`, where `g(t)` is the gap of the
-//! features that touch as bodies really move, by Newton's method over problems of complementarity.
+//! at the end of the step and at times within, and no gap begins to close: `0 <= f ⟂ g(τ) - room >= 0`, where
+//! `g(t)` is the gap of the features that touch as bodies really move, by Newton's method over problems of
+//! complementarity.
 //!
 //! **Energy.** A force does the work `f D`, where `D(s)` is how far its point gets along it. With arms and
 //! normals of the start `D(s) = g(s) - g(0) - c s²/2`, and with those of the end `g(s) - g(0) + c (τ s - s²/2)`,
@@ -39,11 +40,8 @@ const MANY_ROUNDS: u32 = 24;
 /// Cosine above which two normals are one.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
-/// Parts of what is left of the step at which gaps are looked at.
-const PARTS: [f64; 3] = [1.0, 0.5, 0.125];
-
-/// How far beyond start and end of what is left arms are taken, in steps from one to the other.
-const FARTHEST: f64 = 1.0;
+/// Parts of what is left of the step at which bodies are looked at: its start, its end, and times within.
+const PARTS: [f64; 4] = [0.0, 1.0, 0.5, 0.125];
 
 /// Rounds in which forces are found at most. What is left of a gap then is met early.
 const ROUNDS: usize = 12;
@@ -441,8 +439,7 @@ impl ContactSolver<'_> {
                 position: self.place_at(body, time)?,
                 velocity: island.twists[place].velocity,
                 mass: island.yielding[place].mass,
-                rotations: [0.0, PARTS[0], PARTS[1], PARTS[2]]
-                    .map(|part| self.rotation_at(body, time + part * left)),
+                rotations: PARTS.map(|part| self.rotation_at(body, time + part * left)),
             });
         }
         // Of a constant force half of the speed at its end is the mean; what does not turn gets its impulse
@@ -514,8 +511,8 @@ struct Mover {
     velocity: DVec3,
     /// Inverse mass, 1/kg; zero where nothing moves it.
     mass: f64,
-    /// How it is turned at the start and after [`PARTS`] of what is left, if contacts do not turn it.
-    rotations: [DQuat; 1 + PARTS.len()],
+    /// How it is turned after [`PARTS`] of what is left, if contacts do not turn it.
+    rotations: [DQuat; PARTS.len()],
 }
 
 /// What a body has that turns and is moved by contacts.
@@ -626,8 +623,8 @@ impl Rates {
 struct Course {
     /// By body at the start.
     rates: Vec<Rates>,
-    /// By body at the start and after [`PARTS`].
-    at: Vec<[At; 1 + PARTS.len()]>,
+    /// By body after [`PARTS`] of what is left.
+    at: Vec<[At; PARTS.len()]>,
     /// By body the angle that it turns by, as a vector: the integral of its spin.
     turn: Vec<DVec3>,
 }
@@ -659,7 +656,7 @@ impl Pressing<'_> {
                 position: mover.position,
                 rotation,
             });
-            let times = [0.0, PARTS[0], PARTS[1], PARTS[2]].map(|part| part * self.left);
+            let times = PARTS.map(|part| part * self.left);
             let mut turn = DVec3::ZERO;
             let mut rates = Rates::default();
             match &mover.turns {
@@ -676,22 +673,20 @@ impl Pressing<'_> {
                     let torque = turns.torque + torque;
                     let flight = Flight::new(turns.moments, rotation, momentum, torque, self.left)
                         .map_err(|error| (mover.body, Cause::Turning(error)))?;
-                    let mut spins = [DVec3::ZERO; 1 + PARTS.len()];
-                    for ((at, t), spin) in at.iter_mut().zip(times).zip(&mut spins) {
+                    let poses = times.map(|t| flight.at(t));
+                    for ((at, t), pose) in at.iter_mut().zip(times).zip(&poses) {
                         at.position += t * (mover.velocity + 0.5 * t * acceleration);
-                        let pose = flight.at(t);
                         at.rotation = (pose.rotation * turns.axes.inverse()).normalize();
-                        *spin = pose.spin;
                     }
-                    let pose = flight.at(0.0);
+                    let [start, end, middle, _] = poses;
                     rates = Rates {
                         velocity: mover.velocity,
                         acceleration,
-                        spin: pose.spin,
-                        turning: pose.acceleration,
+                        spin: start.spin,
+                        turning: start.acceleration,
                     };
-                    // Simpson's rule: the start, the middle and the end.
-                    turn = self.left / 6.0 * (spins[0] + 4.0 * spins[2] + spins[1]);
+                    // Simpson's rule.
+                    turn = self.left / 6.0 * (start.spin + 4.0 * middle.spin + end.spin);
                 }
             }
             course.rates.push(rates);
@@ -762,20 +757,7 @@ impl Pressing<'_> {
                 ..start
             };
             let (by_start, by_end) = (self.gets(&start, course), self.gets(&end, course));
-            let mut chosen = if by_end < by_start { end } else { start };
-            // Farther on, where both do some.
-            let part = by_start / (by_start - by_end);
-            if by_start.min(by_end) > 0.0 && part.abs() <= FARTHEST {
-                let between = |a: DVec3, b: DVec3| a + part * (b - a);
-                chosen = Arms {
-                    normal: between(start.normal, end.normal),
-                    arms: (
-                        between(start.arms.0, end.arms.0),
-                        between(start.arms.1, end.arms.1),
-                    ),
-                    ..start
-                };
-            }
+            let chosen = if by_end < by_start { end } else { start };
             is_changed |= chosen != forces.contacts[k];
             forces.contacts[k] = chosen;
         }
@@ -806,13 +788,12 @@ impl Pressing<'_> {
             let mut wanted = Vec::with_capacity(count);
             for k in 0..count {
                 let (from, room) = (self.touching[k].gap.min(self.room[k]), self.room[k]);
-                let missing = PARTS
-                    .iter()
-                    .enumerate()
+                let later = PARTS.iter().enumerate().skip(1);
+                let missing = later
                     .map(|(place, part)| {
                         let share = part * part;
                         let least = from + share * (room - from);
-                        (least - self.later(k, &course, 1 + place).gap) / share
+                        (least - self.later(k, &course, place).gap) / share
                     })
                     .fold(
                         -0.5 * self.left * self.left * self.growth(k, &course),
