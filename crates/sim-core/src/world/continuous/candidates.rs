@@ -159,8 +159,7 @@ impl EventLoop<'_> {
             self.queue.work.add(probe.work);
             self.solver.paths.probe = probe;
             self.queue.waiting.extend(event?);
-            let bodies = self.solver.scene.bodies.len();
-            self.queue.work.check(body, bodies)?;
+            self.queue.work.check(pair, self.solver.scene.bodies)?;
         }
         self.solver.near.partners = partners;
         self.record.enter(phase);

@@ -96,7 +96,7 @@ impl EventLoop<'_> {
             .try_for_each(|&(i, j)| {
                 events.extend(view.find_impact(i, j, &mut probe)?);
                 work.add(probe.work);
-                work.check(i, view.scene.bodies.len())
+                work.check((i, j), view.scene.bodies)
             });
         (self.solver.paths.probe, self.queue.waiting) = (probe, events);
         self.queue.work = work;
@@ -113,7 +113,7 @@ impl EventLoop<'_> {
             true => None,
             false => match view.find_impact(i, j, probe) {
                 Ok(None) if probe.work.is_none() => None,
-                found => Some((i, found.map(|event| (event, probe.work)))),
+                found => Some(((i, j), found.map(|event| (event, probe.work)))),
             },
         };
         let pairs = self.solver.near.candidate_pairs.par_iter();
@@ -121,12 +121,12 @@ impl EventLoop<'_> {
         let found = pairs.map_init(Probe::default, find).flatten_iter();
         // The first error in the order of pairs, whatever the threads do.
         let found: Vec<_> = found.collect();
-        let bodies = view.scene.bodies.len();
-        for (body, found) in found {
+        let bodies = self.solver.scene.bodies;
+        for (pair, found) in found {
             let (event, work) = found?;
             self.queue.waiting.extend(event);
             self.queue.work.add(work);
-            self.queue.work.check(body, bodies)?;
+            self.queue.work.check(pair, bodies)?;
         }
         Ok(())
     }

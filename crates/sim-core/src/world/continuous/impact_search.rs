@@ -370,7 +370,7 @@ impl PairSearch<'_> {
 
     fn offset_at(&self, time: f64, probe: &mut Probe) -> Result<DVec3, (usize, Cause)> {
         let first = self.view.motion().motion_at(self.i, time, probe)?.0;
-        probe.work.check(self.i, self.view.scene.bodies.len())?;
+        probe.work.check((self.i, self.j), self.view.scene.bodies)?;
         Ok(self.view.motion().motion_at(self.j, time, probe)?.0 - first)
     }
 

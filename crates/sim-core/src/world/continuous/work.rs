@@ -8,7 +8,7 @@
 //!
 //! [`World::MOST_IMPACTS`]: crate::World::MOST_IMPACTS
 
-use super::super::stepping::Cause;
+use super::super::{bodies::Bodies, stepping::Cause};
 
 /// Bodies moved by the method, for each body of the world.
 const MOST_MOVED: u64 = 1 << 13;
@@ -36,12 +36,17 @@ impl Work {
         self.certified += other.certified;
     }
 
-    /// An error at a body if this is too much for a world of so many.
-    pub(super) fn check(&self, body: usize, bodies: usize) -> Result<(), (usize, Cause)> {
-        let bodies = bodies as u64;
-        match self.moved > MOST_MOVED * bodies || self.certified > MOST_CERTIFIED * bodies {
-            true => Err((body, Cause::Work)),
-            false => Ok(()),
+    /// An error, at that of two bodies which moves, if this is too much for a world.
+    pub(super) fn check(
+        &self,
+        (i, j): (usize, usize),
+        bodies: &Bodies,
+    ) -> Result<(), (usize, Cause)> {
+        let all = bodies.len() as u64;
+        if self.moved <= MOST_MOVED * all && self.certified <= MOST_CERTIFIED * all {
+            return Ok(());
         }
+        let body = if bodies.is_movable(i) { i } else { j };
+        Err((body, Cause::Work))
     }
 }
