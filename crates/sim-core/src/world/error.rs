@@ -265,6 +265,20 @@ pub enum StepError {
         /// Impacts answered.
         impacts: u64,
     },
+    /// A body that moves, turns or is pushed so fast that it is not followed: the step would take thousands
+    /// of times as long as one without impacts.
+    #[error(
+        "step {step}: body {body} is too fast for its size to be followed under {method}: the step would \
+         cost thousands of steps without impacts; lower dt, the force or the velocity"
+    )]
+    TooMuchWork {
+        /// Index of the body.
+        body: usize,
+        /// The step that failed, from 1.
+        step: u64,
+        /// Title of the method.
+        method: &'static str,
+    },
 }
 
 impl StepError {
@@ -277,7 +291,8 @@ impl StepError {
             | StepError::TooManySteps { body, .. }
             | StepError::Squeezed { body, .. }
             | StepError::Turning { body, .. }
-            | StepError::TooManyImpacts { body, .. } => body,
+            | StepError::TooManyImpacts { body, .. }
+            | StepError::TooMuchWork { body, .. } => body,
         }
     }
 }

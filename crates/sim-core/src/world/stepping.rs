@@ -456,6 +456,7 @@ impl World {
                 method,
                 impacts,
             },
+            Cause::Work => StepError::TooMuchWork { body, step, method },
             Cause::Growth { stable_dt } => StepError::Unstable {
                 body,
                 step,
@@ -552,6 +553,8 @@ pub(super) enum Cause {
     Squeezed((usize, usize)),
     /// Another impact after so many, without an end.
     Impacts(u64),
+    /// To follow a body takes more than a step may cost.
+    Work,
     /// Speeds have grown, and the method is unstable above this `dt`, s.
     Growth {
         stable_dt: f64,

@@ -4,7 +4,7 @@ use alloc::{collections::BinaryHeap, vec::Vec};
 use core::cmp::Ordering;
 use glam::DVec3;
 
-use super::{crush::CrushDetector, progress::Progress};
+use super::{crush::CrushDetector, progress::Progress, work::Work};
 use crate::collide::Contact;
 
 /// The events of a step.
@@ -13,6 +13,8 @@ pub(super) struct EventQueue {
     pub(super) waiting: BinaryHeap<Event>,
     /// How many have been resolved.
     pub(super) resolved: u64,
+    /// What has been spent on searches.
+    pub(super) work: Work,
     /// What happens at one instant.
     pub(super) group: Vec<Event>,
     pub(super) crush: CrushDetector,

@@ -10,6 +10,7 @@ use super::{
     event::{Event, EventKind, EventQueue, Outcome},
     solver::ContactSolver,
     view::View,
+    work::Work,
 };
 
 /// Pairs for a thread at least: less is faster done than handed over.
@@ -45,6 +46,7 @@ impl EventLoop<'_> {
     pub(super) fn keep_contacts(&mut self, is_placed: bool) -> Result<(), (usize, Cause)> {
         self.queue.waiting.clear();
         self.queue.resolved = 0;
+        self.queue.work = Work::default();
         if is_placed {
             self.solver.find_initial_contacts();
         }
@@ -88,13 +90,16 @@ impl EventLoop<'_> {
         let mut events = mem::take(&mut self.queue.waiting);
         let view = self.view();
         let pairs = self.solver.near.candidate_pairs.iter();
+        let mut work = Work::default();
         let found = pairs
             .filter(|&&(i, j)| !view.sleep_together(i, j))
             .try_for_each(|&(i, j)| {
                 events.extend(view.find_impact(i, j, &mut probe)?);
-                Ok(())
+                work.add(probe.work);
+                work.check((i, j), view.scene.bodies)
             });
         (self.solver.paths.probe, self.queue.waiting) = (probe, events);
+        self.queue.work = work;
         found
     }
 
@@ -106,15 +111,22 @@ impl EventLoop<'_> {
         let view = self.view();
         let find = |probe: &mut Probe, &(i, j): &(usize, usize)| match view.sleep_together(i, j) {
             true => None,
-            false => view.find_impact(i, j, probe).transpose(),
+            false => match view.find_impact(i, j, probe) {
+                Ok(None) if probe.work.is_none() => None,
+                found => Some(((i, j), found.map(|event| (event, probe.work)))),
+            },
         };
         let pairs = self.solver.near.candidate_pairs.par_iter();
         let pairs = pairs.with_min_len(PAIRS_A_TASK);
         let found = pairs.map_init(Probe::default, find).flatten_iter();
         // The first error in the order of pairs, whatever the threads do.
-        let found: Vec<Result<Event, (usize, Cause)>> = found.collect();
-        for event in found {
-            self.queue.waiting.push(event?);
+        let found: Vec<_> = found.collect();
+        let bodies = self.solver.scene.bodies;
+        for (pair, found) in found {
+            let (event, work) = found?;
+            self.queue.waiting.extend(event);
+            self.queue.work.add(work);
+            self.queue.work.check(pair, bodies)?;
         }
         Ok(())
     }

@@ -27,6 +27,7 @@ use super::{
     contact_set::ContactSet,
     event::{Event, EventKind, Outcome},
     event_loop::EventLoop,
+    impact_search::nearest_on_chord,
     trajectory::Motion,
     view::View,
 };
@@ -121,6 +122,10 @@ impl Scene<'_> {
         let Err(failure) = done else {
             return Ok(since + length);
         };
+        // What takes steps of its own has seen that nothing is met on them.
+        if self.settings.method.adaptive {
+            return Err(failure);
+        }
         let (mut low, mut high) = (0.0, length);
         for _ in 0..HALVINGS {
             let part = Block {
@@ -227,14 +232,8 @@ impl Scene<'_> {
             Some(Shape::HalfSpace { .. }) => f64::INFINITY,
             _ => self.bodies.extent(body).reach.length(),
         };
-        let way = motion.length_squared();
-        let part = if way > 0.0 {
-            (-from.dot(motion) / way).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
         // Twice, for what is rounded.
-        if (from + part * motion).length() > 2.0 * (size(i) + size(j))
+        if nearest_on_chord(from, motion) > 2.0 * (size(i) + size(j))
             || !self.may_collide(i, j)
             || contacts.of_pair(i, j).next().is_some()
         {

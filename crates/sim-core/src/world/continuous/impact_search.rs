@@ -23,7 +23,7 @@
 use glam::DVec3;
 
 use super::super::{layout::RESOLUTION_ULPS, stepping::Cause};
-use super::{event::Event, trajectory::Probe, view::View};
+use super::{event::Event, trajectory::Probe, view::View, work::Work};
 use crate::collide::{Contact, Form, Parabola, first_contact, first_on_parabola, has_roots, snap};
 
 /// Departure of a chord from its trajectory that is looked past, in largest half extents of the
@@ -39,6 +39,9 @@ const BEYOND: f64 = 1024.0;
 
 /// How far apart bodies may be that touch but for rounding, in resolutions of their positions.
 pub(super) const TOUCHING: f64 = 4.0;
+
+/// An end of chords: its number, the time, s, and the offset there, m.
+type Knot = (f64, (f64, DVec3));
 
 /// The search for the next impact of two bodies.
 struct PairSearch<'a> {
@@ -58,13 +61,14 @@ struct PairSearch<'a> {
 
 impl View<'_> {
     /// The next impact of two bodies within the step, and where they are just before they touch.
-    /// The trees over their meshes must be there.
+    /// The trees over their meshes must be there. The probe tells what it has cost.
     pub(super) fn find_impact(
         &self,
         i: usize,
         j: usize,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
+        probe.work = Work::default();
         if self.scene.bodies.pair_tumbles(i, j) {
             return self.find_turning_impact((i, j), probe);
         }
@@ -99,7 +103,7 @@ impl PairSearch<'_> {
         let bodies = self.view.scene.bodies;
         let size = bodies.extent(self.i).half.min(bodies.extent(self.j).half);
         let length = end - start;
-        let mut from = (start, self.offset_at(start, probe)?);
+        let from = (start, self.offset_at(start, probe)?);
         // A point has no extent: its trajectory must do.
         let size = match size > 0.0 {
             true => size,
@@ -112,20 +116,59 @@ impl PairSearch<'_> {
         } else {
             1.0
         };
-        let mut chord = 1.0;
-        while chord <= chords {
-            let time = if chord == chords {
-                end
-            } else {
-                start + length * (chord / chords)
-            };
-            let to = (time, self.offset_at(time, probe)?);
-            if let Some(event) = self.find_on_chord((from, to), 0, probe)? {
-                return Ok(Some(event));
-            }
-            (from, chord) = (to, chord + 1.0);
+        let to = (end, self.offset_at(end, probe)?);
+        let departure = self.deviation.length() * length * length;
+        let time_of = |knot: f64| start + length * (knot / chords);
+        self.find_on_run(((0.0, from), (chords, to)), departure, &time_of, probe)
+    }
+
+    /// The first impact on a run of chords, between two knots by number, from whose straight line the
+    /// trajectory departs by so much, m.
+    ///
+    /// Where bodies are so far apart on the line that they are not near on the trajectory, no chord is
+    /// looked at. So chords cost the logarithm of their number, and those that are near.
+    fn find_on_run(
+        &self,
+        (from, to): (Knot, Knot),
+        departure: f64,
+        time_of: &dyn Fn(f64) -> f64,
+        probe: &mut Probe,
+    ) -> Result<Option<Event>, (usize, Cause)> {
+        let chords = to.0 - from.0;
+        if chords <= 1.0 {
+            return self.find_on_chord((from.1, to.1), 0, probe);
         }
-        Ok(None)
+        let motion = to.1.1 - from.1.1;
+        if self.is_far_on_chord(from.1.1, motion, departure) {
+            return Ok(None);
+        }
+        let number = from.0 + libm::floor(0.5 * chords);
+        let time = time_of(number);
+        let middle = (number, (time, self.offset_at(time, probe)?));
+        // On a parabola a quarter is left; where the method makes another way, what is seen of it.
+        let part = (time - from.1.0) / (to.1.0 - from.1.0);
+        let seen = (middle.1.1 - (from.1.1 + part * motion)).length();
+        let departure = seen.max(0.25 * departure);
+        match self.find_on_run((from, middle), departure, time_of, probe)? {
+            Some(event) => Ok(Some(event)),
+            None => self.find_on_run((middle, to), departure, time_of, probe),
+        }
+    }
+
+    /// Whether two bodies come nowhere near each other within a departure, m, of a chord.
+    fn is_far_on_chord(&self, from: DVec3, motion: DVec3, departure: f64) -> bool {
+        let reach = |body: usize| self.view.scene.bodies.extent(body).reach.length();
+        let (first, second) = self.forms;
+        let (apart, reach) = match (first, second) {
+            (Form::HalfSpace(n), _) => (n.dot(from).min(n.dot(from + motion)), reach(self.j)),
+            (_, Form::HalfSpace(n)) => (-n.dot(from).max(n.dot(from + motion)), reach(self.i)),
+            _ => (
+                nearest_on_chord(from, motion),
+                reach(self.i) + reach(self.j),
+            ),
+        };
+        // Twice, for what is rounded, and as far as a search goes beyond the end of the step.
+        apart > 2.0 * reach + departure + BEYOND * self.rounding().length()
     }
 
     /// How much longer than a motion to the end of the step is one that goes on beyond it.
@@ -327,6 +370,7 @@ impl PairSearch<'_> {
 
     fn offset_at(&self, time: f64, probe: &mut Probe) -> Result<DVec3, (usize, Cause)> {
         let first = self.view.motion().motion_at(self.i, time, probe)?.0;
+        probe.work.check((self.i, self.j), self.view.scene.bodies)?;
         Ok(self.view.motion().motion_at(self.j, time, probe)?.0 - first)
     }
 
@@ -365,6 +409,16 @@ impl PairSearch<'_> {
             (v2 - v1).dot(normal) <= 8.0 * f64::EPSILON * (v1.length() + v2.length())
         })
     }
+}
+
+/// How near the origin a chord comes.
+pub(super) fn nearest_on_chord(from: DVec3, motion: DVec3) -> f64 {
+    let way = motion.length_squared();
+    let part = match way > 0.0 {
+        true => (-from.dot(motion) / way).clamp(0.0, 1.0),
+        false => 0.0,
+    };
+    (from + part * motion).length()
 }
 
 /// The most that components of some sizes are together along a normal.

@@ -13,7 +13,7 @@
 //! 5. [`event_loop`]: the earliest event is taken, with all of its instant ([`resolve`]); [`outcome`]: bodies
 //!    part ([`bounce`]), or stay in contact and their island is solved; new trajectories start, and their
 //!    events are found. [`hand_over`] and [`ledge`]: what slides goes on from one body to the next.
-//!    [`progress`] and [`crush`] stop a step that would have no end.
+//!    [`progress`], [`crush`] and [`work`] stop a step that would have no end.
 //! 6. [`position_correction`]: an exact test makes sure that no two bodies meet.
 //!
 //! [`turning_search`], [`turning_response`], [`turning_rest`]: the same for bodies that turn, which are in no island:
@@ -56,6 +56,7 @@ mod turning_rest;
 mod turning_search;
 mod velocity_solve;
 mod view;
+mod work;
 
 use alloc::vec::Vec;
 use core::mem;

@@ -24,7 +24,7 @@ use super::super::{
     stepping::{Block, Cause},
     system::Part,
 };
-use super::{contact_set::ContactSet, event::Event, horizon::Horizons};
+use super::{contact_set::ContactSet, event::Event, horizon::Horizons, work::Work};
 use crate::{
     System,
     integrate::Scratch,
@@ -36,6 +36,8 @@ use crate::{
 pub(in crate::world) struct Probe {
     state: State,
     scratch: Scratch,
+    /// What has been asked since this was last set back.
+    pub(super) work: Work,
 }
 
 /// The trajectories of all bodies in a step.
@@ -308,6 +310,7 @@ impl<'a> Motion<'a> {
         let Some((bodies, is_coupled)) = self.coupled_group(body) else {
             return Ok(self.on_parabola(body, h));
         };
+        probe.work.moved += bodies.len() as u64;
         probe
             .state
             .position

@@ -110,7 +110,9 @@ impl View<'_> {
             turning: bodies.turning_of(j, flights.1.as_ref()),
             ..b
         };
-        let Some(touch) = turning::first_contact_with(&a, &b, to - from, Care::TO_GO_ON).0 else {
+        let (found, effort) = turning::first_contact_with(&a, &b, to - from, Care::TO_GO_ON);
+        probe.work.certified += u64::from(effort.boxes) + u64::from(effort.pieces);
+        let Some(touch) = found else {
             return Ok(None);
         };
         let at = touch.time;

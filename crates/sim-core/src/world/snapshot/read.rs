@@ -81,6 +81,12 @@ impl TryFrom<Snapshot> for World {
         if let Some(growth) = data.growth {
             world.read_growth(growth)?;
         }
+        // What a step takes for granted, and does not end soon without.
+        if let Some((i, j)) = world.meeting().first() {
+            return Err(format!(
+                "bodies {i} and {j} meet, and are not listed among the overlaps"
+            ));
+        }
         Ok(world)
     }
 }
