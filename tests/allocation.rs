@@ -58,6 +58,7 @@ fn steps_after_the_first_do_not_allocate() {
     };
     let spring = Force::Spring {
         bodies: [3, 9],
+        points: None,
         rest_length: 1.0,
         stiffness: 20.0,
         damping: 0.5,

@@ -39,6 +39,7 @@ fn point(position: DVec3, velocity: DVec3) -> Body {
 fn spring_to_origin(stiffness: f64, damping: f64) -> Force {
     Force::Anchor {
         body: 0,
+        point: None,
         anchor: DVec3::ZERO,
         rest_length: 0.0,
         stiffness,
@@ -355,6 +356,7 @@ const BLOW_UPS: [(&str, Start); 6] = [
         };
         let spring = Force::Spring {
             bodies: [0, 1],
+            points: None,
             rest_length: 1.0,
             stiffness: 4e5,
             damping: 100.0,
@@ -375,6 +377,7 @@ const BLOW_UPS: [(&str, Start); 6] = [
         ];
         let anchor = Force::Anchor {
             body: 1,
+            point: None,
             anchor: DVec3::ZERO,
             rest_length: 0.0,
             stiffness: 1e6,
@@ -584,6 +587,7 @@ fn forces_out_of_range_are_refused_by_field_and_disturb_nothing() {
     for bad in [f64::NAN, f64::INFINITY, -1.0, 1e101] {
         let anchor = |anchor, rest_length, stiffness, damping| Force::Anchor {
             body: 0,
+            point: None,
             anchor,
             rest_length,
             stiffness,
@@ -638,6 +642,7 @@ fn forces_out_of_range_are_refused_by_field_and_disturb_nothing() {
     }
     let spring = |i, j| Force::Spring {
         bodies: [i, j],
+        points: None,
         rest_length: 0.0,
         stiffness: 1.0,
         damping: 0.0,
@@ -729,6 +734,7 @@ fn every_force() -> Vec<(&'static str, Force)> {
             "anchor",
             Force::Anchor {
                 body: 1,
+                point: None,
                 anchor: DVec3::new(0.0, 1.0, 0.0),
                 rest_length: 0.5,
                 stiffness: 9.0,
@@ -739,6 +745,7 @@ fn every_force() -> Vec<(&'static str, Force)> {
             "spring",
             Force::Spring {
                 bodies: [1, 0],
+                points: None,
                 rest_length: 0.8,
                 stiffness: 9.0,
                 damping: 0.3,
@@ -869,6 +876,7 @@ fn bodies_without_forces_move_as_if_there_were_none() {
         let mut free = world(method, 0.01, &bodies, &[]);
         let spring = Force::Spring {
             bodies: [100, 103],
+            points: None,
             rest_length: 1.0,
             stiffness: 5.0,
             damping: 0.1,
@@ -892,6 +900,7 @@ fn chain(method: &'static Method, links: usize) -> World {
     let mut forces: Vec<Force> = (1..links)
         .map(|i| Force::Spring {
             bodies: [i - 1, i],
+            points: None,
             rest_length: 1.0,
             stiffness: 1e5,
             damping: 10.0,
@@ -899,6 +908,7 @@ fn chain(method: &'static Method, links: usize) -> World {
         .collect();
     forces.push(Force::Anchor {
         body: 0,
+        point: None,
         anchor: DVec3::ZERO,
         rest_length: 0.0,
         stiffness: 1e5,

@@ -25,11 +25,12 @@ const LEFT_OUT: [(&str, &str, &str); 2] = [
 ];
 
 /// Scenes in which what turns is hit: sums over features that touch are in the order of bodies.
-const TURNING: [&str; 4] = [
+const TURNING: [&str; 5] = [
     "cubes-turning",
     "cube-cow-spin",
     "cows-turning",
     "nut-on-bolt",
+    "chain",
 ];
 
 /// The bodies of a scene in another order: `order[i]` is where the one that comes to place `i` was.

@@ -23,6 +23,7 @@ fn world(method: &'static Method, dt: f64, bodies: &[Body], force: Force) -> Wor
 fn spring_and_wall(method: &'static Method, dt: f64, [wall, body]: [Body; 2]) -> World {
     let spring = Force::Anchor {
         body: 1,
+        point: None,
         anchor: DVec3::ZERO,
         rest_length: 0.0,
         stiffness: 1.0,
@@ -123,6 +124,7 @@ fn coupled_bodies_keep_their_energy_through_impacts() {
     for method in METHODS.into_iter().filter(|method| method.order >= 4) {
         let spring = Force::Spring {
             bodies: [1, 2],
+            points: None,
             rest_length: 1.0,
             stiffness: 40.0,
             damping: 0.0,

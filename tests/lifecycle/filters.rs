@@ -134,6 +134,7 @@ fn bodies_on_a_spring_may_go_through_each_other_and_through_no_other() {
         world.set_velocity(2, 3.0 * DVec3::X).expect("a velocity");
         let spring = Force::Spring {
             bodies: [0, 1],
+            points: None,
             rest_length: rest,
             stiffness: 4.0,
             damping: 0.0,

@@ -140,6 +140,7 @@ fn its_forces_go_with_it_and_the_others_follow_their_bodies() {
     let mut world = built(Settings::default(), points);
     let spring = |i, j| Force::Spring {
         bodies: [i, j],
+        points: None,
         rest_length: 1.0,
         stiffness: 3.0,
         damping: 0.0,

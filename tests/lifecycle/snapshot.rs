@@ -142,6 +142,7 @@ pub(crate) fn motley() -> World {
         Force::Gravitation { constant: 0.01 },
         Force::Spring {
             bodies: [2, 4],
+            points: None,
             rest_length: 1.0,
             stiffness: 5.0,
             damping: 0.1,
@@ -247,6 +248,7 @@ fn motion_that_grows_without_bound_fails_at_the_same_step() {
         .expect("a body");
     let anchor = Force::Anchor {
         body: 0,
+        point: None,
         anchor: DVec3::ZERO,
         rest_length: 0.0,
         stiffness: 500.0,

@@ -3,6 +3,7 @@
 mod discrete;
 mod flight;
 mod impacts;
+mod levers;
 mod overlaps;
 mod rest;
 mod times;

@@ -132,6 +132,14 @@ pub static SCENES: &[GalleryScene] = &[
         name: "nut-on-bolt",
         text: include_str!("../assets/scenes/nut-on-bolt.toml"),
     },
+    GalleryScene {
+        name: "top",
+        text: include_str!("../assets/scenes/top.toml"),
+    },
+    GalleryScene {
+        name: "chain",
+        text: include_str!("../assets/scenes/chain.toml"),
+    },
 ];
 
 /// A scene of the gallery.

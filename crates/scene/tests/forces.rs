@@ -69,6 +69,7 @@ fn every_kind_can_be_said() {
         },
         Force::Anchor {
             body: 0,
+            point: None,
             anchor: DVec3::new(1.0, 2.0, 3.0),
             rest_length: 0.0,
             stiffness: 1e6,
@@ -76,6 +77,7 @@ fn every_kind_can_be_said() {
         },
         Force::Spring {
             bodies: [1, 0],
+            points: None,
             rest_length: 1.5,
             stiffness: 10.0,
             damping: 0.0,
@@ -216,6 +218,7 @@ fn the_world_refuses_a_force_changed_for_the_worse() {
     let mut scene = Scene::load("spring").expect("a gallery scene");
     scene.forces[0] = Force::Spring {
         bodies: [0, 7],
+        points: None,
         rest_length: 0.0,
         stiffness: 1.0,
         damping: 0.0,
@@ -243,10 +246,14 @@ fn every_scene_runs_with_every_method_or_says_why_not() {
                 // next step where two stars all but meet.
                 let is_known = match error {
                     StepError::NotConverged { .. } => entry.name == "pleiades",
+                    // The spring at its tip is too stiff, until it throws the top round.
+                    StepError::Turning { .. } => name == ("top", "forward-euler"),
                     _ => entry.name == "stiff-spring",
                 };
                 assert!(is_known, "{name:?}: {error}");
-                assert!(error.to_string().contains(method.title), "{error}");
+                let names_it = error.to_string().contains(method.title);
+                let is_turning = matches!(error, StepError::Turning { .. });
+                assert!(names_it || is_turning, "{error}");
             }
             if entry.name == "pleiades" && method.adaptive {
                 assert_eq!(world.impacts(), 0, "{name:?}");
@@ -270,6 +277,7 @@ fn force() -> impl Strategy<Value = Force> {
         (0..2_usize, vector(), [number(), number(), number()]).prop_map(
             |(body, anchor, [rest_length, stiffness, damping])| Force::Anchor {
                 body,
+                point: None,
                 anchor,
                 rest_length,
                 stiffness,
@@ -279,6 +287,7 @@ fn force() -> impl Strategy<Value = Force> {
         (0..2_usize, [number(), number(), number()]).prop_map(
             |(first, [rest_length, stiffness, damping])| Force::Spring {
                 bodies: [first, 1 - first],
+                points: None,
                 rest_length,
                 stiffness,
                 damping,

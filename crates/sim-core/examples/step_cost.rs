@@ -15,6 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut spring = world(method, 1)?;
         spring.add_force(Force::Anchor {
             body: 0,
+            point: None,
             anchor: DVec3::ZERO,
             rest_length: 0.0,
             stiffness: 10.0,
@@ -53,6 +54,7 @@ fn chain(method: &'static Method, links: usize) -> Result<World, Box<dyn std::er
     let mut world = world(method, links)?;
     world.add_force(Force::Anchor {
         body: 0,
+        point: None,
         anchor: world.position(0),
         rest_length: 0.0,
         stiffness: 1e4,
@@ -61,6 +63,7 @@ fn chain(method: &'static Method, links: usize) -> Result<World, Box<dyn std::er
     for i in 1..links {
         world.add_force(Force::Spring {
             bodies: [i - 1, i],
+            points: None,
             rest_length: 1.0,
             stiffness: 1e4,
             damping: 1.0,

@@ -48,6 +48,10 @@ pub enum Force {
     Anchor {
         /// The body it acts on.
         body: usize,
+        /// The point of it that is tied, in the frame of its shape, m; `None`: its position. A body that turns
+        /// is turned by what pulls at a point of it.
+        #[cfg_attr(feature = "serde", serde(default))]
+        point: Option<DVec3>,
         /// The fixed point, m.
         anchor: DVec3,
         /// Rest length `L`, m, from 0.
@@ -63,12 +67,25 @@ pub enum Force {
     Spring {
         /// The bodies, two different ones.
         bodies: [usize; 2],
+        /// The points of both that are tied, each in the frame of its body's shape, m; `None`: their positions.
+        #[cfg_attr(feature = "serde", serde(default))]
+        points: Option<[DVec3; 2]>,
         /// Rest length `L`, m, from 0.
         rest_length: f64,
         /// `k`, N/m, from 0.
         stiffness: f64,
         /// `c`, kg/s, from 0.
         damping: f64,
+    },
+    /// A constant force at a point of a body, which turns a body that does: with it alone a free body
+    /// is a heavy top about its centre of mass.
+    Push {
+        /// The body it acts on.
+        body: usize,
+        /// Where, in the frame of its shape, m.
+        point: DVec3,
+        /// N, in the world.
+        force: DVec3,
     },
     /// Attraction to a fixed point as by a large mass there, `F = -m μ d / |d|³`.
     Attraction {
@@ -245,6 +262,7 @@ impl Force {
             Force::QuadraticDrag { .. } => "quadratic-drag",
             Force::Anchor { .. } => "anchor",
             Force::Spring { .. } => "spring",
+            Force::Push { .. } => "push",
             Force::Attraction { .. } => "attraction",
             Force::Gravitation { .. } => "gravitation",
             Force::Body { .. } | Force::Pair { .. } => "custom",
@@ -266,7 +284,7 @@ impl Force {
     pub fn renumbered(mut self, renumber: impl Fn(usize) -> Option<usize>) -> Option<Force> {
         match &mut self {
             Force::Gravity { .. } | Force::Gravitation { .. } => {}
-            Force::Anchor { body, .. } => *body = renumber(*body)?,
+            Force::Anchor { body, .. } | Force::Push { body, .. } => *body = renumber(*body)?,
             Force::LinearDrag { body, .. }
             | Force::QuadraticDrag { body, .. }
             | Force::Attraction { body, .. }
@@ -292,7 +310,7 @@ impl Force {
     pub(crate) fn reach(&self) -> Reach {
         match *self {
             Force::Gravity { .. } => Reach::Weight,
-            Force::Anchor { body, .. } => Reach::Body(body),
+            Force::Anchor { body, .. } | Force::Push { body, .. } => Reach::Body(body),
             Force::LinearDrag { body, .. }
             | Force::QuadraticDrag { body, .. }
             | Force::Attraction { body, .. }
@@ -303,10 +321,35 @@ impl Force {
         }
     }
 
+    /// The point of the body that it acts on, in the frame of its shape, m; `None`: the body's position.
+    pub fn point(&self) -> Option<DVec3> {
+        match *self {
+            Force::Push { point, .. } => Some(point),
+            Force::Anchor { point, .. } => point,
+            _ => None,
+        }
+    }
+
+    /// The same of the two bodies that it acts between.
+    pub fn points(&self) -> Option<[DVec3; 2]> {
+        match *self {
+            Force::Spring { points, .. } => points,
+            _ => None,
+        }
+    }
+
+    /// Whether it acts at points other than positions.
+    pub(crate) fn has_points(&self) -> bool {
+        self.point().is_some() || self.points().is_some()
+    }
+
     /// Whether it depends on velocities.
     pub(crate) fn depends_on_velocity(&self) -> bool {
         match *self {
-            Force::Gravity { .. } | Force::Attraction { .. } | Force::Gravitation { .. } => false,
+            Force::Gravity { .. }
+            | Force::Push { .. }
+            | Force::Attraction { .. }
+            | Force::Gravitation { .. } => false,
             Force::Anchor { damping, .. } | Force::Spring { damping, .. } => damping > 0.0,
             Force::LinearDrag { .. }
             | Force::QuadraticDrag { .. }
@@ -334,23 +377,33 @@ impl Force {
                 least("coefficient", coefficient)?;
             }
             Force::Anchor {
+                point,
                 anchor,
                 rest_length,
                 stiffness,
                 damping,
                 ..
             } => {
+                vector("point", point.unwrap_or_default())?;
                 vector("anchor", anchor)?;
                 least("rest_length", rest_length)?;
                 least("stiffness", stiffness)?;
                 least("damping", damping)?;
             }
+            Force::Push { point, force, .. } => {
+                vector("point", point)?;
+                vector("force", force)?;
+            }
             Force::Spring {
+                points,
                 rest_length,
                 stiffness,
                 damping,
                 ..
             } => {
+                for point in points.unwrap_or_default() {
+                    vector("points", point)?;
+                }
                 least("rest_length", rest_length)?;
                 least("stiffness", stiffness)?;
                 least("damping", damping)?;

@@ -80,7 +80,8 @@
 //!
 //! # Limits
 //!
-//! - Bodies turn where they have a [`Turn`], without friction. In contact they are pushed by forces that are constant
+//! - Bodies turn where they have a [`Turn`], without friction. Methods turn them at their own order where forces act at
+//!   points of them, and exactly else; there methods that are not symplectic refuse a step of half a turn. In contact they are pushed by forces that are constant
 //!   for what is left of a step: what slides on its faces is exact, what tips or spins there loses energy to second
 //!   order, and may gain some to third. What touches too often in a step stands still for the rest of it. Turning
 //!   bodies that are put into each other pass through each other until they are apart.

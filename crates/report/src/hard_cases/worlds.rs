@@ -27,6 +27,7 @@ pub(super) fn of_one(
 pub(super) fn spring(stiffness: f64, damping: f64) -> Force {
     Force::Anchor {
         body: 0,
+        point: None,
         anchor: DVec3::ZERO,
         rest_length: 0.0,
         stiffness,

@@ -8,7 +8,7 @@ use sim_core::Mesh;
 use super::{Format, read};
 
 /// The built-in meshes, by the file name that scenes use.
-pub static BUILTIN_MESHES: [BuiltinMesh; 6] = [
+pub static BUILTIN_MESHES: [BuiltinMesh; 8] = [
     BuiltinMesh {
         name: "cube.obj",
         bytes: include_bytes!("../../assets/meshes/cube.obj"),
@@ -37,6 +37,16 @@ pub static BUILTIN_MESHES: [BuiltinMesh; 6] = [
     BuiltinMesh {
         name: "nut.obj",
         bytes: include_bytes!("../../assets/meshes/nut.obj"),
+        mesh: OnceLock::new(),
+    },
+    BuiltinMesh {
+        name: "top.obj",
+        bytes: include_bytes!("../../assets/meshes/top.obj"),
+        mesh: OnceLock::new(),
+    },
+    BuiltinMesh {
+        name: "link.obj",
+        bytes: include_bytes!("../../assets/meshes/link.obj"),
         mesh: OnceLock::new(),
     },
 ];

@@ -13,12 +13,13 @@ use crate::error::SceneError;
 use crate::shown;
 
 /// The kinds of forces that a file can hold.
-const KINDS: [&str; 7] = [
+const KINDS: [&str; 8] = [
     "gravity",
     "linear-drag",
     "quadratic-drag",
     "anchor",
     "spring",
+    "push",
     "attraction",
     "gravitation",
 ];
@@ -44,6 +45,8 @@ pub(super) struct Drag {
 pub(super) struct Anchor {
     kind: String,
     body: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    point: Option<Triple>,
     anchor: Triple,
     #[serde(default = "zero")]
     rest_length: Number,
@@ -57,11 +60,22 @@ pub(super) struct Anchor {
 pub(super) struct Spring {
     kind: String,
     bodies: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    points: Option<Vec<Triple>>,
     #[serde(default = "zero")]
     rest_length: Number,
     stiffness: Number,
     #[serde(default = "zero")]
     damping: Number,
+}
+
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Push {
+    kind: String,
+    body: String,
+    point: Triple,
+    force: Triple,
 }
 
 #[derive(Deserialize, Serialize)]
@@ -93,6 +107,7 @@ pub(super) enum ForceText {
     Drag(Drag),
     Anchor(Anchor),
     Spring(Spring),
+    Push(Push),
     Attraction(Attraction),
     Gravitation(Gravitation),
 }
@@ -142,6 +157,7 @@ pub(super) fn parse(
             let text: Anchor = source.read(whole, place.subject)?;
             Force::Anchor {
                 body: body("body", &text.body)?,
+                point: text.point.map(|point| point.0),
                 anchor: text.anchor.0,
                 rest_length: text.rest_length.0,
                 stiffness: text.stiffness.0,
@@ -155,11 +171,28 @@ pub(super) fn parse(
                 let what = format!("must be the names of two bodies, has {}", text.bodies.len());
                 return Err(place.error(at("bodies"), "bodies", what));
             };
+            let points = text.points.as_deref().map(|points| match points {
+                [first, second] => Ok([first.0, second.0]),
+                _ => {
+                    let what =
+                        format!("must be two points, one of each body, has {}", points.len());
+                    Err(place.error(at("points"), "points", what))
+                }
+            });
             Force::Spring {
                 bodies: [body("bodies", first)?, body("bodies", second)?],
+                points: points.transpose()?,
                 rest_length: text.rest_length.0,
                 stiffness: text.stiffness.0,
                 damping: text.damping.0,
+            }
+        }
+        "push" => {
+            let text: Push = source.read(whole, place.subject)?;
+            Force::Push {
+                body: body("body", &text.body)?,
+                point: text.point.0,
+                force: text.force.0,
             }
         }
         "attraction" => {
@@ -208,6 +241,7 @@ pub(super) fn write(force: &Force, name: impl Fn(usize) -> String) -> Option<For
         }
         Force::Anchor {
             body,
+            point,
             anchor,
             rest_length,
             stiffness,
@@ -215,6 +249,7 @@ pub(super) fn write(force: &Force, name: impl Fn(usize) -> String) -> Option<For
         } => ForceText::Anchor(Anchor {
             kind,
             body: name(body),
+            point: point.map(Triple),
             anchor: Triple(anchor),
             rest_length: Number(rest_length),
             stiffness: Number(stiffness),
@@ -222,15 +257,23 @@ pub(super) fn write(force: &Force, name: impl Fn(usize) -> String) -> Option<For
         }),
         Force::Spring {
             bodies,
+            points,
             rest_length,
             stiffness,
             damping,
         } => ForceText::Spring(Spring {
             kind,
             bodies: bodies.map(name).to_vec(),
+            points: points.map(|points| points.map(Triple).to_vec()),
             rest_length: Number(rest_length),
             stiffness: Number(stiffness),
             damping: Number(damping),
+        }),
+        Force::Push { body, point, force } => ForceText::Push(Push {
+            kind,
+            body: name(body),
+            point: Triple(point),
+            force: Triple(force),
         }),
         Force::Attraction {
             body,

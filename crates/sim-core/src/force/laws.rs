@@ -36,6 +36,7 @@ impl Force {
                 let pull = spring(*stiffness, *rest_length, at.position - *anchor);
                 -pull - *damping * at.velocity
             }
+            Force::Push { force, .. } => *force,
             Force::Attraction {
                 centre, strength, ..
             } => -at.mass * *strength * inverse_square(at.position - *centre),
@@ -94,6 +95,7 @@ impl Force {
                 *rest_length,
                 at.position - *anchor,
             )),
+            Force::Push { force, .. } => Some(-dot(*force, at.position)),
             Force::Attraction {
                 centre, strength, ..
             } => Some(-at.mass * strength / length(at.position - *centre)),

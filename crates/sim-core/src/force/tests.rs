@@ -27,6 +27,7 @@ fn on_body() -> impl Strategy<Value = Force> {
         )
             .prop_map(|(anchor, rest_length, stiffness, damping)| Force::Anchor {
                 body: 0,
+                point: None,
                 anchor,
                 rest_length,
                 stiffness,
@@ -46,6 +47,7 @@ fn on_pair() -> impl Strategy<Value = Force> {
         (prop_oneof![Just(0.0), 0.1..2.0], positive(), positive()).prop_map(
             |(rest_length, stiffness, damping)| Force::Spring {
                 bodies: [0, 1],
+                points: None,
                 rest_length,
                 stiffness,
                 damping
@@ -136,6 +138,7 @@ proptest! {
 fn springs_are_defined_where_they_have_no_direction() {
     let spring = |rest_length| Force::Spring {
         bodies: [0, 1],
+        points: None,
         rest_length,
         stiffness: 2.0,
         damping: 3.0,

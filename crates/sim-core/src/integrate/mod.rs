@@ -83,6 +83,11 @@ pub static METHODS: [&Method; 11] = [
 ];
 
 impl Method {
+    /// Whether it is the implicit midpoint rule, which has coordinates of its own for rotations.
+    pub(crate) fn is_midpoint(&self) -> bool {
+        self.name == implicit_midpoint::METHOD.name
+    }
+
     /// The method of that name.
     pub fn named(name: &str) -> Option<&'static Method> {
         METHODS.into_iter().find(|m| m.name == name)

@@ -4,6 +4,7 @@ use alloc::{boxed::Box, vec::Vec};
 use glam::DVec3;
 
 use super::{Jacobians, implicit::Progress};
+use crate::rotation::Rotor;
 
 /// Columns for the intermediate results of a method, kept so that only the first step allocates.
 /// What is in them at the start of a step has no meaning, so a copy starts without.
@@ -20,6 +21,7 @@ pub struct Scratch {
 pub(crate) struct Gathered {
     columns: Vec<DVec3>,
     mass: Vec<f64>,
+    pub(crate) rotors: Vec<Rotor>,
 }
 
 impl Clone for Scratch {

@@ -31,6 +31,7 @@ impl Kick {
         v: &mut [DVec3],
         scratch: &mut Scratch,
     ) -> Result<(), Failure> {
+        let system = system.kicks().unwrap_or(system);
         let ([a], newton) = scratch.with_newton(x.len());
         let by_velocity = system.depends_on_velocity();
         let explicit = match by_velocity {
@@ -39,7 +40,9 @@ impl Kick {
         };
         if explicit != 0.0 {
             system.accelerations(self.time, x, v, a);
-            drift(explicit, v, a);
+            for (v, a) in v.iter_mut().zip(a.iter()) {
+                *v += explicit * *a;
+            }
         }
         if !by_velocity || self.implicit == 0.0 {
             return Ok(());
@@ -53,13 +56,6 @@ impl Kick {
             drift: 0.0,
         };
         equation.solve(system, v, newton)
-    }
-}
-
-/// `x += h v`
-pub(super) fn drift(h: f64, x: &mut [DVec3], v: &[DVec3]) {
-    for (x, v) in x.iter_mut().zip(v) {
-        *x += h * *v;
     }
 }
 
@@ -77,7 +73,7 @@ pub(super) fn step<const KICKS: usize>(
     let mut now = 0.0;
     for (i, &length) in kicks.iter().enumerate() {
         now += drifts[i];
-        drift(drifts[i] * s.dt, s.new_position, s.new_velocity);
+        system.drift(drifts[i] * s.dt, s.new_position, s.new_velocity);
         let implicit = length - explicit;
         let kick = Kick {
             time: s.time + now * s.dt,
@@ -87,6 +83,6 @@ pub(super) fn step<const KICKS: usize>(
         kick.act(system, s.new_position, s.new_velocity, s.scratch)?;
         explicit = drifts[i + 1] - implicit;
     }
-    drift(drifts[KICKS] * s.dt, s.new_position, s.new_velocity);
+    system.drift(drifts[KICKS] * s.dt, s.new_position, s.new_velocity);
     Ok(())
 }

@@ -15,13 +15,13 @@ pub(super) static METHOD: Method = Method {
     // Kick, then drift: the position advances by the new velocity. A force that depends on the
     // velocity is taken at the old one, which keeps the method explicit.
     step: |system, s| {
-        let (x, v) = (s.position, s.velocity);
-        system.accelerations(s.time, x, v, s.new_velocity);
-        let end = s.new_position.iter_mut().zip(s.new_velocity);
-        for ((x1, v1), (x, v)) in end.zip(x.iter().zip(v)) {
+        let kicks = system.kicks().unwrap_or(system);
+        kicks.accelerations(s.time, s.position, s.velocity, s.new_velocity);
+        for (v1, v) in s.new_velocity.iter_mut().zip(s.velocity) {
             *v1 = *v + s.dt * *v1;
-            *x1 = *x + s.dt * *v1;
         }
+        s.new_position.copy_from_slice(s.position);
+        system.drift(s.dt, s.new_position, s.new_velocity);
         Ok(())
     },
 };

@@ -48,6 +48,20 @@ pub trait System {
         true
     }
 
+    /// What a method made of drifts and kicks lets go on by itself for a time `h`, s, which may be negative:
+    /// `x += h v`. A system whose motion without forces is another one has that here, and tells by
+    /// [`System::kicks`] what is left.
+    fn drift(&self, h: f64, x: &mut [DVec3], v: &mut [DVec3]) {
+        for (x, v) in x.iter_mut().zip(v) {
+            *x += h * *v;
+        }
+    }
+
+    /// The accelerations that [`System::drift`] leaves out, as a system of as many bodies; `None`: all.
+    fn kicks(&self) -> Option<&dyn System> {
+        None
+    }
+
     /// Writes `∂a/∂x · dx + ∂a/∂v · dv`, what implicit methods of coupled systems need. Unless it
     /// is given, a forward difference, right to about half of the digits.
     fn apply_jacobian(

@@ -1,9 +1,6 @@
 //! Velocity Verlet, also called leapfrog or Störmer-Verlet.
 
-use super::{
-    Method,
-    splitting::{Kick, drift},
-};
+use super::{Method, splitting::Kick};
 
 pub(super) static METHOD: Method = Method {
     name: "velocity-verlet",
@@ -27,7 +24,7 @@ pub(super) static METHOD: Method = Method {
             implicit: 0.0,
         };
         first.act(system, s.new_position, s.new_velocity, s.scratch)?;
-        drift(s.dt, s.new_position, s.new_velocity);
+        system.drift(s.dt, s.new_position, s.new_velocity);
         let second = Kick {
             time: s.time + s.dt,
             explicit: 0.0,

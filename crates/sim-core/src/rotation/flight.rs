@@ -31,6 +31,15 @@ pub enum FlightError {
         "a rotation, its momentum and its torque must be finite, and so must what becomes of them"
     )]
     NotFinite,
+    /// It turns by half a turn or more while forces act at points of it.
+    #[error(
+        "a body turns by half a turn or more in {duration:e} s while forces act at points of it: take shorter steps, \
+         or a symplectic method"
+    )]
+    HalfTurn {
+        /// In how long, s.
+        duration: f64,
+    },
     /// It tumbles too often.
     #[error(
         "a body tumbles more than {MOST_PIECES} times {FARTHEST} rad in {duration:e} s: take shorter steps"

@@ -8,7 +8,10 @@
 //! [`Flight`] is the way of a rotation for some time. [`Inertia`](crate::Inertia) tells where the
 //! principal axes lie in a shape.
 
+pub(crate) mod chart;
 mod flight;
+mod rotor;
 mod series;
 
 pub use flight::{Bounds, Flight, FlightError, Pose, spin};
+pub(crate) use rotor::{Coordinates, Rotor, into_body};

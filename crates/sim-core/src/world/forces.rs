@@ -89,9 +89,12 @@ impl World {
             .clone()
             .map(|i| -self.force(i).dot(self.position(i)))
             .sum();
-        let of_body = |force: &Force, i| force.body_potential(&self.body_motion(i)).unwrap_or(0.0);
+        let of_body = |force: &Force, i| {
+            let potential = force.body_potential(&self.body_motion(force, i));
+            potential.unwrap_or(0.0)
+        };
         let of_pair = |force: &Force, i, j| {
-            let potential = force.pair_potential(&self.pair_motion(i, j));
+            let potential = force.pair_potential(&self.pair_motion(force, i, j));
             potential.unwrap_or(0.0)
         };
         // Without forces the sum is minus zero.
@@ -125,25 +128,57 @@ impl World {
         if !self.bodies.is_movable(body) {
             return DVec3::ZERO;
         }
-        let on_first = |force: &Force, i, j| force.on_pair(&self.pair_motion(i, j));
-        let mut sum = self.bodies.mass[body] * self.constant_acceleration(body);
-        for force in &self.forces.list {
-            sum += match force.reach() {
-                // In the constant acceleration.
-                Reach::Weight => DVec3::ZERO,
-                Reach::EachBody => force.on_body(&self.body_motion(body)),
-                Reach::Body(i) if i == body => force.on_body(&self.body_motion(body)),
-                Reach::Body(_) => DVec3::ZERO,
-                Reach::Pair([i, j]) if i == body => on_first(force, i, j),
-                Reach::Pair([i, j]) if j == body => -on_first(force, i, j),
-                Reach::Pair(_) => DVec3::ZERO,
-                Reach::EachPair => {
-                    let others = self.movable().filter(|&other| other != body);
-                    others.map(|other| on_first(force, body, other)).sum()
-                }
+        let constant = self.bodies.mass[body] * self.constant_acceleration(body);
+        let forces = self.forces.list.iter();
+        forces.fold(constant, |sum, force| sum + self.force_by(force, body))
+    }
+
+    /// The torque of all forces on a body about its centre of mass where it is and as it moves now, N m, but for that
+    /// of contacts; 0 on one that does not turn or that nothing moves.
+    pub fn applied_torque(&self, body: usize) -> DVec3 {
+        let slot = self.bodies.turners.slot(body);
+        let Some(slot) = slot.filter(|_| self.bodies.is_movable(body)) else {
+            return DVec3::ZERO;
+        };
+        let constant = self.bodies.turners.torque[slot];
+        let forces = self.forces.list.iter().filter(|force| force.has_points());
+        forces.fold(constant, |sum, force| {
+            let point = match (force.reach(), force.point(), force.points()) {
+                (Reach::Body(i), Some(point), _) if i == body => point,
+                (Reach::Pair([i, _]), _, Some([point, _])) if i == body => point,
+                (Reach::Pair([_, j]), _, Some([_, point])) if j == body => point,
+                _ => return sum,
             };
+            sum + self.lever(body, point).0.cross(self.force_by(force, body))
+        })
+    }
+
+    /// A force on a body that can be moved, N; of weight nothing, which is in the constant acceleration.
+    fn force_by(&self, force: &Force, body: usize) -> DVec3 {
+        let on_first = |force: &Force, i, j| force.on_pair(&self.pair_motion(force, i, j));
+        match force.reach() {
+            Reach::Weight => DVec3::ZERO,
+            Reach::EachBody => force.on_body(&self.body_motion(force, body)),
+            Reach::Body(i) if i == body => force.on_body(&self.body_motion(force, body)),
+            Reach::Body(_) => DVec3::ZERO,
+            Reach::Pair([i, j]) if i == body => on_first(force, i, j),
+            Reach::Pair([i, j]) if j == body => -on_first(force, i, j),
+            Reach::Pair(_) => DVec3::ZERO,
+            Reach::EachPair => {
+                let others = self.movable().filter(|&other| other != body);
+                others.map(|other| on_first(force, body, other)).sum()
+            }
         }
-        sum
+    }
+
+    /// Where a point of a body is, m, which is given in the frame of its shape, m.
+    pub fn point_of(&self, body: usize, point: DVec3) -> DVec3 {
+        self.position(body) + self.lever(body, point).0
+    }
+
+    /// A point of a body as seen from its position, m, and how it moves about that, m/s.
+    fn lever(&self, body: usize, point: DVec3) -> (DVec3, DVec3) {
+        self.bodies.lever_in(&self.current.turned, body, point)
     }
 
     /// What constant forces and weight do to a body, m/s²; nothing to an immovable one.
@@ -236,21 +271,28 @@ impl World {
         Ok(())
     }
 
-    fn body_motion(&self, i: usize) -> BodyMotion {
+    /// The motion of a body, or of the point of it, on which a force acts.
+    fn body_motion(&self, force: &Force, i: usize) -> BodyMotion {
+        let lever = force.point().map(|point| self.lever(i, point));
+        let (arm, turning) = lever.unwrap_or_default();
         BodyMotion {
             time: self.time(),
             mass: self.bodies.mass[i],
-            position: self.position(i),
-            velocity: self.velocity(i),
+            position: self.position(i) + arm,
+            velocity: self.velocity(i) + turning,
         }
     }
 
-    fn pair_motion(&self, i: usize, j: usize) -> PairMotion {
+    /// The same of two bodies.
+    fn pair_motion(&self, force: &Force, i: usize, j: usize) -> PairMotion {
+        let levers = force.points();
+        let levers = levers.map(|[p, q]| (self.lever(i, p), self.lever(j, q)));
+        let (first, second) = levers.unwrap_or_default();
         PairMotion {
             time: self.time(),
             mass: [self.bodies.mass[i], self.bodies.mass[j]],
-            position: self.position(j) - self.position(i),
-            velocity: self.velocity(j) - self.velocity(i),
+            position: (self.position(j) - self.position(i)) + (second.0 - first.0),
+            velocity: (self.velocity(j) - self.velocity(i)) + (second.1 - first.1),
         }
     }
 }

@@ -17,6 +17,7 @@ mod handle;
 mod hash;
 mod kind;
 mod layout;
+mod lever_system;
 mod marks;
 mod near;
 mod order;

@@ -31,6 +31,8 @@ pub(super) struct Plan {
     pub(super) each_pair: Vec<usize>,
     /// Whether some force depends on velocities.
     pub(super) depends_on_velocity: bool,
+    /// Bodies on which forces act at points, in order.
+    pub(super) levered: Vec<usize>,
 }
 
 /// A run of bodies that forces act on.
@@ -54,6 +56,8 @@ pub(super) struct Group {
     /// Forces on one of them, and between two: by places in the group, in the order of forces.
     pub(super) single: Vec<(usize, usize)>,
     pub(super) pairs: Vec<([usize; 2], usize)>,
+    /// Those of them on which forces act at points, by places in the group.
+    pub(super) levered: Vec<usize>,
 }
 
 impl Plan {
@@ -62,6 +66,9 @@ impl Plan {
         let mut plan = Plan::default();
         for (force, what) in forces.iter().enumerate() {
             plan.depends_on_velocity |= what.depends_on_velocity();
+            if what.has_points() {
+                plan.levered.extend(what.bodies());
+            }
             match what.reach() {
                 Reach::Weight => {}
                 Reach::Body(body) => plan.single.push((body, force)),
@@ -70,6 +77,8 @@ impl Plan {
                 Reach::EachPair => plan.each_pair.push(force),
             }
         }
+        plan.levered.sort_unstable();
+        plan.levered.dedup();
         plan.single.sort_unstable();
         plan.pairs
             .sort_unstable_by_key(|&([i, j], force)| (i.min(j), force));
@@ -79,13 +88,18 @@ impl Plan {
         plan
     }
 
-    /// The runs from the lower to the higher body of each pair, united where they share a body.
+    /// The runs from the lower to the higher body of each pair, united where they share a body; and bodies with
+    /// levers, as forces couple how they turn to where they are.
     fn coupled_sections(&self, bodies: usize) -> Vec<Section> {
         let everyone = (!self.each_pair.is_empty() && bodies > 1).then_some(0..bodies);
         let pairs = self.pairs.iter();
-        let runs = pairs.map(|&([i, j], _)| i.min(j)..i.max(j) + 1);
+        let pairs = pairs.map(|&([i, j], _)| i.min(j)..i.max(j) + 1);
+        let levered = self.levered.iter().map(|&body| body..body + 1);
+        let mut runs: Vec<Range<usize>> =
+            everyone.into_iter().chain(pairs).chain(levered).collect();
+        runs.sort_by_key(|run| run.start);
         let mut sections: Vec<Section> = Vec::new();
-        for run in everyone.into_iter().chain(runs) {
+        for run in runs {
             match sections.last_mut() {
                 Some(last) if run.start < last.bodies.end => {
                     last.bodies.end = last.bodies.end.max(run.end);
@@ -153,7 +167,11 @@ impl Plan {
                     let forces = self.single_in(&(body..body + 1)).iter();
                     forces.map(|&(body, force)| (place[body], force))
                 });
+                let places = 0..bodies.len();
+                let levered =
+                    places.filter(|&place| self.levered.binary_search(&bodies[place]).is_ok());
                 let group = Group {
+                    levered: levered.collect(),
                     single: single.collect(),
                     pairs: core::mem::take(&mut own_pairs[first]),
                     run: is_run.then(|| first..first + bodies.len()),
@@ -206,6 +224,12 @@ impl Plan {
         }
     }
 
+    /// Whether forces act on a body at points of it.
+    #[inline]
+    pub(super) fn is_levered(&self, body: usize) -> bool {
+        !self.levered.is_empty() && self.levered.binary_search(&body).is_ok()
+    }
+
     /// Whether nothing but constant forces acts on a group.
     pub(super) fn is_free(&self, group: &Group) -> bool {
         group.bodies.len() == 1 && self.each.is_empty() && group.single.is_empty()
@@ -246,6 +270,7 @@ mod tests {
     fn spring(i: usize, j: usize) -> Force {
         Force::Spring {
             bodies: [i, j],
+            points: None,
             rest_length: 0.0,
             stiffness: 1.0,
             damping: 0.0,

@@ -15,7 +15,7 @@ use super::{
 use crate::{BodyKind, Force, Shape};
 
 /// Grows where the format changes: a world of another version is refused.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

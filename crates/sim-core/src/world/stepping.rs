@@ -11,6 +11,7 @@ use super::{
     Settings, StepError, World,
     continuous::{ContactSet, Horizons},
     error,
+    lever_system::{Kicks, LeverSystem},
     marks::Marks,
     plan::{Group, Plan, Section},
     scene::{Scene, scene},
@@ -20,7 +21,7 @@ use super::{
 use glam::DVec3;
 
 use crate::integrate::{Failure, Method, Scratch, Step, Watch, ballistic, stability};
-use crate::rotation::FlightError;
+use crate::rotation::{Coordinates, FlightError};
 
 /// Bodies in a block: some 200 bytes each for state, acceleration and a few stages fill about
 /// the 32 KiB of a first cache.
@@ -276,6 +277,9 @@ impl Scene<'_> {
         };
         let fall = self.settings.method.fall;
         section.groups.iter().try_for_each(|group| {
+            if !group.levered.is_empty() {
+                return self.step_gathered(&block, group, (to, scratch), watch.as_deref_mut());
+            }
             if let Some(fall) = fall.filter(|_| self.forces.plan.is_free(group)) {
                 self.fall_in(&block, group.bodies[0], fall, to);
                 return Ok(());
@@ -340,7 +344,8 @@ impl Scene<'_> {
         stepped.map_err(|failure| (start + body_of(&failure), Cause::Failure(failure)))
     }
 
-    /// The same for the bodies of a group, which are put side by side for it.
+    /// The same for the bodies of a group, which are put side by side for it, and beside them what turns of those on
+    /// which forces act at points.
     fn step_gathered(
         &self,
         block: &Block<'_>,
@@ -351,15 +356,34 @@ impl Scene<'_> {
         let count = group.bodies.len();
         // Out of the scratch while the method has it.
         let mut gathered = scratch.gathered.take().unwrap_or_default();
-        let ([x, v, acceleration, new_x, new_v], mass) = gathered.columns(count);
+        let mut rotors = mem::take(&mut gathered.rotors);
+        rotors.clear();
+        let turned = &block.from.turned;
+        let levered = group.levered.iter();
+        let coordinates = match self.settings.method.is_midpoint() {
+            true => Coordinates::Midpoint,
+            false => Coordinates::Vector,
+        };
+        rotors.extend(levered.filter_map(|&place| {
+            self.bodies
+                .rotor((group.bodies[place], place), turned, coordinates)
+        }));
+        let ([x, v, acceleration, new_x, new_v], mass) = gathered.columns(count + rotors.len());
         for (i, &body) in group.bodies.iter().enumerate() {
             x[i] = block.from.position[body];
             v[i] = block.from.velocity[body];
             acceleration[i] = block.acceleration[body - block.bodies.start];
             mass[i] = self.bodies.mass[body];
         }
+        for (i, rotor) in (count..).zip(&rotors) {
+            x[i] = DVec3::ZERO;
+            v[i] = rotor.first_rate();
+        }
+        let (acceleration, mass) = (&acceleration[..count], &mass[..count]);
         let mut watch = watch.map(|watch| {
-            |time: f64, x: &[DVec3], y: &[DVec3]| watch(time, &|place| group.bodies[place], x, y)
+            |time: f64, x: &[DVec3], y: &[DVec3]| {
+                watch(time, &|place| group.bodies[place], &x[..count], &y[..count])
+            }
         });
         let step = Step {
             time: self.time + block.since,
@@ -381,13 +405,42 @@ impl Scene<'_> {
             bodies: 0..count,
             group: Some(group),
         };
-        let stepped = (self.settings.method.step)(&part, step);
+        let kicks = Kicks {
+            part,
+            rotors: &rotors,
+        };
+        let stepped = match group.levered.is_empty() {
+            true => (self.settings.method.step)(&kicks.part, step),
+            false => (self.settings.method.step)(&LeverSystem(kicks), step),
+        };
         for (i, &body) in group.bodies.iter().enumerate() {
             to.position[body] = new_x[i];
             to.velocity[body] = new_v[i];
         }
+        let mut lost = None;
+        for (i, rotor) in (count..).zip(&rotors) {
+            if !self
+                .bodies
+                .note_turned(rotor, (new_x[i], new_v[i]), &mut to.turned)
+            {
+                lost = lost.or(Some(rotor.place));
+            }
+        }
+        let place = |i: usize| {
+            rotors
+                .get(i.wrapping_sub(count))
+                .map_or(i, |rotor| rotor.place)
+        };
+        let stepped =
+            stepped.map_err(|failure| (place(body_of(&failure)), Cause::Failure(failure)));
+        let duration = block.length;
+        let turned = lost.map_or(Ok(()), |place| {
+            Err((place, Cause::Turning(FlightError::HalfTurn { duration })))
+        });
+        gathered.rotors = rotors;
         scratch.gathered = Some(gathered);
-        stepped.map_err(|failure| (group.bodies[body_of(&failure)], Cause::Failure(failure)))
+        let done = stepped.and(turned);
+        done.map_err(|(place, cause)| (group.bodies[place], cause))
     }
 }
 

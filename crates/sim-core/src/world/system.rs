@@ -33,6 +33,10 @@ struct Motion<'a> {
 }
 
 impl Part<'_> {
+    pub(super) fn depends_on_velocity(&self) -> bool {
+        self.plan.depends_on_velocity
+    }
+
     fn body(&self, at: Motion<'_>, i: usize) -> BodyMotion {
         BodyMotion {
             time: at.time,
@@ -52,7 +56,7 @@ impl Part<'_> {
     }
 
     /// Calls `act` for each force on a single movable body and that body's index in the part.
-    fn on_bodies(&self, mut act: impl FnMut(&Force, usize)) {
+    pub(super) fn on_bodies(&self, mut act: impl FnMut(&Force, usize)) {
         for &force in &self.plan.each {
             for i in (0..self.mass.len()).filter(|&i| self.is_movable(i)) {
                 act(&self.forces[force], i);
@@ -76,7 +80,7 @@ impl Part<'_> {
 
     /// Calls `act` for each force between two bodies and their indices in the part. What acts
     /// between every two leaves out immovable ones: their attraction would be infinite.
-    fn on_pairs(&self, mut act: impl FnMut(&Force, usize, usize)) {
+    pub(super) fn on_pairs(&self, mut act: impl FnMut(&Force, usize, usize)) {
         if !self.is_coupled {
             return;
         }

@@ -535,6 +535,7 @@ fn the_applied_force_is_what_the_motion_shows() {
     }
     let spring = Force::Spring {
         bodies: [0, 1],
+        points: None,
         rest_length: 1.0,
         stiffness: 5.0,
         damping: 0.3,

@@ -413,7 +413,7 @@ impl World {
         self.bodies.turners.body.iter().copied()
     }
 
-    /// Turns all bodies that do as if nothing met.
+    /// Turns all bodies that do as if nothing met, but for those that the method has turned.
     pub(super) fn turn_freely(&mut self) -> Result<(), (usize, Cause)> {
         let Turners {
             body,
@@ -423,6 +423,9 @@ impl World {
         } = &self.bodies.turners;
         let dt = self.settings.dt;
         for (slot, &body) in body.iter().enumerate() {
+            if self.forces.plan.is_levered(body) && self.bodies.is_movable(body) {
+                continue;
+            }
             let Turned { rotation, momentum } = self.previous.turned[slot];
             let moments = inertia[slot].moments();
             let flight = Flight::new(moments, rotation, momentum, torque[slot], dt)

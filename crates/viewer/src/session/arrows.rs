@@ -27,7 +27,35 @@ pub struct Scale {
     pub text: String,
 }
 
+/// The greatest of 1, 2 and 5 times a power of ten that is no more than a length; that itself if there is none.
+fn round_down(most: f64) -> f64 {
+    let power = 10_f64.powf(most.log10().floor());
+    let steps = [5.0, 2.0, 1.0].map(|step| step * power);
+    steps.into_iter().find(|&step| step <= most).unwrap_or(most)
+}
+
 impl Session {
+    /// Shortens arrows of how bodies turn, so that none is longer than twice what its body reaches.
+    pub(super) fn fit_arrows(&mut self) {
+        let fitted = |usual: f64, value: &dyn Fn(usize) -> DVec3| {
+            let turning = (0..self.world.len()).filter(|&i| self.world.turns(i));
+            turning.fold(usual, |scale, i| {
+                let most = 2.0 * self.reach(i) / value(i).length();
+                if most < scale {
+                    round_down(most)
+                } else {
+                    scale
+                }
+            })
+        };
+        let spin = fitted(self.display.spin_metres, &|i| self.world.spin(i));
+        let momentum = fitted(self.display.momentum_metres, &|i| {
+            self.world.angular_momentum(i)
+        });
+        self.display.spin_metres = spin;
+        self.display.momentum_metres = momentum;
+    }
+
     /// The arrows of body `i`, and the axis that it turns about.
     pub(super) fn add_arrows(&self, i: usize, picture: &mut Picture) {
         let display = &self.display;

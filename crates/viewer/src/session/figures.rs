@@ -250,7 +250,10 @@ fn is_internal(world: &World, force: &Force) -> bool {
 /// Whether it may take energy away for good.
 fn dissipates(force: &Force) -> bool {
     match *force {
-        Force::Gravity { .. } | Force::Attraction { .. } | Force::Gravitation { .. } => false,
+        Force::Gravity { .. }
+        | Force::Push { .. }
+        | Force::Attraction { .. }
+        | Force::Gravitation { .. } => false,
         Force::Anchor { damping, .. } | Force::Spring { damping, .. } => damping > 0.0,
         Force::LinearDrag { coefficient, .. } | Force::QuadraticDrag { coefficient, .. } => {
             coefficient > 0.0
@@ -268,9 +271,10 @@ fn drives(world: &World, force: &Force) -> bool {
     }
 }
 
-/// Whether a body keeps a velocity, whatever it meets.
+/// Whether a body keeps a velocity or a spin, whatever it meets.
 fn is_driven(world: &World, i: usize) -> bool {
-    !world.kind(i).is_movable() && world.velocity(i) != DVec3::ZERO
+    let moves = world.velocity(i) != DVec3::ZERO || world.spin(i) != DVec3::ZERO;
+    !world.kind(i).is_movable() && moves
 }
 
 /// `error / scale`, where there is a scale.

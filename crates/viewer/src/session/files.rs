@@ -58,6 +58,8 @@ impl Session {
         compare.forget();
         let variants = self.variants.edition + 1;
         display.trails = session.display.trails;
+        display.spin_metres = session.display.spin_metres;
+        display.momentum_metres = session.display.momentum_metres;
         *self = session;
         self.display = display;
         self.camera.parallel = parallel;

@@ -110,6 +110,14 @@ impl Session {
         }
     }
 
+    /// Where a point of body `i` is drawn that is given in the frame of its shape, m; without one what moves of it.
+    pub(super) fn shown_point(&self, i: usize, point: Option<DVec3>) -> DVec3 {
+        match point {
+            Some(point) => self.shown_position(i) + self.shown_rotation(i) * point,
+            None => self.shown_centre(i),
+        }
+    }
+
     /// How fast body `i` moves in the picture, m/s: within a step with impacts on the way between them.
     pub(super) fn shown_velocity(&self, i: usize) -> DVec3 {
         let part = self.shown_part();

@@ -213,6 +213,7 @@ impl Session {
         // Of a crowd that turns they would hide it too.
         let turning = (0..session.world.len()).filter(|&i| session.world.turns(i));
         session.display.spins = turning.count() == 1;
+        session.fit_arrows();
         session.begin_record();
         session.frame_opening();
         session.view.home = Some(session.camera);

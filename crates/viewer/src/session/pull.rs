@@ -17,7 +17,7 @@ pub(super) struct Pull {
     body: usize,
     /// The place of the spring among the forces.
     force: usize,
-    /// Where the body is held, from its position, m.
+    /// Where the body is held, from where the spring is tied, m: a body that turns is tied where it is held.
     grip: DVec3,
     /// How far in front of the eye it is held, along the view, m.
     depth: f64,
@@ -42,9 +42,19 @@ impl Session {
         }
         let point = origin + along * direction;
         let rate = TAU * FREQUENCY;
+        let turned = self.shown_rotation(body);
+        let held = turned.inverse() * (point - self.shown_position(body));
+        let (tied, anchor, grip) = match self.world.turns(body) {
+            true => (Some(held), self.world.point_of(body, held), DVec3::ZERO),
+            false => {
+                let grip = point - self.shown_centre(body);
+                (None, self.world.position(body), grip)
+            }
+        };
         let spring = Force::Anchor {
             body,
-            anchor: self.world.position(body),
+            point: tied,
+            anchor,
             rest_length: 0.0,
             stiffness: mass * rate * rate,
             damping: 2.0 * DAMPING * mass * rate,
@@ -54,7 +64,7 @@ impl Session {
                 self.pull = Some(Pull {
                     body,
                     force,
-                    grip: point - self.shown_centre(body),
+                    grip,
                     depth: (point - self.camera.eye()).dot(self.camera.forward()),
                 });
                 self.select(Some(body));
@@ -78,6 +88,7 @@ impl Session {
         let place = origin + along * direction - pull.grip;
         let Some(&Force::Anchor {
             body,
+            point,
             anchor,
             rest_length,
             stiffness,
@@ -92,6 +103,7 @@ impl Session {
         }
         let spring = Force::Anchor {
             body,
+            point,
             anchor: place,
             rest_length,
             stiffness,

@@ -16,12 +16,22 @@ impl Session {
     pub(super) fn add_ties(&self, lines: &mut Vec<Line>) {
         for force in self.world.forces() {
             match *force {
-                Force::Anchor { body, anchor, .. } => {
-                    self.add_spring(anchor, self.shown_centre(body), lines);
+                Force::Anchor {
+                    body,
+                    point,
+                    anchor,
+                    ..
+                } => {
+                    self.add_spring(anchor, self.shown_point(body, point), lines);
                     self.add_cross(anchor, lines);
                 }
-                Force::Spring { bodies, .. } => {
-                    let [from, to] = bodies.map(|body| self.shown_centre(body));
+                Force::Spring {
+                    bodies: [first, second],
+                    points,
+                    ..
+                } => {
+                    let from = self.shown_point(first, points.map(|points| points[0]));
+                    let to = self.shown_point(second, points.map(|points| points[1]));
                     self.add_spring(from, to, lines);
                 }
                 Force::Attraction { centre, .. } => self.add_cross(centre, lines),

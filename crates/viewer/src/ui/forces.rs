@@ -86,12 +86,16 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
         }
         Force::Anchor {
             body,
+            point,
             anchor,
             rest_length,
             stiffness,
             damping,
         } => {
             one_body(ui, names, "Body", body)
+                | maybe_points(ui, "Tied at a point of the body", point, |ui, point| {
+                    vector(ui, "Point", "m", POINT, point)
+                })
                 | vector(ui, "Anchor", "m", "The fixed point", anchor)
                 | scalar(ui, "Stiffness", "", "N/m, from 0", stiffness)
                 | scalar(ui, "Damping", "", "kg/s, from 0", damping)
@@ -105,12 +109,18 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
         }
         Force::Spring {
             bodies: [first, second],
+            points,
             rest_length,
             stiffness,
             damping,
         } => {
             one_body(ui, names, "From", first)
                 | one_body(ui, names, "To", second)
+                | maybe_points(ui, "Tied at points of the bodies", points, |ui, points| {
+                    let [from, to] = points;
+                    vector(ui, "Point of the first", "m", POINT, from)
+                        | vector(ui, "Point of the second", "m", POINT, to)
+                })
                 | scalar(ui, "Stiffness", "", "N/m, from 0", stiffness)
                 | scalar(ui, "Damping", "", "kg/s, from 0", damping)
                 | scalar(
@@ -120,6 +130,11 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
                     "Length without force, m, from 0",
                     rest_length,
                 )
+        }
+        Force::Push { body, point, force } => {
+            one_body(ui, names, "Body", body)
+                | vector(ui, "Point", "m", POINT, point)
+                | vector(ui, "Force", "N", "The constant force at that point", force)
         }
         Force::Attraction {
             body,
@@ -136,6 +151,23 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
         Force::Body { .. } | Force::Pair { .. } => false,
     };
     changed.then_some(force)
+}
+
+const POINT: &str = "Where the force acts, in the frame of the body's shape";
+
+/// Whether a force acts at points other than positions, and at which. Whether that was changed.
+fn maybe_points<T: Default>(
+    ui: &mut egui::Ui,
+    title: &str,
+    points: &mut Option<T>,
+    fields: impl FnOnce(&mut egui::Ui, &mut T) -> bool,
+) -> bool {
+    let mut has = points.is_some();
+    let changed = ui.checkbox(&mut has, say(title)).changed();
+    if changed {
+        *points = has.then(T::default);
+    }
+    changed | points.as_mut().is_some_and(|points| fields(ui, points))
 }
 
 /// A choice of one body. Whether it was changed.
@@ -205,8 +237,14 @@ fn add(ui: &mut egui::Ui, session: &mut Session) {
         Force::Gravitation { constant: 1.0 },
     ];
     if bodies > 0 {
+        offers.push(Force::Push {
+            body,
+            point: DVec3::ZERO,
+            force: DVec3::Y,
+        });
         offers.push(Force::Anchor {
             body,
+            point: None,
             anchor: session.world().position(body) + DVec3::Y,
             rest_length: 1.0,
             stiffness: 10.0,
@@ -217,6 +255,7 @@ fn add(ui: &mut egui::Ui, session: &mut Session) {
         let way = session.world().position(body) - session.world().position(other);
         offers.push(Force::Spring {
             bodies: [body, other],
+            points: None,
             rest_length: way.length(),
             stiffness: 10.0,
             damping: 0.0,
@@ -256,6 +295,7 @@ fn title(force: &Force) -> &'static str {
         Force::QuadraticDrag { .. } => "Quadratic drag",
         Force::Anchor { .. } => "Spring to a point",
         Force::Spring { .. } => "Spring between bodies",
+        Force::Push { .. } => "Push at a point",
         Force::Attraction { .. } => "Attraction to a point",
         Force::Gravitation { .. } => "Gravitation",
         Force::Body { .. } | Force::Pair { .. } => "Custom",
@@ -270,6 +310,9 @@ fn law(force: &Force) -> &'static str {
         Force::Anchor { .. } => "F = -k (1 - L/|d|) d - c v, with d from the point to the body",
         Force::Spring { .. } => {
             "F = k (|d| - L) + c d|d|/dt along the line d: the stretch and its rate"
+        }
+        Force::Push { .. } => {
+            "A constant force at a point of the body, with the torque r × F about its centre of mass"
         }
         Force::Attraction { .. } => "F = -m G M / r², to the point",
         Force::Gravitation { .. } => "F = G m m / r² between every two bodies",

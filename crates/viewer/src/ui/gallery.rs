@@ -60,6 +60,8 @@ static PICTURES: &[(&str, &[u8])] = pictures![
     "cube-cow-spin",
     "cows-turning",
     "nut-on-bolt",
+    "top",
+    "chain",
 ];
 
 pub(super) fn show(ctx: &egui::Context, gallery: &mut Gallery, session: &mut Session) {

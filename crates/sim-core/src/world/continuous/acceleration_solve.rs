@@ -163,6 +163,7 @@ impl ContactSolver<'_> {
                         is_still(self.paths.start.velocity[body])
                             && acceleration[place].length() <= unbalanced
                             && self.view().motion().coupled_group(body).is_none()
+                            && self.paths.frozen.get(body) != Some(&true)
                     }
                 }
             })

@@ -75,31 +75,36 @@ impl Horizons {
         self.known.clear();
     }
 
-    /// Notes how far the trajectories of some bodies are known.
-    pub(in crate::world) fn set(&mut self, bodies: Range<usize>, time: f64, scene: &Scene<'_>) {
+    /// Notes how far the trajectories of some bodies are known, if not to the end of the step.
+    pub(in crate::world) fn set(
+        &mut self,
+        bodies: Range<usize>,
+        time: Option<f64>,
+        scene: &Scene<'_>,
+    ) {
         let (all, dt) = (scene.bodies.len(), scene.settings.dt);
-        if self.known.is_empty() && time == dt {
+        if self.known.is_empty() && time.is_none() {
             return;
         }
         self.known.resize(all, dt);
-        self.known[bodies].fill(time);
+        self.known[bodies].fill(time.unwrap_or(dt));
     }
 }
 
 impl Scene<'_> {
     /// Steps a block as far as contact lets the method be asked, and says how far that is, s from the
-    /// step's start.
+    /// step's start, if it is not to the block's end.
     pub(in crate::world) fn step_to_horizon(
         &self,
         contacts: &ContactSet,
         block: Block<'_>,
         to: &mut State,
         scratch: &mut Scratch,
-    ) -> Result<f64, (usize, Cause)> {
+    ) -> Result<Option<f64>, (usize, Cause)> {
         let (since, length) = (block.since, block.length);
         if !self.has_horizon(&block) {
             self.step_block(block, to, scratch, None)?;
-            return Ok(since + length);
+            return Ok(None);
         }
         let mut reached = length;
         let mut watch =
@@ -117,10 +122,10 @@ impl Scene<'_> {
                 ..block
             };
             self.step_block(part, to, scratch, None)?;
-            return Ok(since + reached);
+            return Ok(Some(since + reached));
         }
         let Err(failure) = done else {
-            return Ok(since + length);
+            return Ok(None);
         };
         // What takes steps of its own has seen that nothing is met on them.
         if self.settings.method.adaptive {
@@ -147,7 +152,7 @@ impl Scene<'_> {
                 before,
                 after,
             ) {
-                return Ok(since + time);
+                return Ok(Some(since + time));
             }
             low = time;
         }

@@ -41,6 +41,7 @@ mod impact_search;
 mod initial_contacts;
 mod island;
 mod ledge;
+mod levered;
 mod outcome;
 mod position_correction;
 mod progress;

@@ -11,7 +11,10 @@ use glam::DVec3;
 
 use super::super::{layout::Layout, record::Record, scene::Scene, state::State, stepping::Cause};
 use super::{contact_set::ContactSet, solver::ContactSolver};
-use crate::collide::{first_contact, parting_normals, snap};
+use crate::{
+    collide::{first_contact, parting_normals, snap},
+    rotation::spin,
+};
 
 /// Units in the last place, a few parts in 10^12, before it is an overlap.
 const MAX_CORRECTION: f64 = 1024.0;
@@ -224,6 +227,7 @@ impl Correction<'_> {
                     back.with[body] = Some(frame);
                     let start = self.scene.before.position[body];
                     self.end.position[body] = start + self.moves_of(frame);
+                    self.turn_back(body);
                     // What forces have given it on the way that it has not gone.
                     let before = self.scene.before.velocity[body];
                     if before.length() < self.end.velocity[body].length() {
@@ -235,6 +239,21 @@ impl Correction<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Turns a body as it was where the step began, with no more energy of turning than it had there.
+    fn turn_back(&mut self, body: usize) {
+        let bodies = self.scene.bodies;
+        if let Some(slot) = bodies.turners.slot(body) {
+            let before = self.scene.before.turned[slot];
+            let now = &mut self.end.turned[slot];
+            let moments = bodies.turners.inertia[slot].moments();
+            let energy = |momentum| spin(moments, before.rotation, momentum).dot(momentum);
+            if energy(before.momentum) < energy(now.momentum) {
+                now.momentum = before.momentum;
+            }
+            now.rotation = before.rotation;
+        }
     }
 
     /// How far what bodies have been put back beside has moved in the step.

@@ -24,7 +24,7 @@ use super::super::{
     stepping::{Block, Cause},
     system::Part,
 };
-use super::{contact_set::ContactSet, event::Event, horizon::Horizons, work::Work};
+use super::{contact_set::ContactSet, event::Event, horizon::Horizons, levered, work::Work};
 use crate::{
     System,
     integrate::Scratch,
@@ -34,8 +34,8 @@ use crate::{
 /// Room to ask where bodies are.
 #[derive(Clone, Debug, Default)]
 pub(in crate::world) struct Probe {
-    state: State,
-    scratch: Scratch,
+    pub(super) state: State,
+    pub(super) scratch: Scratch,
     /// What has been asked since this was last set back.
     pub(super) work: Work,
 }
@@ -60,13 +60,22 @@ pub(in crate::world) struct Trajectories {
     pub(super) velocity_stagger: f64,
     /// How bodies that turn do so from where their trajectories start to the step's end, by slot.
     pub(super) flights: Vec<Flight>,
+    /// By slot, the torque of all forces, N m: constant, or about the mean over the trajectory.
+    pub(super) applied_torque: Vec<DVec3>,
+    /// By slot, what a method of first order adds to the angular momentum of a body with levers when the step is
+    /// over, kg m²/s.
+    pub(super) kicks: Vec<Option<DVec3>>,
     /// By slot, the torque on a body in contact, N m, contacts included: its forces are constant.
     pub(super) pressed: Vec<Option<DVec3>>,
+    /// By body, whether its forces are constant from where its trajectory starts ([`ContactSolver::freeze`]); empty where
+    /// none are.
+    pub(super) frozen: Vec<bool>,
     /// Whether every trajectory is a parabola.
-    is_free: bool,
+    pub(super) is_free: bool,
     /// Room to ask where bodies are, and for what starts again.
     pub(super) probe: Probe,
     restarted_motion: Vec<(DVec3, DVec3)>,
+    restarted_turned: Vec<(usize, Turned)>,
 }
 
 /// Trajectories in their scene.
@@ -77,7 +86,7 @@ pub(super) struct Motion<'a> {
 }
 
 impl Trajectories {
-    fn motion<'a>(&'a self, scene: &'a Scene<'a>) -> Motion<'a> {
+    pub(super) fn motion<'a>(&'a self, scene: &'a Scene<'a>) -> Motion<'a> {
         Motion { scene, paths: self }
     }
 
@@ -114,6 +123,7 @@ impl Trajectories {
             }
         }
         self.acceleration.clone_from(&self.applied_acceleration);
+        self.frozen.clear();
         self.since.clear();
         self.since.resize(n, 0.0);
         self.version.clear();
@@ -125,12 +135,24 @@ impl Trajectories {
         self.flights.clear();
         self.pressed.clear();
         self.pressed.resize(scene.bodies.turners.body.len(), None);
+        self.kicks.clear();
+        self.kicks.resize(scene.bodies.turners.body.len(), None);
+        self.applied_torque.clone_from(&scene.bodies.turners.torque);
         for (slot, &body) in scene.bodies.turners.body.iter().enumerate() {
+            let dt = scene.settings.dt;
+            // Of what forces turn that depend on the motion, the method knows how it is turned at the end.
+            let is_levered = scene.is_turned_by_levers(body);
+            if is_levered {
+                self.begin_levered(scene, slot, body)
+                    .map_err(|error| (body, Cause::Turning(error)))?;
+            }
             let flight = self
-                .flight_from(scene, slot, scene.before.turned[slot], scene.settings.dt)
+                .flight_from(scene, slot, self.start.turned[slot], dt)
                 .map_err(|error| (body, Cause::Turning(error)))?;
             self.flights.push(flight);
-            self.turn_to_end(slot, scene.settings.dt);
+            if !is_levered {
+                self.turn_to_end(slot, dt);
+            }
         }
         Ok(())
     }
@@ -144,7 +166,11 @@ impl Trajectories {
         duration: f64,
     ) -> Result<Flight, FlightError> {
         let turners = &scene.bodies.turners;
-        let torque = self.pressed[slot].unwrap_or(turners.torque[slot]);
+        let torque = match (self.pressed[slot], self.kicks[slot]) {
+            (Some(torque), _) => torque,
+            (None, Some(_)) => DVec3::ZERO,
+            (None, None) => self.applied_torque[slot],
+        };
         Flight::new(
             turners.inertia[slot].moments(),
             turned.rotation,
@@ -156,17 +182,28 @@ impl Trajectories {
 
     fn turn_to_end(&mut self, slot: usize, length: f64) {
         let flight = &self.flights[slot];
+        let kick = self.kicks[slot].filter(|_| self.pressed[slot].is_none());
         self.end.turned[slot] = Turned {
             rotation: flight.rotation_at(length),
-            momentum: flight.momentum_at(length),
+            momentum: flight.momentum_at(length) + kick.unwrap_or_default(),
         };
     }
 
     /// Lets a body turn on from where its trajectory starts.
     fn turn_on(&mut self, scene: &Scene<'_>, slot: usize, body: usize) -> Result<(), FlightError> {
         let length = scene.settings.dt - self.since[body];
-        self.flights[slot] = self.flight_from(scene, slot, self.start.turned[slot], length)?;
-        self.turn_to_end(slot, length);
+        let (start, is_bent) = (
+            self.start.turned[slot],
+            self.motion(scene).is_turning_bent(body),
+        );
+        if is_bent {
+            let known = self.motion(scene).horizon(body) - self.since[body];
+            self.applied_torque[slot] = levered::mean_torque(start, self.end.turned[slot], known);
+        }
+        self.flights[slot] = self.flight_from(scene, slot, start, length)?;
+        if !is_bent {
+            self.turn_to_end(slot, length);
+        }
         Ok(())
     }
 
@@ -185,22 +222,29 @@ impl Trajectories {
         }
         let mut probe = mem::take(&mut self.probe);
         let mut motion = mem::take(&mut self.restarted_motion);
+        let mut turned = mem::take(&mut self.restarted_turned);
         motion.clear();
+        turned.clear();
         let found = bodies.clone().try_for_each(|body| {
-            motion.push(self.motion(scene).motion_at(body, time, &mut probe)?);
+            let there = self.motion(scene).pose_at(body, time, &mut probe)?;
+            motion.push((there.position, there.velocity));
+            if let Some(slot) = scene.bodies.turners.slot(body) {
+                let flown = || self.motion(scene).turned_at(slot, body, time);
+                turned.push((slot, there.turned.unwrap_or_else(flown)));
+            }
             Ok(())
         });
         if found.is_ok() {
+            for &(slot, there) in &turned {
+                self.start.turned[slot] = there;
+            }
             for (body, &(x, v)) in bodies.clone().zip(&motion) {
                 self.start.position[body] = x;
                 self.start.velocity[body] = v;
-                if let Some(slot) = scene.bodies.turners.slot(body) {
-                    self.start.turned[slot] = self.motion(scene).turned_at(slot, body, time);
-                }
                 self.since[body] = time;
             }
         }
-        (self.probe, self.restarted_motion) = (probe, motion);
+        (self.probe, self.restarted_motion, self.restarted_turned) = (probe, motion, turned);
         found.map(|()| bodies)
     }
 
@@ -233,6 +277,7 @@ impl Trajectories {
         let dt = scene.settings.dt;
         match self.motion(scene).coupled_group(bodies.start) {
             None => {
+                self.horizons.set(bodies.clone(), None, scene);
                 for body in bodies.clone() {
                     let (x, v) = self.motion(scene).on_parabola(body, dt - self.since[body]);
                     self.end.position[body] = x;
@@ -273,10 +318,15 @@ impl<'a> Motion<'a> {
         }
     }
 
+    /// Whether contacts push a body by constant forces.
+    fn is_pressed(&self, body: usize) -> bool {
+        let slot = self.scene.bodies.turners.slot(body);
+        slot.is_some_and(|slot| self.paths.pressed[slot].is_some())
+    }
+
     #[inline(never)]
     fn group_among_forced(&self, body: usize) -> Option<(Range<usize>, bool)> {
-        let slot = self.scene.bodies.turners.slot(body);
-        if slot.is_some_and(|slot| self.paths.pressed[slot].is_some()) {
+        if self.is_pressed(body) || self.paths.frozen.get(body) == Some(&true) {
             return None;
         }
         let sections = &self.scene.forces.plan.sections;
@@ -311,14 +361,7 @@ impl<'a> Motion<'a> {
             return Ok(self.on_parabola(body, h));
         };
         probe.work.moved += bodies.len() as u64;
-        probe
-            .state
-            .position
-            .resize(self.scene.bodies.len(), DVec3::ZERO);
-        probe
-            .state
-            .velocity
-            .resize(self.scene.bodies.len(), DVec3::ZERO);
+        probe.state.match_len(&paths.start);
         self.step_group(
             bodies,
             is_coupled,
@@ -330,7 +373,7 @@ impl<'a> Motion<'a> {
     }
 
     /// How a body that turns is turned at a time between its trajectory's start and the step's end, s from the
-    /// step's start.
+    /// step's start: under the mean of what turns it, where forces bend that.
     pub(super) fn turned_at(&self, slot: usize, body: usize, time: f64) -> Turned {
         let h = time - self.paths.since[body];
         if h == 0.0 {
@@ -353,7 +396,7 @@ impl<'a> Motion<'a> {
     }
 
     /// Steps coupled bodies, or one, from the start of their trajectories to a time.
-    fn step_group(
+    pub(super) fn step_group(
         &self,
         bodies: Range<usize>,
         is_coupled: bool,
@@ -391,8 +434,7 @@ impl<'a> Motion<'a> {
         if stagger == 0.0 {
             return 0.0;
         }
-        let slot = self.scene.bodies.turners.slot(body);
-        match slot.is_some_and(|slot| self.paths.pressed[slot].is_some()) {
+        match self.is_pressed(body) {
             true => 0.0,
             false => stagger,
         }
@@ -405,9 +447,18 @@ impl<'a> Motion<'a> {
 
     /// The same if some bodies were moved from there, each by so much, m.
     pub(super) fn acceleration_beside(&self, body: usize, moved: &[(usize, DVec3)]) -> DVec3 {
+        self.loads_beside(body, moved).0
+    }
+
+    /// Acceleration, and if levers turn it the torque of all forces.
+    pub(super) fn loads_beside(
+        &self,
+        body: usize,
+        moved: &[(usize, DVec3)],
+    ) -> (DVec3, Option<DVec3>) {
         let paths = self.paths;
         let Some((bodies, is_coupled)) = self.coupled_group(body) else {
-            return paths.acceleration[body];
+            return (paths.acceleration[body], None);
         };
         let part = Part {
             forces: &self.scene.forces.list,
@@ -427,8 +478,16 @@ impl<'a> Motion<'a> {
                 x[other - bodies.start] += by;
             }
         }
-        part.accelerations(time, &x, &v[bodies.clone()], &mut all);
-        all[body - bodies.start]
+        let v = &v[bodies.clone()];
+        if !bodies
+            .clone()
+            .any(|body| self.scene.forces.plan.is_levered(body))
+        {
+            part.accelerations(time, &x, v, &mut all);
+            return (all[body - bodies.start], None);
+        }
+        self.scene
+            .loads(part, time, (&x, v), &paths.start.turned, body)
     }
 
     /// How far a body's trajectory departs from its chord, m, by component: at most so on a parabola,

@@ -87,10 +87,10 @@ impl EventLoop<'_> {
         // Whom contacts have pushed they push on, whatever hits it.
         let mut pressed: Vec<usize> = Vec::new();
         // What presses them together is what is left of forces where contacts bear them.
-        let acceleration = &self.solver.paths.acceleration;
+        let load = |body: usize| self.solver.view().motion().acceleration_there(body);
         let loads: Vec<[DVec3; 2]> = turning
             .iter()
-            .map(|event| [acceleration[event.bodies.0], acceleration[event.bodies.1]])
+            .map(|event| [load(event.bodies.0), load(event.bodies.1)])
             .collect();
         for event in &turning {
             for body in [event.bodies.0, event.bodies.1] {

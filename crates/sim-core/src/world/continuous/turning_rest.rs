@@ -131,6 +131,8 @@ impl ContactSolver<'_> {
             let applied = self.paths.applied_acceleration[body];
             self.paths.acceleration[body] = applied;
             self.paths.start.velocity[body] += self.paths.velocity_stagger * applied;
+            let kick = self.kick_left(slot, body);
+            self.paths.start.turned[slot].momentum -= kick;
         }
         is_pressed
     }
@@ -285,6 +287,7 @@ impl ContactSolver<'_> {
         for &body in &bodies {
             self.restart(body, time, restarted)?;
             self.release(body);
+            self.freeze(body);
         }
         let mut touching = self.known_contacts(&bodies, time)?;
         self.add_kept_contacts(&mut touching, time, restarted)?;
@@ -389,6 +392,8 @@ impl ContactSolver<'_> {
             let mut pull = self.view().motion().acceleration_there(body);
             let staggered = self.paths.velocity_stagger * self.paths.acceleration[body];
             self.paths.start.velocity[body] -= staggered;
+            let kick = self.kick_left(slot, body);
+            self.paths.start.turned[slot].momentum += kick;
             if self.is_stopped(body) {
                 // It stays where it is for what is left, and is only pushed. What it has, forces apart, it
                 // keeps for the next step.
@@ -426,7 +431,7 @@ impl ContactSolver<'_> {
                     torque: if is_stopped {
                         DVec3::ZERO
                     } else {
-                        all.turners.torque[slot]
+                        self.view().motion().torque_there(slot, body)
                     },
                     moments: inertia.moments(),
                     axes: inertia.axes(),

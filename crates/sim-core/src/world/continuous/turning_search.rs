@@ -8,6 +8,7 @@ use glam::{DQuat, DVec3};
 use super::super::stepping::Cause;
 use super::{
     event::{Event, EventKind},
+    levered::Pose,
     trajectory::Probe,
     view::View,
 };
@@ -20,10 +21,20 @@ use crate::{
 };
 
 /// Halvings of a step in search of parts that are parabolas.
-const MAX_HALVINGS: u32 = 6;
+const MAX_HALVINGS: i32 = 4;
+
+/// And more in search of those on which two bodies touch.
+const TO_TOUCH: i32 = 16;
 
 /// Position, velocity and acceleration at the start of a part.
 type Parabola = (DVec3, DVec3, DVec3);
+
+/// Two bodies at a time, s from the step's start.
+#[derive(Clone, Copy)]
+struct Knot {
+    time: f64,
+    poses: [Pose; 2],
+}
 
 impl View<'_> {
     /// The next impact within the step of two bodies of which one turns. The trees over their meshes must be
@@ -42,7 +53,29 @@ impl View<'_> {
             true => MAX_HALVINGS,
             false => 0,
         };
-        self.find_on_part((i, j), (start, end), halvings, probe)
+        let first = self.knot((i, j), start, probe)?;
+        if halvings == 0 {
+            // Nobody asks where parabolas end.
+            let last = Knot { time: end, ..first };
+            return self.find_on_part((i, j), (&first, &last), 0, probe);
+        }
+        let last = self.knot((i, j), end, probe)?;
+        self.find_on_part((i, j), (&first, &last), halvings, probe)
+    }
+
+    /// Both bodies at a time.
+    fn knot(
+        &self,
+        (i, j): (usize, usize),
+        time: f64,
+        probe: &mut Probe,
+    ) -> Result<Knot, (usize, Cause)> {
+        let first = self.motion().pose_at(i, time, probe)?;
+        let second = self.motion().pose_at(j, time, probe)?;
+        Ok(Knot {
+            time,
+            poses: [first, second],
+        })
     }
 
     /// Whether a body stays where and as it is.
@@ -52,7 +85,7 @@ impl View<'_> {
             && self.paths.acceleration[body] == DVec3::ZERO
             && !self.is_bent(body)
             && slot.is_none_or(|slot| {
-                let torque = self.scene.bodies.turners.torque[slot];
+                let torque = self.paths.applied_torque[slot];
                 self.paths.start.turned[slot].momentum == DVec3::ZERO
                     && self.paths.pressed[slot].unwrap_or(torque) == DVec3::ZERO
             })
@@ -66,41 +99,30 @@ impl View<'_> {
     fn find_on_part(
         &self,
         (i, j): (usize, usize),
-        (from, to): (f64, f64),
-        halvings: u32,
+        (from, to): (&Knot, &Knot),
+        halvings: i32,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
-        let first = self.parabola_of(i, (from, to), probe)?;
-        let second = self.parabola_of(j, (from, to), probe)?;
-        if halvings > 0 {
-            let half = 0.5 * (from + to);
-            let at = |(x, v, a): Parabola, t: f64| x + t * (v + 0.5 * t * a);
-            let off = |body: usize, parabola: Parabola, there: DVec3| {
-                let most = 4.0 * f64::EPSILON * there.abs().max_element();
-                self.is_bent(body) && (at(parabola, half - from) - there).abs().max_element() > most
-            };
-            let there = self.motion().motion_at(i, half, probe)?.0;
-            let here = self.motion().motion_at(j, half, probe)?.0;
-            if off(i, first, there) || off(j, second, here) {
-                let found = self.find_on_part((i, j), (from, half), halvings - 1, probe)?;
-                return match found {
-                    Some(event) => Ok(Some(event)),
-                    None => self.find_on_part((i, j), (half, to), halvings - 1, probe),
-                };
-            }
+        if halvings > 0
+            && let Some(half) = self.where_bent((i, j), (from, to), probe)?
+        {
+            return self.find_in_halves((i, j), (from, &half, to), halvings - 1, probe);
         }
+        let length = to.time - from.time;
+        let [first, second] =
+            [(0, i), (1, j)].map(|(k, body)| self.parabola_of((k, body), (from, to)));
         let bodies = self.scene.bodies;
         let still =
             |body: usize, first| bodies.moving(body, first, Turning::Still(DQuat::IDENTITY));
         let Some((a, b)) = still(i, first).zip(still(j, second)) else {
             return Ok(None);
         };
-        if turning::stay_apart(&a, &b, to - from) {
+        if turning::stay_apart(&a, &b, length) {
             return Ok(None);
         }
         let flights = (
-            self.flight_on(i, (from, to))?,
-            self.flight_on(j, (from, to))?,
+            self.flight_on((0, i), (from, to))?,
+            self.flight_on((1, j), (from, to))?,
         );
         let a = Moving {
             turning: bodies.turning_of(i, flights.0.as_ref()),
@@ -110,11 +132,17 @@ impl View<'_> {
             turning: bodies.turning_of(j, flights.1.as_ref()),
             ..b
         };
-        let (found, effort) = turning::first_contact_with(&a, &b, to - from, Care::TO_GO_ON);
+        let (found, effort) = turning::first_contact_with(&a, &b, length, Care::TO_GO_ON);
         probe.work.certified += u64::from(effort.boxes) + u64::from(effort.pieces);
         let Some(touch) = found else {
             return Ok(None);
         };
+        // Where they touch they start again from where the method has them then: it has to be the same place.
+        if halvings > -TO_TOUCH
+            && let Some(half) = self.where_bent((i, j), (from, to), probe)?
+        {
+            return self.find_in_halves((i, j), (from, &half, to), halvings - 1, probe);
+        }
         let at = touch.time;
         let place = first.0 + at * (first.1 + 0.5 * at * first.2);
         let contact = Contact {
@@ -126,7 +154,7 @@ impl View<'_> {
         };
         let TurningTouch { near, distance, .. } = touch;
         // What is taken for a contact at the very end of the step is one of the next step's start.
-        let time = (from + at).min(self.scene.settings.dt.next_down());
+        let time = (from.time + at).min(self.scene.settings.dt.next_down());
         let event = Event::impact(time, (i, j), contact, near, &self.paths.version);
         // What has been looked at for long enough goes on from there.
         let kind = match distance <= near {
@@ -136,40 +164,98 @@ impl View<'_> {
         Ok(Some(Event { kind, ..event }))
     }
 
-    /// The parabola that a body is on, or one that leads to where it is at the end of a part of the step.
-    fn parabola_of(
+    /// The same on two parts that follow each other.
+    fn find_in_halves(
         &self,
-        body: usize,
-        (from, to): (f64, f64),
+        bodies: (usize, usize),
+        (from, half, to): (&Knot, &Knot, &Knot),
+        halvings: i32,
         probe: &mut Probe,
-    ) -> Result<Parabola, (usize, Cause)> {
-        let (x, v) = self.motion().motion_at(body, from, probe)?;
-        if !self.is_bent(body) {
-            return Ok((x, v, self.paths.acceleration[body]));
+    ) -> Result<Option<Event>, (usize, Cause)> {
+        match self.find_on_part(bodies, (from, half), halvings, probe)? {
+            Some(event) => Ok(Some(event)),
+            None => self.find_on_part(bodies, (half, to), halvings, probe),
         }
-        let h = to - from;
-        let there = self.motion().motion_at(body, to, probe)?.0;
-        let bend = match h > 0.0 {
-            true => 2.0 / (h * h) * ((there - x) - h * v),
-            false => DVec3::ZERO,
-        };
-        Ok((x, v, bend))
     }
 
-    /// How a body turns on a part of the step, if it shows.
-    fn flight_on(
+    /// Both bodies in the middle of a part, where one of them is off the parabola or the flight that leads over it by
+    /// more than rounding.
+    fn where_bent(
         &self,
-        body: usize,
-        (from, to): (f64, f64),
-    ) -> Result<Option<Flight>, (usize, Cause)> {
-        if !self.scene.bodies.tumbles(body) {
+        (i, j): (usize, usize),
+        (from, to): (&Knot, &Knot),
+        probe: &mut Probe,
+    ) -> Result<Option<Knot>, (usize, Cause)> {
+        if !self.is_bent(i) && !self.is_bent(j) {
             return Ok(None);
         }
+        let half = self.knot((i, j), 0.5 * (from.time + to.time), probe)?;
+        let t = half.time - from.time;
+        for (k, body) in [(0, i), (1, j)] {
+            if !self.is_bent(body) {
+                continue;
+            }
+            let there = half.poses[k].position;
+            let (x, v, a) = self.parabola_of((k, body), (from, to));
+            let off = x + t * (v + 0.5 * t * a) - there;
+            let most = 4.0 * f64::EPSILON * there.abs().max_element();
+            if off.abs().max_element() > most {
+                return Ok(Some(half));
+            }
+            let Some(there) = half.poses[k].turned else {
+                continue;
+            };
+            let flight = self.flight_on((k, body), (from, to))?;
+            let off = flight.map(|flight| there.rotation.inverse() * flight.rotation_at(t));
+            if off.is_some_and(|off| off.xyz().abs().max_element() > 4.0 * f64::EPSILON) {
+                return Ok(Some(half));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The parabola that one of both bodies is on, or one that leads to where it is at the end of a part of the step.
+    fn parabola_of(&self, (k, body): (usize, usize), (from, to): (&Knot, &Knot)) -> Parabola {
+        let Pose {
+            position: x,
+            velocity: v,
+            ..
+        } = from.poses[k];
+        let length = to.time - from.time;
+        if !self.is_bent(body) {
+            return (x, v, self.paths.acceleration[body]);
+        }
+        let bend = match length > 0.0 {
+            true => 2.0 / (length * length) * ((to.poses[k].position - x) - length * v),
+            false => DVec3::ZERO,
+        };
+        (x, v, bend)
+    }
+
+    /// How one of both bodies turns on a part of the step, if it shows: where forces bend that, under their mean.
+    fn flight_on(
+        &self,
+        (k, body): (usize, usize),
+        (from, to): (&Knot, &Knot),
+    ) -> Result<Option<Flight>, (usize, Cause)> {
         let Some(slot) = self.scene.bodies.turners.slot(body) else {
             return Ok(None);
         };
-        let turned = self.motion().turned_at(slot, body, from);
-        let flight = self.paths.flight_from(self.scene, slot, turned, to - from);
+        if !self.scene.bodies.tumbles(body) {
+            return Ok(None);
+        }
+        let length = to.time - from.time;
+        let (first, last) = (from.poses[k].turned, to.poses[k].turned);
+        let turned = first.unwrap_or_else(|| self.motion().turned_at(slot, body, from.time));
+        let there = last.filter(|_| length > 0.0);
+        let flight = match there {
+            Some(there) => {
+                let torque = (there.momentum - turned.momentum) / length;
+                let moments = self.scene.bodies.turners.inertia[slot].moments();
+                Flight::new(moments, turned.rotation, turned.momentum, torque, length)
+            }
+            None => self.paths.flight_from(self.scene, slot, turned, length),
+        };
         flight
             .map(Some)
             .map_err(|error| (body, Cause::Turning(error)))

@@ -11,7 +11,7 @@
 use super::super::{bodies::Bodies, stepping::Cause};
 
 /// Bodies moved by the method, for each body of the world.
-const MOST_MOVED: u64 = 1 << 13;
+const MOST_MOVED: u64 = 1 << 14;
 
 /// Pairs of boxes and of pieces certified, for each body of the world.
 const MOST_CERTIFIED: u64 = 1 << 20;

@@ -218,6 +218,8 @@ impl Path {
             match *force {
                 Force::Gravity { acceleration } => push += acceleration,
                 _ if !acts => {}
+                // Which turn it, or pull elsewhere.
+                _ if force.point().is_some() || force.points().is_some() => return Path::Unknown,
                 Force::LinearDrag { coefficient, .. } => drag += coefficient,
                 Force::QuadraticDrag {
                     coefficient: 0.0, ..

@@ -103,6 +103,7 @@ fn deleting_a_body_takes_the_forces_that_name_it_along() {
     let mut session = session();
     let anchor = |body| Force::Anchor {
         body,
+        point: None,
         anchor: DVec3::ZERO,
         rest_length: 0.0,
         stiffness: 1.0,
@@ -112,6 +113,7 @@ fn deleting_a_body_takes_the_forces_that_name_it_along() {
     session.add_force(anchor(1));
     session.add_force(Force::Spring {
         bodies: [1, 0],
+        points: None,
         rest_length: 3.0,
         stiffness: 1.0,
         damping: 0.0,

@@ -1,0 +1,175 @@
+//! How bodies turn on which forces act at points, within a step.
+//!
+//! As their places, methods of an order above the first are asked for it: the state at any time is that after a
+//! step of just that length.
+//!
+//! A method of the first order is not, as its steps in two parts are not the whole. It turns a body from one end of
+//! the step to the other, and the trajectory is the torque-free flight that does so. What its angular momentum
+//! differs by from that of the method at the end is added there, a *kick*: the twin of the velocity stagger of places.
+
+use alloc::vec::Vec;
+use glam::DVec3;
+
+use super::super::{scene::Scene, state::Turned, stepping::Cause};
+use super::{
+    ContactSolver,
+    trajectory::{Motion, Probe, Trajectories},
+};
+use crate::rotation::{Flight, FlightError, chart};
+
+/// Corrections of a flight until it ends as a body is turned there. Each leaves about the angle of the step of the error.
+const CORRECTIONS: u32 = 60;
+
+/// The torque that makes one angular momentum of another in a time, N m.
+pub(super) fn mean_torque(from: Turned, to: Turned, length: f64) -> DVec3 {
+    match length > 0.0 {
+        true => (to.momentum - from.momentum) / length,
+        false => DVec3::ZERO,
+    }
+}
+
+/// Where a body is, m, how fast, m/s, and if its method tells that, how it is turned.
+#[derive(Clone, Copy)]
+pub(super) struct Pose {
+    pub(super) position: DVec3,
+    pub(super) velocity: DVec3,
+    pub(super) turned: Option<Turned>,
+}
+
+impl Scene<'_> {
+    /// Whether forces at points of a body turn it.
+    pub(super) fn is_turned_by_levers(&self, body: usize) -> bool {
+        self.forces.plan.is_levered(body)
+            && self.bodies.is_movable(body)
+            && self.bodies.turners.slot(body).is_some()
+    }
+}
+
+impl Trajectories {
+    /// Begins the trajectory of a body that turns by levers.
+    pub(super) fn begin_levered(
+        &mut self,
+        scene: &Scene<'_>,
+        slot: usize,
+        body: usize,
+    ) -> Result<(), FlightError> {
+        let (start, end) = (scene.before.turned[slot], self.end.turned[slot]);
+        let length = self.motion(scene).horizon(body);
+        self.applied_torque[slot] = mean_torque(start, end, length);
+        if self.is_free {
+            let moments = scene.bodies.turners.inertia[slot].moments();
+            let momentum = momentum_between(moments, start, end, length)?;
+            self.start.turned[slot].momentum = momentum;
+            self.kicks[slot] = Some(end.momentum - momentum);
+        }
+        Ok(())
+    }
+}
+
+/// The angular momentum with which a body, left to itself, gets from one rotation to another in a time: about that
+/// which it has at the end.
+fn momentum_between(
+    moments: DVec3,
+    start: Turned,
+    end: Turned,
+    length: f64,
+) -> Result<DVec3, FlightError> {
+    let mut momentum = end.momentum;
+    let mut least = f64::INFINITY;
+    let mut best = momentum;
+    for _ in 0..CORRECTIONS {
+        let flight = Flight::new(moments, start.rotation, momentum, DVec3::ZERO, length)?;
+        let there = flight.rotation_at(length);
+        let off = chart::vector(there.inverse() * end.rotation);
+        let size = off.length();
+        if size >= least {
+            break;
+        }
+        (least, best) = (size, momentum);
+        if size <= f64::EPSILON {
+            break;
+        }
+        momentum += there * (moments * off) / length;
+    }
+    Ok(best)
+}
+
+impl ContactSolver<'_> {
+    /// Lets the forces on a body that contacts begin to press, and on all that forces couple it to, be constant for the
+    /// rest of the step, as they are where their trajectories start: the forces on what is in contact are, and what one
+    /// gains the other one has to lose.
+    pub(super) fn freeze(&mut self, body: usize) {
+        let Some((bodies, true)) = self.view().motion().coupled_group(body) else {
+            return;
+        };
+        let motion = self.view().motion();
+        let loads = |body: usize| {
+            let slot = self.scene.bodies.turners.slot(body);
+            let torque = slot.map(|slot| (slot, motion.torque_there(slot, body)));
+            (motion.acceleration_there(body), torque)
+        };
+        let loads: Vec<_> = bodies.clone().map(loads).collect();
+        let paths = &mut *self.paths;
+        paths.frozen.resize(self.scene.bodies.len(), false);
+        for (body, (acceleration, torque)) in bodies.zip(loads) {
+            paths.frozen[body] = true;
+            let by_contacts = paths.acceleration[body] - paths.applied_acceleration[body];
+            paths.applied_acceleration[body] = acceleration - by_contacts;
+            paths.acceleration[body] = acceleration;
+            if let Some((slot, torque)) = torque {
+                paths.applied_torque[slot] = torque;
+            }
+        }
+    }
+
+    /// What a method of first order has still to give to the angular momentum of a body until its trajectory starts.
+    pub(super) fn kick_left(&self, slot: usize, body: usize) -> DVec3 {
+        let left = self.scene.settings.dt - self.paths.since[body];
+        let kick = self.paths.kicks[slot];
+        kick.map_or(DVec3::ZERO, |kick| {
+            kick - left * self.paths.applied_torque[slot]
+        })
+    }
+}
+
+impl Motion<'_> {
+    /// Whether a body is turned by forces that depend on the motion, so that its method knows how.
+    pub(super) fn is_turning_bent(&self, body: usize) -> bool {
+        self.scene.is_turned_by_levers(body) && self.coupled_group(body).is_some()
+    }
+
+    /// Where a body is, and where forces bend that how it is turned, at a time between its trajectory's start and its horizon, s from the step's
+    /// start.
+    pub(super) fn pose_at(
+        &self,
+        body: usize,
+        time: f64,
+        probe: &mut Probe,
+    ) -> Result<Pose, (usize, Cause)> {
+        let (position, velocity) = self.motion_at(body, time, probe)?;
+        let slot = self.scene.bodies.turners.slot(body);
+        let bent = slot.filter(|_| self.is_turning_bent(body));
+        let turned = bent.map(|slot| match time {
+            _ if time == self.paths.since[body] => self.paths.start.turned[slot],
+            _ if time == self.horizon(body) => self.paths.end.turned[slot],
+            // The method has just been asked.
+            _ => probe.state.turned[slot],
+        });
+        Ok(Pose {
+            position,
+            velocity,
+            turned,
+        })
+    }
+
+    /// The torque of all forces on a body that turns, where its trajectory starts, N m; of contacts as well where they
+    /// press it.
+    pub(super) fn torque_there(&self, slot: usize, body: usize) -> DVec3 {
+        let applied = self.paths.applied_torque[slot];
+        let known = match self.is_turning_bent(body) {
+            true => self.loads_beside(body, &[]).1,
+            false => None,
+        };
+        known.unwrap_or(applied)
+    }
+}
