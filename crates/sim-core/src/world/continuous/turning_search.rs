@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// Halvings of a step in search of parts that are parabolas.
-const MAX_HALVINGS: i32 = 4;
+const MAX_HALVINGS: i32 = 6;
 
 /// And more in search of those on which two bodies touch.
 const TO_TOUCH: i32 = 16;
