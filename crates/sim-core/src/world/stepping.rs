@@ -219,6 +219,13 @@ impl Integrator {
     pub(super) fn stable_dt(&self, scene: Scene<'_>, body: usize) -> Option<f64> {
         let section = company(&scene.forces.plan, body)?;
         let bodies = section.bodies.clone();
+        // How stiff a force is that also turns what it pulls at, no place alone tells.
+        if bodies
+            .clone()
+            .any(|body| scene.forces.plan.is_levered(body))
+        {
+            return None;
+        }
         let part = Part {
             forces: &scene.forces.list,
             plan: &scene.forces.plan,

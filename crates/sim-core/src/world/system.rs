@@ -33,10 +33,6 @@ struct Motion<'a> {
 }
 
 impl Part<'_> {
-    pub(super) fn depends_on_velocity(&self) -> bool {
-        self.plan.depends_on_velocity
-    }
-
     fn body(&self, at: Motion<'_>, i: usize) -> BodyMotion {
         BodyMotion {
             time: at.time,

@@ -138,8 +138,8 @@ impl Motion<'_> {
         self.scene.is_turned_by_levers(body) && self.coupled_group(body).is_some()
     }
 
-    /// Where a body is, and where forces bend that how it is turned, at a time between its trajectory's start and its horizon, s from the step's
-    /// start.
+    /// Where a body is, and where forces bend that how it is turned, at a time between its trajectory's start and its
+    /// horizon, s from the step's start.
     pub(super) fn pose_at(
         &self,
         body: usize,
