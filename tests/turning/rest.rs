@@ -1,7 +1,9 @@
 //! Turning bodies that lie, slide, stack, tip and fall: what anybody does first.
 
 use kit::{bodies, random::Random, shapes, worlds};
-use sim_core::{Body, BodyKind, DQuat, DVec3, Inertia, Settings, Shape, Turn, World, WorldError};
+use sim_core::{
+    Body, BodyKind, DQuat, DVec3, Force, Inertia, Settings, Shape, Turn, World, WorldError,
+};
 
 const G: f64 = 9.81;
 
@@ -311,4 +313,47 @@ fn what_cannot_turn_is_refused_by_name() {
         world.set_kind(1, BodyKind::Static),
         Err(WorldError::TurningKind { body: 1 })
     );
+}
+
+/// Bricks that springs pull into each other, or that fly into each other, in steps so long that they meet in each more
+/// often than is followed: those stop, and keep what they have and what hits them.
+#[test]
+fn what_meets_too_often_in_a_step_loses_no_momentum() {
+    let mut impacts = 0;
+    for seed in 0..16 {
+        let mut random = Random::splitmix(seed);
+        let bricks: Vec<Body> = (0..4)
+            .map(|k| {
+                let place = DVec3::new(f64::from(k % 2), f64::from(k / 2), 0.0);
+                let mut body = cube(0.8, 1.3 * place + 0.1 * random.vector(), 0.5);
+                body.force = DVec3::ZERO;
+                body.velocity = 3.0 * (DVec3::new(0.6, 0.6, 0.0) - place) + random.vector();
+                body.turn.as_mut().unwrap().spin = 3.0 * random.vector();
+                body
+            })
+            .collect();
+        let mut world = worlds::world(&bricks);
+        if seed % 2 == 0 {
+            for (i, j) in [(0, 1), (1, 2), (2, 3), (0, 3)] {
+                let spring = Force::Spring {
+                    bodies: [i, j],
+                    points: Some([0.4 * random.vector(), 0.4 * random.vector()]),
+                    rest_length: 0.1,
+                    stiffness: 60.0,
+                    damping: 0.0,
+                };
+                world.add_force(spring).expect("a force");
+            }
+        }
+        worlds::set_rate(&mut world, 30.0);
+        let momentum = world.momentum();
+        for step in 0..40 {
+            worlds::step(&mut world, 1);
+            let moved = (world.momentum() - momentum).length();
+            assert!(moved < 1e-11, "seed {seed} step {step}: {moved:e} kg m/s");
+            assert_eq!(world.meeting(), [], "seed {seed} step {step}");
+        }
+        impacts = impacts.max(world.impacts());
+    }
+    println!("{impacts} impacts at most");
 }

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::rotation::{Flight, FlightError, chart};
 
-/// Corrections of a flight until it ends as a body is turned there. Each leaves about the angle of the step of the error.
+/// Corrections of a flight until it leads to how a body is turned. Each leaves about the angle of the step of the error.
 const CORRECTIONS: u32 = 60;
 
 /// The torque that makes one angular momentum of another in a time, N m.
@@ -64,6 +64,38 @@ impl Trajectories {
         }
         Ok(())
     }
+}
+
+/// The flight from one rotation over another one, in the middle of a time, to a third.
+pub(super) fn flight_over(
+    moments: DVec3,
+    [start, half, end]: [Turned; 3],
+    length: f64,
+) -> Result<Flight, FlightError> {
+    let mut momentum = start.momentum;
+    let mut torque = mean_torque(start, end, length);
+    let mut best = Flight::new(moments, start.rotation, momentum, torque, length)?;
+    let mut least = f64::INFINITY;
+    let step = 0.5 * length;
+    for _ in 0..CORRECTIONS {
+        let Ok(flight) = Flight::new(moments, start.rotation, momentum, torque, length) else {
+            break;
+        };
+        let there = flight.rotation_at(step);
+        let near = chart::vector(there.inverse() * half.rotation);
+        let far = chart::vector(flight.rotation_at(length).inverse() * end.rotation);
+        let size = near.length().max(far.length());
+        if size >= least {
+            break;
+        }
+        (least, best) = (size, flight);
+        if size <= f64::EPSILON {
+            break;
+        }
+        momentum += there * (moments * (2.0 * near - 0.5 * far)) / step;
+        torque += there * (moments * (far - 2.0 * near)) / (step * step);
+    }
+    Ok(best)
 }
 
 /// The angular momentum with which a body, left to itself, gets from one rotation to another in a time: about that
@@ -159,6 +191,28 @@ impl Motion<'_> {
             position,
             velocity,
             turned,
+        })
+    }
+
+    /// The same after another body has been asked for at that time: what forces couple them has been stepped with it.
+    pub(super) fn pose_after(
+        &self,
+        asked: usize,
+        body: usize,
+        time: f64,
+        probe: &mut Probe,
+    ) -> Result<Pose, (usize, Cause)> {
+        let is_known = time == self.paths.since[body] || time == self.horizon(body);
+        let group = self.coupled_group(body).filter(|_| !is_known);
+        if group.is_none_or(|(bodies, _)| !bodies.contains(&asked)) {
+            return self.pose_at(body, time, probe);
+        }
+        let slot = self.scene.bodies.turners.slot(body);
+        let bent = slot.filter(|_| self.is_turning_bent(body));
+        Ok(Pose {
+            position: probe.state.position[body],
+            velocity: probe.state.velocity[body],
+            turned: bent.map(|slot| probe.state.turned[slot]),
         })
     }
 

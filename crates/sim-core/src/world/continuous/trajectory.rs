@@ -226,7 +226,11 @@ impl Trajectories {
         motion.clear();
         turned.clear();
         let found = bodies.clone().try_for_each(|body| {
-            let there = self.motion(scene).pose_at(body, time, &mut probe)?;
+            let motion_there = self.motion(scene);
+            let there = match body == bodies.start {
+                true => motion_there.pose_at(body, time, &mut probe)?,
+                false => motion_there.pose_after(bodies.start, body, time, &mut probe)?,
+            };
             motion.push((there.position, there.velocity));
             if let Some(slot) = scene.bodies.turners.slot(body) {
                 let flown = || self.motion(scene).turned_at(slot, body, time);
@@ -329,9 +333,7 @@ impl<'a> Motion<'a> {
         if self.is_pressed(body) || self.paths.frozen.get(body) == Some(&true) {
             return None;
         }
-        let sections = &self.scene.forces.plan.sections;
-        let section = sections.get(sections.partition_point(|s| s.bodies.end <= body));
-        match section.filter(|section| section.bodies.contains(&body)) {
+        match self.scene.forces.plan.section_of(body) {
             Some(section) if section.is_coupled => Some((section.bodies.clone(), true)),
             None if self.scene.settings.method.fall.is_some() => None,
             _ => Some((body..body + 1, false)),

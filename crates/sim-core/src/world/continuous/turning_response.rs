@@ -510,7 +510,7 @@ impl ContactSolver<'_> {
         let mut twists = Vec::with_capacity(bodies.len());
         let mut yielding = Vec::with_capacity(bodies.len());
         for &body in &bodies {
-            let mut twist = all.twist_in(&self.paths.start, body);
+            let mut twist = self.twist_of(body);
             if !all.is_movable(body) {
                 let mut probe = mem::take(&mut self.paths.probe);
                 let motion = self.view().motion().motion_at(body, time, &mut probe);
@@ -537,7 +537,7 @@ impl ContactSolver<'_> {
         let all = self.scene.bodies;
         for (place, &body) in island.bodies.iter().enumerate() {
             if all.is_movable(body) {
-                self.paths.start.velocity[body] = island.twists[place].velocity;
+                *self.changed(body).0 = island.twists[place].velocity;
             }
         }
         if given.is_empty() {
@@ -550,11 +550,11 @@ impl ContactSolver<'_> {
                 (contact.bodies.1, contact.arms.1, push),
             ] {
                 let body = island.bodies[place];
-                if let Some(slot) = all.turners.slot(body)
-                    && all.tumbles(body)
+                if all.tumbles(body)
                     && all.is_movable(body)
+                    && let Some(momentum) = self.changed(body).1
                 {
-                    self.paths.start.turned[slot].momentum += arm.cross(push);
+                    *momentum += arm.cross(push);
                 }
             }
         }

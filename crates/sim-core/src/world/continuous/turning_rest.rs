@@ -30,7 +30,7 @@ use super::{
 };
 use crate::{
     impulse::arms::{self, Arms, Twist, Yielding},
-    rotation::Flight,
+    rotation::{self, Flight},
 };
 
 /// Contacts that may be met while bodies are in contact, one after the other, before they stop for the rest of
@@ -52,10 +52,18 @@ pub(super) struct TurningRest {
     /// By slot: impacts and rounds of contact in the step.
     pub(super) impacts: Vec<u32>,
     rounds: Vec<u32>,
-    /// By slot, velocity and angular momentum with which a body goes on after the step that has stopped in it.
-    stopped: Vec<Option<(DVec3, DVec3)>>,
+    /// By slot, the motion that a body keeps which stays where it is for the rest of the step.
+    stopped: Vec<Option<Kept>>,
     /// What is known to touch.
     contacts: Vec<Anchored>,
+}
+
+/// The motion of a body that stays where it is: impacts count with it and change it, and it goes on with it in the
+/// next step. So what hits the body exchanges momentum and energy with it as with any other.
+#[derive(Clone, Copy, Debug)]
+struct Kept {
+    velocity: DVec3,
+    momentum: DVec3,
 }
 
 /// A contact by points of both bodies.
@@ -86,7 +94,7 @@ impl TurningRest {
 }
 
 impl EventLoop<'_> {
-    /// Gives bodies that have stopped in the step the motion with which they go on, unless they are pushed.
+    /// Gives bodies that have stopped in the step the motion that they have kept.
     pub(super) fn go_on_turning(&mut self) {
         let ContactSolver {
             scene,
@@ -96,11 +104,9 @@ impl EventLoop<'_> {
         } = &mut self.solver;
         for (slot, stopped) in turning.stopped.iter().enumerate() {
             let body = scene.bodies.turners.body[slot];
-            if let Some((velocity, momentum)) = *stopped
-                && paths.end.velocity[body] == DVec3::ZERO
-            {
-                paths.end.velocity[body] = velocity;
-                paths.end.turned[slot].momentum = momentum;
+            if let Some(kept) = stopped {
+                paths.end.velocity[body] = kept.velocity;
+                paths.end.turned[slot].momentum = kept.momentum;
             }
         }
     }
@@ -190,6 +196,41 @@ impl ContactSolver<'_> {
             });
         }
         Ok(touching)
+    }
+
+    /// The motion that a body keeps which has stopped.
+    fn kept(&self, body: usize) -> Option<Kept> {
+        let slot = self.scene.bodies.turners.slot(body)?;
+        self.turning.stopped[slot]
+    }
+
+    /// How a body moves that impacts change.
+    pub(super) fn twist_of(&self, body: usize) -> Twist {
+        let (all, start) = (self.scene.bodies, &self.paths.start);
+        match (all.turners.slot(body), self.kept(body)) {
+            (Some(slot), Some(kept)) => {
+                let moments = all.turners.inertia[slot].moments();
+                let rotation = start.turned[slot].rotation;
+                Twist {
+                    velocity: kept.velocity,
+                    spin: rotation::spin(moments, rotation, kept.momentum),
+                }
+            }
+            _ => all.twist_in(start, body),
+        }
+    }
+
+    /// What impacts change of the motion of a body: its velocity, and if it turns its angular momentum.
+    pub(super) fn changed(&mut self, body: usize) -> (&mut DVec3, Option<&mut DVec3>) {
+        let slot = self.scene.bodies.turners.slot(body);
+        let start = &mut self.paths.start;
+        match slot.and_then(|slot| self.turning.stopped[slot].as_mut()) {
+            Some(kept) => (&mut kept.velocity, Some(&mut kept.momentum)),
+            None => (
+                &mut start.velocity[body],
+                slot.map(|slot| &mut start.turned[slot].momentum),
+            ),
+        }
     }
 
     /// Whether a body has met so much in a step that it stays where it is.
@@ -296,7 +337,7 @@ impl ContactSolver<'_> {
             .flat_map(|touching| [touching.bodies.0, touching.bodies.1]);
         seeds.extend(tied.chain(bodies.iter().copied()));
         self.lift(&bodies, &mut touching, time, restarted)?;
-        let pulls = self.begin_contact(&bodies);
+        let pulls = self.begin_contact(&bodies, &touching, time);
         let mut island = self.gather(&touching, time)?;
         // Nothing closes any more.
         let wanted: Vec<f64> = island
@@ -377,9 +418,21 @@ impl ContactSolver<'_> {
     }
 
     /// Takes bodies from their forces, which are constant from here on, and tells those: by body what
-    /// accelerates it. What has met too much stops.
-    fn begin_contact(&mut self, bodies: &[usize]) -> Vec<(usize, DVec3)> {
+    /// accelerates it. What has met too much stops, and so does what touches it.
+    fn begin_contact(
+        &mut self,
+        bodies: &[usize],
+        touching: &[Touching],
+        time: f64,
+    ) -> Vec<(usize, DVec3)> {
         let all = self.scene.bodies;
+        let left = self.scene.settings.dt - time;
+        for &body in bodies {
+            if let Some(slot) = all.turners.slot(body) {
+                self.turning.rounds[slot] += 1;
+            }
+        }
+        self.stop_together(bodies, touching);
         let mut pulls = Vec::new();
         for &body in bodies {
             let Some(slot) = all.turners.slot(body) else {
@@ -388,24 +441,49 @@ impl ContactSolver<'_> {
             if !all.tumbles(body) || !all.is_movable(body) {
                 continue;
             }
-            self.turning.rounds[slot] += 1;
             let mut pull = self.view().motion().acceleration_there(body);
             let staggered = self.paths.velocity_stagger * self.paths.acceleration[body];
             self.paths.start.velocity[body] -= staggered;
             let kick = self.kick_left(slot, body);
             self.paths.start.turned[slot].momentum += kick;
             if self.is_stopped(body) {
-                // It stays where it is for what is left, and is only pushed. What it has, forces apart, it
-                // keeps for the next step.
+                // Others get from forces between bodies what it loses.
+                let section = self.scene.forces.plan.section_of(body);
+                let is_coupled = section.is_some_and(|section| section.bodies.len() > 1);
+                let given = if is_coupled { left } else { 0.0 };
+                let torque = self.view().motion().torque_there(slot, body);
                 let start = &mut self.paths.start;
-                let kept = (start.velocity[body], start.turned[slot].momentum);
-                self.turning.stopped[slot].get_or_insert(kept);
-                (start.velocity[body], start.turned[slot].momentum) = (DVec3::ZERO, DVec3::ZERO);
+                let (velocity, turned) = (&mut start.velocity[body], &mut start.turned[slot]);
+                self.turning.stopped[slot].get_or_insert(Kept {
+                    velocity: *velocity + given * pull,
+                    momentum: turned.momentum + given * torque,
+                });
+                (*velocity, turned.momentum) = (DVec3::ZERO, DVec3::ZERO);
                 pull = DVec3::ZERO;
             }
             pulls.push((body, pull));
         }
         pulls
+    }
+
+    /// Stops what touches what has stopped: it would be in its way.
+    fn stop_together(&mut self, bodies: &[usize], touching: &[Touching]) {
+        let turners = &self.scene.bodies.turners;
+        loop {
+            let next = touching.iter().find_map(|touching| {
+                let (i, j) = touching.bodies;
+                let follows = match (self.is_stopped(i), self.is_stopped(j)) {
+                    (true, false) => j,
+                    (false, true) => i,
+                    _ => return None,
+                };
+                turners.slot(follows).filter(|_| bodies.contains(&follows))
+            });
+            let Some(slot) = next else {
+                return;
+            };
+            self.turning.rounds[slot] = MANY_ROUNDS + 1;
+        }
     }
 
     /// All that it takes to find the forces of contacts.
@@ -442,7 +520,10 @@ impl ContactSolver<'_> {
                 body,
                 turns,
                 position: self.place_at(body, time)?,
-                velocity: island.twists[place].velocity,
+                velocity: match self.kept(body) {
+                    Some(_) => DVec3::ZERO,
+                    None => island.twists[place].velocity,
+                },
                 mass: island.yielding[place].mass,
                 rotations: PARTS.map(|part| self.rotation_at(body, time + part * left)),
             });
@@ -492,6 +573,24 @@ impl ContactSolver<'_> {
     /// Lets forces push for what is left of the step.
     fn press(&mut self, pressing: &Pressing<'_>, forces: &Forces) {
         let pushes = pressing.pushes(forces);
+        for (contact, &impulse) in forces.contacts.iter().zip(&forces.impulse) {
+            let (i, j) = contact.bodies;
+            let push = impulse * contact.normal;
+            for (place, other, arm, push) in
+                [(i, j, contact.arms.0, -push), (j, i, contact.arms.1, push)]
+            {
+                // What has stopped is moved by these forces and keeps its motion, but for what it takes from
+                // what has not.
+                let (mover, other) = (&pressing.movers[place], &pressing.movers[other]);
+                let takes = other.turns.is_none() && other.mass > 0.0;
+                if let Some(kept) = mover.turns.as_ref().filter(|_| takes)
+                    && let Some(kept) = self.turning.stopped[kept.slot].as_mut()
+                {
+                    kept.velocity += mover.mass * push;
+                    kept.momentum += arm.cross(push);
+                }
+            }
+        }
         for (mover, &(impulse, torque)) in pressing.movers.iter().zip(&pushes) {
             match &mover.turns {
                 Some(turns) => {

@@ -1,14 +1,16 @@
 //! When two bodies of which one turns have their next impact.
 //!
 //! [`turning::first_contact`] proves when, on parabolas. Where a method makes another trajectory, it is
-//! cut into parts that are parabolas but for rounding, or as short as it gets.
+//! cut into parts that are parabolas but for rounding, or as short as it gets. Each part goes through where its bodies
+//! are at its ends and in its middle, and how they are turned there, whatever velocities the method tells: so parts
+//! follow each other without a gap, and nothing gets past at a seam.
 
 use glam::{DQuat, DVec3};
 
 use super::super::stepping::Cause;
 use super::{
     event::{Event, EventKind},
-    levered::Pose,
+    levered::{Pose, flight_over},
     trajectory::Probe,
     view::View,
 };
@@ -21,7 +23,7 @@ use crate::{
 };
 
 /// Halvings of a step in search of parts that are parabolas.
-const MAX_HALVINGS: i32 = 6;
+const MAX_HALVINGS: i32 = 5;
 
 /// And more in search of those on which two bodies touch.
 const TO_TOUCH: i32 = 16;
@@ -34,6 +36,22 @@ type Parabola = (DVec3, DVec3, DVec3);
 struct Knot {
     time: f64,
     poses: [Pose; 2],
+}
+
+/// A part of the step: its start, its middle and its end. Of parabolas the first says it all.
+#[derive(Clone, Copy)]
+struct Part {
+    knots: [Knot; 3],
+}
+
+impl Part {
+    fn start(&self) -> f64 {
+        self.knots[0].time
+    }
+
+    fn length(&self) -> f64 {
+        self.knots[2].time - self.knots[0].time
+    }
 }
 
 impl View<'_> {
@@ -49,18 +67,16 @@ impl View<'_> {
         }
         let start = self.paths.since[i].max(self.paths.since[j]);
         let end = self.motion().horizon(i).min(self.motion().horizon(j));
-        let halvings = match self.is_bent(i) || self.is_bent(j) {
-            true => MAX_HALVINGS,
-            false => 0,
-        };
         let first = self.knot((i, j), start, probe)?;
-        if halvings == 0 {
-            // Nobody asks where parabolas end.
-            let last = Knot { time: end, ..first };
-            return self.find_on_part((i, j), (&first, &last), 0, probe);
+        if !self.is_bent(i) && !self.is_bent(j) {
+            let at = |time: f64| Knot { time, ..first };
+            let knots = [start, 0.5 * (start + end), end].map(at);
+            return self.find_on_part((i, j), &Part { knots }, 0, probe);
         }
+        let half = self.knot((i, j), 0.5 * (start + end), probe)?;
         let last = self.knot((i, j), end, probe)?;
-        self.find_on_part((i, j), (&first, &last), halvings, probe)
+        let knots = [first, half, last];
+        self.find_on_part((i, j), &Part { knots }, MAX_HALVINGS, probe)
     }
 
     /// Both bodies at a time.
@@ -71,7 +87,7 @@ impl View<'_> {
         probe: &mut Probe,
     ) -> Result<Knot, (usize, Cause)> {
         let first = self.motion().pose_at(i, time, probe)?;
-        let second = self.motion().pose_at(j, time, probe)?;
+        let second = self.motion().pose_after(i, j, time, probe)?;
         Ok(Knot {
             time,
             poses: [first, second],
@@ -99,18 +115,17 @@ impl View<'_> {
     fn find_on_part(
         &self,
         (i, j): (usize, usize),
-        (from, to): (&Knot, &Knot),
+        part: &Part,
         halvings: i32,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         if halvings > 0
-            && let Some(half) = self.where_bent((i, j), (from, to), probe)?
+            && let Some(quarter) = self.where_bent((i, j), part, probe)?
         {
-            return self.find_in_halves((i, j), (from, &half, to), halvings - 1, probe);
+            return self.find_in_halves((i, j), (part, &quarter), halvings - 1, probe);
         }
-        let length = to.time - from.time;
-        let [first, second] =
-            [(0, i), (1, j)].map(|(k, body)| self.parabola_of((k, body), (from, to)));
+        let length = part.length();
+        let [first, second] = [(0, i), (1, j)].map(|(k, body)| self.parabola_of((k, body), part));
         let bodies = self.scene.bodies;
         let still =
             |body: usize, first| bodies.moving(body, first, Turning::Still(DQuat::IDENTITY));
@@ -120,10 +135,7 @@ impl View<'_> {
         if turning::stay_apart(&a, &b, length) {
             return Ok(None);
         }
-        let flights = (
-            self.flight_on((0, i), (from, to))?,
-            self.flight_on((1, j), (from, to))?,
-        );
+        let flights = (self.flight_on((0, i), part)?, self.flight_on((1, j), part)?);
         let a = Moving {
             turning: bodies.turning_of(i, flights.0.as_ref()),
             ..a
@@ -139,9 +151,9 @@ impl View<'_> {
         };
         // Where they touch they start again from where the method has them then: it has to be the same place.
         if halvings > -TO_TOUCH
-            && let Some(half) = self.where_bent((i, j), (from, to), probe)?
+            && let Some(quarter) = self.where_bent((i, j), part, probe)?
         {
-            return self.find_in_halves((i, j), (from, &half, to), halvings - 1, probe);
+            return self.find_in_halves((i, j), (part, &quarter), halvings - 1, probe);
         }
         let at = touch.time;
         let place = first.0 + at * (first.1 + 0.5 * at * first.2);
@@ -154,7 +166,7 @@ impl View<'_> {
         };
         let TurningTouch { near, distance, .. } = touch;
         // What is taken for a contact at the very end of the step is one of the next step's start.
-        let time = (from.time + at).min(self.scene.settings.dt.next_down());
+        let time = (part.start() + at).min(self.scene.settings.dt.next_down());
         let event = Event::impact(time, (i, j), contact, near, &self.paths.version);
         // What has been looked at for long enough goes on from there.
         let kind = match distance <= near {
@@ -164,79 +176,82 @@ impl View<'_> {
         Ok(Some(Event { kind, ..event }))
     }
 
-    /// The same on two parts that follow each other.
+    /// The same on the halves of a part, of which the first one has its middle at a quarter.
     fn find_in_halves(
         &self,
         bodies: (usize, usize),
-        (from, half, to): (&Knot, &Knot, &Knot),
+        (part, &quarter): (&Part, &Knot),
         halvings: i32,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
-        match self.find_on_part(bodies, (from, half), halvings, probe)? {
-            Some(event) => Ok(Some(event)),
-            None => self.find_on_part(bodies, (half, to), halvings, probe),
+        let [from, half, to] = part.knots;
+        let knots = [from, quarter, half];
+        let found = self.find_on_part(bodies, &Part { knots }, halvings, probe)?;
+        if found.is_some() {
+            return Ok(found);
         }
+        let later = self.knot(bodies, 0.5 * (half.time + to.time), probe)?;
+        let knots = [half, later, to];
+        self.find_on_part(bodies, &Part { knots }, halvings, probe)
     }
 
-    /// Both bodies in the middle of a part, where one of them is off the parabola or the flight that leads over it by
+    /// Both bodies after a quarter of a part, where one of them is off the parabola or the flight that leads over it by
     /// more than rounding.
     fn where_bent(
         &self,
         (i, j): (usize, usize),
-        (from, to): (&Knot, &Knot),
+        part: &Part,
         probe: &mut Probe,
     ) -> Result<Option<Knot>, (usize, Cause)> {
         if !self.is_bent(i) && !self.is_bent(j) {
             return Ok(None);
         }
-        let half = self.knot((i, j), 0.5 * (from.time + to.time), probe)?;
-        let t = half.time - from.time;
+        let [from, half, to] = &part.knots;
+        let quarter = self.knot((i, j), 0.5 * (from.time + half.time), probe)?;
+        let t = quarter.time - from.time;
         for (k, body) in [(0, i), (1, j)] {
             if !self.is_bent(body) {
                 continue;
             }
-            let there = half.poses[k].position;
-            let (x, v, a) = self.parabola_of((k, body), (from, to));
-            let off = x + t * (v + 0.5 * t * a) - there;
-            let most = 4.0 * f64::EPSILON * there.abs().max_element();
-            if off.abs().max_element() > most {
-                return Ok(Some(half));
+            let (x, v, a) = self.parabola_of((k, body), part);
+            let off = x + t * (v + 0.5 * t * a) - quarter.poses[k].position;
+            let farthest = x.abs().max(to.poses[k].position.abs()).max_element();
+            if off.abs().max_element() > 4.0 * f64::EPSILON * farthest {
+                return Ok(Some(quarter));
             }
-            let Some(there) = half.poses[k].turned else {
+            let Some(there) = quarter.poses[k].turned else {
                 continue;
             };
-            let flight = self.flight_on((k, body), (from, to))?;
+            let flight = self.flight_on((k, body), part)?;
             let off = flight.map(|flight| there.rotation.inverse() * flight.rotation_at(t));
             if off.is_some_and(|off| off.xyz().abs().max_element() > 4.0 * f64::EPSILON) {
-                return Ok(Some(half));
+                return Ok(Some(quarter));
             }
         }
         Ok(None)
     }
 
-    /// The parabola that one of both bodies is on, or one that leads to where it is at the end of a part of the step.
-    fn parabola_of(&self, (k, body): (usize, usize), (from, to): (&Knot, &Knot)) -> Parabola {
-        let Pose {
-            position: x,
-            velocity: v,
-            ..
-        } = from.poses[k];
-        let length = to.time - from.time;
+    /// The parabola that one of both bodies is on, or the one through three places of it.
+    fn parabola_of(&self, (k, body): (usize, usize), part: &Part) -> Parabola {
+        let [from, half, to] = part.knots.map(|knot| knot.poses[k]);
+        let x = from.position;
         if !self.is_bent(body) {
-            return (x, v, self.paths.acceleration[body]);
+            return (x, from.velocity, self.paths.acceleration[body]);
         }
-        let bend = match length > 0.0 {
-            true => 2.0 / (length * length) * ((to.poses[k].position - x) - length * v),
-            false => DVec3::ZERO,
-        };
-        (x, v, bend)
+        let length = part.length();
+        if length <= 0.0 {
+            return (x, DVec3::ZERO, DVec3::ZERO);
+        }
+        let (near, far) = (half.position - x, to.position - x);
+        let bend = 4.0 / (length * length) * (far - 2.0 * near);
+        (x, (4.0 * near - far) / length, bend)
     }
 
-    /// How one of both bodies turns on a part of the step, if it shows: where forces bend that, under their mean.
+    /// How one of both bodies turns on a part of the step, if it shows: where forces bend that, over three rotations.
     fn flight_on(
         &self,
         (k, body): (usize, usize),
-        (from, to): (&Knot, &Knot),
+        part: &Part,
     ) -> Result<Option<Flight>, (usize, Cause)> {
         let Some(slot) = self.scene.bodies.turners.slot(body) else {
             return Ok(None);
@@ -244,17 +259,17 @@ impl View<'_> {
         if !self.scene.bodies.tumbles(body) {
             return Ok(None);
         }
-        let length = to.time - from.time;
-        let (first, last) = (from.poses[k].turned, to.poses[k].turned);
-        let turned = first.unwrap_or_else(|| self.motion().turned_at(slot, body, from.time));
-        let there = last.filter(|_| length > 0.0);
-        let flight = match there {
-            Some(there) => {
-                let torque = (there.momentum - turned.momentum) / length;
+        let length = part.length();
+        let flight = match part.knots.map(|knot| knot.poses[k].turned) {
+            [Some(from), Some(half), Some(to)] if length > 0.0 => {
                 let moments = self.scene.bodies.turners.inertia[slot].moments();
-                Flight::new(moments, turned.rotation, turned.momentum, torque, length)
+                flight_over(moments, [from, half, to], length)
             }
-            None => self.paths.flight_from(self.scene, slot, turned, length),
+            [from, ..] => {
+                let there = || self.motion().turned_at(slot, body, part.start());
+                let turned = from.unwrap_or_else(there);
+                self.paths.flight_from(self.scene, slot, turned, length)
+            }
         };
         flight
             .map(Some)
