@@ -91,7 +91,24 @@ impl Placement {
         let (min, max) = self.corners(second);
         // Corners beyond all numbers say nothing.
         let apart = first.min.as_dvec3().cmpgt(max) | min.cmpgt(first.max.as_dvec3());
-        !apart.any()
+        let is_apart = |turn| self.apart_along_second(turn, *first, *second);
+        !apart.any() && !self.turn.as_ref().is_some_and(is_apart)
+    }
+
+    /// Whether boxes are apart along an axis of the second mesh.
+    fn apart_along_second(&self, turn: &DMat3, first: Aabb, second: Aabb) -> bool {
+        let back = turn.transpose();
+        let (near, far) = (first.centre(), second.centre());
+        let (half, reach) = (first.half_extent(), second.half_extent());
+        let height = back * (self.offset - near) + far;
+        let reach = back.x_axis.abs() * half.x
+            + back.y_axis.abs() * half.y
+            + back.z_axis.abs() * half.z
+            + reach;
+        let size = near.abs() + far.abs() + reach + half + self.offset.abs();
+        // More than all roundings, of placed corners as well.
+        let rounding = 64.0 * f64::EPSILON * size.element_sum() + TINY;
+        height.abs().cmpgt(reach + DVec3::splat(rounding)).any()
     }
 
     /// Whether it is a place at all: offsets that are no numbers, or beyond 1e100 m, farther than

@@ -4,7 +4,7 @@
 //! touches with four corners, and does not turn.
 
 use alloc::vec::Vec;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::{
     Figure, Moving,
@@ -115,18 +115,24 @@ fn between_meshes(
 ) {
     let (of_a, of_b) = (a.rotation_at(0.0), b.rotation_at(0.0));
     let to_a = of_a.inverse();
-    let turn = glam::DMat3::from_quat((to_a * of_b).normalize());
+    let turn = DMat3::from_quat((to_a * of_b).normalize());
+    let back = turn.transpose();
     let offset = to_a * (b.position - a.position);
     let wide = DVec3::splat(reach);
     let mut pairs = alloc::vec![(Boxed::root(a), Boxed::root(b))];
     while let Some((first, second)) = pairs.pop() {
-        // Axes of the first; for a bound on what is near, that is enough.
-        let half = turn.x_axis.abs() * second.half.x
-            + turn.y_axis.abs() * second.half.y
-            + turn.z_axis.abs() * second.half.z;
-        let apart = (turn * second.centre + offset - first.centre).abs();
-        let slack = 16.0 * f64::EPSILON * (apart + half + first.half);
-        if (apart - half - first.half).cmpgt(wide + slack).any() {
+        // Along the axes of both; for a bound on what is near, that is enough.
+        let between = turn * second.centre + offset - first.centre;
+        let is_far = |apart: DVec3, own: DVec3, other: DVec3, turn: &DMat3| {
+            let half = turn.x_axis.abs() * other.x
+                + turn.y_axis.abs() * other.y
+                + turn.z_axis.abs() * other.z;
+            let slack = 16.0 * f64::EPSILON * (apart + half + own);
+            (apart - half - own).cmpgt(wide + slack).any()
+        };
+        if is_far(between.abs(), first.half, second.half, &turn)
+            || is_far((back * between).abs(), second.half, first.half, &back)
+        {
             continue;
         }
         match (first.item, second.item) {

@@ -32,7 +32,7 @@ use crate::{Bvh, rotation::Flight};
 pub use contact_set::{ContactPoint, features_within};
 use pieces::{Boxed, Item, Points};
 use separation::Gap;
-use view::View;
+use view::{Direction, View};
 
 /// What moves.
 #[derive(Clone, Copy, Debug)]
@@ -264,10 +264,14 @@ fn search(
         effort,
     };
     let (whole_a, whole_b) = (Item::whole(a), Item::whole(b));
+    let roots = [Boxed::root(a), Boxed::root(b)];
     let (mut now, mut apart) = (0.0, true);
     // Two sets need no queue.
     while apart && whole_a.is_set() && whole_b.is_set() {
         let view = search.view(now);
+        if now == 0.0 && search.apart_to_end(&view, &view.directions(), &roots) {
+            return None;
+        }
         match search.advance(&view, (whole_a, whole_b)) {
             Next::Apart => return None,
             Next::Later(time) => now = time,
@@ -275,7 +279,6 @@ fn search(
             Next::Untold => apart = false,
         }
     }
-    let roots = [Boxed::root(a), Boxed::root(b)];
     let first = match apart {
         true => (whole_a, whole_b),
         // What is within a box, or too near it to tell, is looked at face by face.
@@ -310,6 +313,18 @@ impl Search<'_, '_> {
         View::new(self.bodies[0], self.bodies[1], time, self.end)
     }
 
+    /// Whether the boxes around both shapes tell that they stay apart.
+    fn apart_to_end(
+        &mut self,
+        view: &View,
+        directions: &[Direction; 6],
+        roots: &[Boxed; 2],
+    ) -> bool {
+        self.effort.boxes += 1;
+        let [a, b] = roots;
+        view.boxes_apart(directions, [a, b], self.only) >= view.left
+    }
+
     /// What becomes of two sets from the time of a view on.
     fn advance(&mut self, view: &View, (a, b): (Item, Item)) -> Next {
         self.effort.pieces += 1;
@@ -340,9 +355,7 @@ impl Search<'_, '_> {
     ) -> Option<TurningTouch> {
         let mut view = self.view(from);
         let mut directions = view.directions();
-        self.effort.boxes += 1;
-        let [root_a, root_b] = roots;
-        if view.boxes_apart(&directions, [root_a, root_b], self.only) >= view.left {
+        if self.apart_to_end(&view, &directions, roots) {
             return None;
         }
         let mut queue = BinaryHeap::new();

@@ -70,8 +70,14 @@ pub(super) fn nearest(
         _ => {
             let tops = of_a.map(|(by, _)| over(&heights_a, by, f64::max));
             let bottoms = of_b.map(|(by, _)| over(&heights_b, by, f64::min));
+            let (boxes_a, boxes_b) = (
+                of_a.map(|(by, _)| bounds(&pick(first, by))),
+                of_b.map(|(by, _)| bounds(&pick(second, by))),
+            );
             let mut compare = |i: usize, k: usize| {
-                if bottoms[k] - tops[i] < best.length * (1.0 - 1.0 / 64.0) {
+                if bottoms[k] - tops[i] < best.length * (1.0 - 1.0 / 64.0)
+                    && between(&boxes_a[i], &boxes_b[k]) <= best.length * best.length
+                {
                     let ((by_a, face_a), (by_b, face_b)) = (of_a[i], of_b[k]);
                     let mut pair = of_triangles(&pick(first, by_a), &pick(second, by_b));
                     pair.faces = [Some(face_a), Some(face_b)];
@@ -94,6 +100,17 @@ pub(super) fn nearest(
         }
     }
     best
+}
+
+/// Least and greatest corner of a box around a triangle.
+fn bounds([a, b, c]: &[DVec3; 3]) -> [DVec3; 2] {
+    [a.min(*b).min(*c), a.max(*b).max(*c)]
+}
+
+/// The square of how far two boxes are apart, m².
+fn between([low, high]: &[DVec3; 2], [other_low, other_high]: &[DVec3; 2]) -> f64 {
+    let apart = (*other_low - *high).max(*low - *other_high);
+    apart.max(DVec3::ZERO).length_squared()
 }
 
 fn of_triangles(first: &[DVec3; 3], second: &[DVec3; 3]) -> Pair {

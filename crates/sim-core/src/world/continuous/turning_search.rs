@@ -38,19 +38,22 @@ struct Knot {
     poses: [Pose; 2],
 }
 
-/// A part of the step: its start, its middle and its end. Of parabolas the first says it all.
+/// A part of the step.
 #[derive(Clone, Copy)]
-struct Part {
-    knots: [Knot; 3],
+struct Part<'a> {
+    from: &'a Knot,
+    /// Its middle and its end, where some trajectory is no parabola.
+    later: Option<[&'a Knot; 2]>,
+    length: f64,
 }
 
-impl Part {
-    fn start(&self) -> f64 {
-        self.knots[0].time
-    }
-
-    fn length(&self) -> f64 {
-        self.knots[2].time - self.knots[0].time
+impl<'a> Part<'a> {
+    fn over([from, half, to]: [&'a Knot; 3]) -> Part<'a> {
+        Part {
+            from,
+            later: Some([half, to]),
+            length: to.time - from.time,
+        }
     }
 }
 
@@ -69,14 +72,17 @@ impl View<'_> {
         let end = self.motion().horizon(i).min(self.motion().horizon(j));
         let first = self.knot((i, j), start, probe)?;
         if !self.is_bent(i) && !self.is_bent(j) {
-            let at = |time: f64| Knot { time, ..first };
-            let knots = [start, 0.5 * (start + end), end].map(at);
-            return self.find_on_part((i, j), &Part { knots }, 0, probe);
+            let part = Part {
+                from: &first,
+                later: None,
+                length: end - start,
+            };
+            return self.find_on_part((i, j), &part, 0, probe);
         }
         let half = self.knot((i, j), 0.5 * (start + end), probe)?;
         let last = self.knot((i, j), end, probe)?;
-        let knots = [first, half, last];
-        self.find_on_part((i, j), &Part { knots }, MAX_HALVINGS, probe)
+        let part = Part::over([&first, &half, &last]);
+        self.find_on_part((i, j), &part, MAX_HALVINGS, probe)
     }
 
     /// Both bodies at a time.
@@ -115,7 +121,7 @@ impl View<'_> {
     fn find_on_part(
         &self,
         (i, j): (usize, usize),
-        part: &Part,
+        part: &Part<'_>,
         halvings: i32,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
@@ -124,7 +130,7 @@ impl View<'_> {
         {
             return self.find_in_halves((i, j), (part, &quarter), halvings - 1, probe);
         }
-        let length = part.length();
+        let length = part.length;
         let [first, second] = [(0, i), (1, j)].map(|(k, body)| self.parabola_of((k, body), part));
         let bodies = self.scene.bodies;
         let still =
@@ -135,13 +141,15 @@ impl View<'_> {
         if turning::stay_apart(&a, &b, length) {
             return Ok(None);
         }
-        let flights = (self.flight_on((0, i), part)?, self.flight_on((1, j), part)?);
+        let (mut made_of_a, mut made_of_b) = (None, None);
+        let flight = self.flight_on((0, i), part, &mut made_of_a)?;
         let a = Moving {
-            turning: bodies.turning_of(i, flights.0.as_ref()),
+            turning: bodies.turning_of(i, flight),
             ..a
         };
+        let flight = self.flight_on((1, j), part, &mut made_of_b)?;
         let b = Moving {
-            turning: bodies.turning_of(j, flights.1.as_ref()),
+            turning: bodies.turning_of(j, flight),
             ..b
         };
         let (found, effort) = turning::first_contact_with(&a, &b, length, Care::TO_GO_ON);
@@ -166,7 +174,7 @@ impl View<'_> {
         };
         let TurningTouch { near, distance, .. } = touch;
         // What is taken for a contact at the very end of the step is one of the next step's start.
-        let time = (part.start() + at).min(self.scene.settings.dt.next_down());
+        let time = (part.from.time + at).min(self.scene.settings.dt.next_down());
         let event = Event::impact(time, (i, j), contact, near, &self.paths.version);
         // What has been looked at for long enough goes on from there.
         let kind = match distance <= near {
@@ -180,19 +188,21 @@ impl View<'_> {
     fn find_in_halves(
         &self,
         bodies: (usize, usize),
-        (part, &quarter): (&Part, &Knot),
+        (part, quarter): (&Part<'_>, &Knot),
         halvings: i32,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
-        let [from, half, to] = part.knots;
-        let knots = [from, quarter, half];
-        let found = self.find_on_part(bodies, &Part { knots }, halvings, probe)?;
+        let Some([half, to]) = part.later else {
+            return Ok(None);
+        };
+        let first = Part::over([part.from, quarter, half]);
+        let found = self.find_on_part(bodies, &first, halvings, probe)?;
         if found.is_some() {
             return Ok(found);
         }
-        let later = self.knot(bodies, 0.5 * (half.time + to.time), probe)?;
-        let knots = [half, later, to];
-        self.find_on_part(bodies, &Part { knots }, halvings, probe)
+        let middle = self.knot(bodies, 0.5 * (half.time + to.time), probe)?;
+        let second = Part::over([half, &middle, to]);
+        self.find_on_part(bodies, &second, halvings, probe)
     }
 
     /// Both bodies after a quarter of a part, where one of them is off the parabola or the flight that leads over it by
@@ -200,13 +210,12 @@ impl View<'_> {
     fn where_bent(
         &self,
         (i, j): (usize, usize),
-        part: &Part,
+        part: &Part<'_>,
         probe: &mut Probe,
     ) -> Result<Option<Knot>, (usize, Cause)> {
-        if !self.is_bent(i) && !self.is_bent(j) {
+        let (from, Some([half, to])) = (part.from, part.later) else {
             return Ok(None);
-        }
-        let [from, half, to] = &part.knots;
+        };
         let quarter = self.knot((i, j), 0.5 * (from.time + half.time), probe)?;
         let t = quarter.time - from.time;
         for (k, body) in [(0, i), (1, j)] {
@@ -222,7 +231,8 @@ impl View<'_> {
             let Some(there) = quarter.poses[k].turned else {
                 continue;
             };
-            let flight = self.flight_on((k, body), part)?;
+            let mut made = None;
+            let flight = self.flight_on((k, body), part, &mut made)?;
             let off = flight.map(|flight| there.rotation.inverse() * flight.rotation_at(t));
             if off.is_some_and(|off| off.xyz().abs().max_element() > 4.0 * f64::EPSILON) {
                 return Ok(Some(quarter));
@@ -232,48 +242,55 @@ impl View<'_> {
     }
 
     /// The parabola that one of both bodies is on, or the one through three places of it.
-    fn parabola_of(&self, (k, body): (usize, usize), part: &Part) -> Parabola {
-        let [from, half, to] = part.knots.map(|knot| knot.poses[k]);
+    fn parabola_of(&self, (k, body): (usize, usize), part: &Part<'_>) -> Parabola {
+        let from = &part.from.poses[k];
         let x = from.position;
-        if !self.is_bent(body) {
+        let Some(later) = part.later.filter(|_| self.is_bent(body)) else {
             return (x, from.velocity, self.paths.acceleration[body]);
-        }
-        let length = part.length();
-        if length <= 0.0 {
+        };
+        if part.length <= 0.0 {
             return (x, DVec3::ZERO, DVec3::ZERO);
         }
-        let (near, far) = (half.position - x, to.position - x);
-        let bend = 4.0 / (length * length) * (far - 2.0 * near);
-        (x, (4.0 * near - far) / length, bend)
+        let [near, far] = later.map(|knot| knot.poses[k].position - x);
+        let bend = 4.0 / (part.length * part.length) * (far - 2.0 * near);
+        (x, (4.0 * near - far) / part.length, bend)
     }
 
     /// How one of both bodies turns on a part of the step, if it shows: where forces bend that, over three rotations.
-    fn flight_on(
-        &self,
+    /// There is room for a flight that is not that of the trajectory.
+    fn flight_on<'a>(
+        &'a self,
         (k, body): (usize, usize),
-        part: &Part,
-    ) -> Result<Option<Flight>, (usize, Cause)> {
+        part: &Part<'_>,
+        room: &'a mut Option<Flight>,
+    ) -> Result<Option<&'a Flight>, (usize, Cause)> {
         let Some(slot) = self.scene.bodies.turners.slot(body) else {
             return Ok(None);
         };
         if !self.scene.bodies.tumbles(body) {
             return Ok(None);
         }
-        let length = part.length();
-        let flight = match part.knots.map(|knot| knot.poses[k].turned) {
-            [Some(from), Some(half), Some(to)] if length > 0.0 => {
+        let length = part.length;
+        let from = part.from.poses[k].turned;
+        let later = part
+            .later
+            .map(|later| later.map(|knot| knot.poses[k].turned));
+        let flight = match (from, later) {
+            (Some(from), Some([Some(half), Some(to)])) if length > 0.0 => {
                 let moments = self.scene.bodies.turners.inertia[slot].moments();
                 flight_over(moments, [from, half, to], length)
             }
-            [from, ..] => {
-                let there = || self.motion().turned_at(slot, body, part.start());
+            (None, _) if part.from.time == self.paths.since[body] && part.later.is_none() => {
+                return Ok(Some(&self.paths.flights[slot]));
+            }
+            _ => {
+                let there = || self.motion().turned_at(slot, body, part.from.time);
                 let turned = from.unwrap_or_else(there);
                 self.paths.flight_from(self.scene, slot, turned, length)
             }
         };
-        flight
-            .map(Some)
-            .map_err(|error| (body, Cause::Turning(error)))
+        let flight = flight.map_err(|error| (body, Cause::Turning(error)))?;
+        Ok(Some(room.insert(flight)))
     }
 }
 
