@@ -18,6 +18,9 @@ use crate::{
 
 /// Units in the last place, a few parts in 10^12, before it is an overlap.
 const MAX_CORRECTION: f64 = 1024.0;
+
+/// Normals of which the lines are looked at in which their faces cross, at most. It bounds cost only.
+const MOST_CROSSED: usize = 8;
 /// Rounds in which a body that is moved out of one may get into another.
 const ROUNDS: usize = 8;
 
@@ -56,6 +59,22 @@ pub(super) struct Correction<'a> {
     pub(super) end: &'a mut State,
     pub(super) contacts: &'a ContactSet,
     pub(super) record: &'a mut Record,
+}
+
+/// Directions along the lines in which faces cross, by some of their normals: so sheets part whose borders touch.
+fn along_crossings(normals: &[DVec3]) -> Vec<DVec3> {
+    let mut along: Vec<DVec3> = Vec::new();
+    let some = &normals[..normals.len().min(MOST_CROSSED)];
+    for (k, first) in some.iter().enumerate() {
+        for second in &some[..k] {
+            if let Some(way) = first.cross(*second).try_normalize()
+                && !along.contains(&way)
+            {
+                along.extend([way, -way]);
+            }
+        }
+    }
+    along
 }
 
 impl Correction<'_> {
@@ -163,6 +182,8 @@ impl Correction<'_> {
         let forms = self.scene.bodies.forms(i, j);
         let offset = before.1 - before.0;
         let mut normals = forms.map_or_else(Vec::new, |(a, b)| parting_normals(a, b, offset));
+        let borders = along_crossings(&normals);
+        normals.extend(borders);
         normals.push(self.layout().apart_along(i, j));
         let resolution = self
             .layout()
