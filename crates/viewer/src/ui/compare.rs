@@ -86,7 +86,7 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
     let text = match levels.get(shown.min(last)) {
         None => "It takes two bodies with meshes.".to_owned(),
         Some(level) => format!(
-            "Level {} of {last}: {} pairs of boxes compared, {} meet.",
+            "Level {} of {last}. Pairs of boxes compared: {}; that meet: {}.",
             shown.min(last),
             number::count(level.compared as f64),
             number::count(level.meeting as f64)
@@ -195,8 +195,8 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
 const TESTS: &str =
     "Naive: an edge with a triangle. BVH: two triangles whose boxes meet. Until the first hit.";
 const BOXES: &str = "Pairs of boxes compared";
-const TIME: &str = "Real time of one answer: the median of up to seven times, of short answers each the mean of up to 200";
-const SPREAD: &str = "Half of what lies between the least and the greatest of these times";
+const TIME: &str = "Real time of one answer: the median of up to seven times, of short answers each the mean of up to 10,000";
+const SPREAD: &str = "Half of what the middle half of these times lie between";
 
 fn row(
     ui: &mut egui::Ui,

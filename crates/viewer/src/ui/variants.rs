@@ -220,7 +220,7 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
 
 /// The name of a run, cut where it is too long.
 fn run_name(ui: &mut egui::Ui, name: RichText, more: &str) {
-    let size = egui::vec2(98.0, ui.spacing().interact_size.y);
+    let size = egui::vec2(112.0, ui.spacing().interact_size.y);
     let left = egui::Layout::left_to_right(egui::Align::Center);
     ui.allocate_ui_with_layout(size, left, |ui| {
         ui.set_min_width(size.x);
