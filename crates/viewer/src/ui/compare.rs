@@ -39,19 +39,20 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
 
 /// The descent through both trees, level by level.
 fn descent(ui: &mut egui::Ui, session: &mut Session) {
-    ui.horizontal(|ui| {
-        let mut shown = session.display.descent.is_some();
-        if ui
-            .checkbox(&mut shown, say("Show the descent"))
-            .on_hover_text(say(
-                "Boxes that are compared level by level, in orange those that meet and come into \
-                 question for the next level. Of the two bodies that are measured",
-            ))
-            .changed()
-        {
-            (session.display.descent, session.display.pair) = (shown.then_some(0), None);
-        }
-        if shown {
+    let mut shown = session.display.descent.is_some();
+    if ui
+        .checkbox(&mut shown, say("Show the descent"))
+        .on_hover_text(say(
+            "Boxes that are compared level by level, in orange those that meet and come into \
+             question for the next level. Of the two bodies that are measured",
+        ))
+        .changed()
+    {
+        (session.display.descent, session.display.pair) = (shown.then_some(0), None);
+    }
+    if shown {
+        ui.horizontal(|ui| {
+            ui.label(say("Level"));
             if ui.button("◀").on_hover_text(say("One level up")).clicked() {
                 session.step_descent(-1);
             }
@@ -62,18 +63,19 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
             {
                 session.step_descent(1);
             }
-            ui.label(RichText::new(say("one pair")).weak());
+            ui.add_space(8.0);
+            ui.label(say("Pair"));
             let hint = "The comparison before (J)";
-            if ui.button("⏴").on_hover_text(say(hint)).clicked() {
+            if ui.button("◀").on_hover_text(say(hint)).clicked() {
                 session.step_pair(-1);
             }
             let hint =
                 "The next comparison (K): one pair of boxes after the other, as a search goes";
-            if ui.button("⏵").on_hover_text(say(hint)).clicked() {
+            if ui.button("▶").on_hover_text(say(hint)).clicked() {
                 session.step_pair(1);
             }
-        }
-    });
+        });
+    }
     let Some(shown) = session.display.descent else {
         return;
     };

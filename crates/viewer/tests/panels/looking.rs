@@ -7,9 +7,9 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use scene::Scene;
 use sim_core::Method;
-use viewer::session::{Session, State};
+use viewer::session::{PRESETS, Session, State};
 
-use crate::{Window, click, go_on, opened, window};
+use crate::{Window, click, go_on, opened, stands, window};
 
 #[test]
 fn every_key_does_what_it_says() {
@@ -72,6 +72,21 @@ fn nothing_breaks_in_windows_of_any_size() {
 }
 
 #[test]
+fn all_keys_are_in_sight_in_a_low_window() {
+    let scene = Scene::load("cube-cow").expect("in the gallery");
+    let mut window = window(Session::new(scene).expect("a world"), [900.0, 600.0]);
+    window.run();
+    window.key_press(Key::H);
+    window.run();
+    let [first, last] =
+        ["Keys and mouse", "Drag a number"].map(|text| window.get_by_label(text).rect());
+    assert!(
+        first.top() >= 0.0 && last.bottom() < 580.0,
+        "{first} {last}"
+    );
+}
+
+#[test]
 fn names_cannot_reorder_or_act() {
     let hostile = "a\u{202e}b\u{1b}[31m";
     let text = format!(
@@ -131,13 +146,14 @@ fn keys_fly_while_the_right_button_is_held() {
 
 #[test]
 fn the_panel_is_as_wide_whatever_stands_in_it() {
-    let place = |scene: &str, method: &'static Method| {
+    let place = |scene: &str, method: &'static Method, shown: bool| {
         let scene = Scene::load(scene).expect("in the gallery");
         let mut session = Session::new(scene).expect("a world");
         session.set_method(method);
         session.select(Some(0));
-        session.compare.on = true;
-        (session.display.bvh.shown, session.display.descent) = (true, Some(0));
+        session.compare.on = shown;
+        session.display.bvh.shown = shown;
+        session.display.descent = shown.then_some(0);
         let mut window = window(session, [1360.0, 880.0]);
         window.run();
         window.get_by_label("New").rect().left()
@@ -153,10 +169,19 @@ fn the_panel_is_as_wide_whatever_stands_in_it() {
         "stiff-spring",
     ];
     let all: Vec<f32> = methods
-        .map(|method| place("spring", method))
-        .chain(scenes.map(|scene| place(scene, verlet)))
+        .map(|method| place("spring", method, false))
+        .chain(scenes.map(|scene| place(scene, verlet, true)))
         .collect();
     assert!(all.iter().all(|left| *left == all[0]), "{all:?}");
+    // With a variant that fails on its way.
+    let scene = Scene::load("kepler").expect("in the gallery");
+    let mut session = Session::new(scene).expect("a world");
+    session.compare_with((PRESETS[0].settings)(session.world().settings()));
+    session.start();
+    let mut window = window(session, [1360.0, 880.0]);
+    go_on(&mut window, 4.5);
+    assert!(stands(&window, "stopped"));
+    assert_eq!(window.get_by_label("New").rect().left(), all[0]);
 }
 
 #[test]

@@ -15,6 +15,8 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
      "逐层比较的盒子，橙色的是相交而进入下一层的。属于被测量的两个物体"),
     ("One level up", "上一层"),
     ("One level down (N)", "下一层 (N)"),
+    ("Level", "层"),
+    ("Pair", "盒对"),
     ("Level {} of {}. Pairs of boxes compared: {}; that meet: {}.", "第 {0} 层，共 {1} 层：比较了 {2} 对盒子，{3} 对相交。"),
     ("Ratio", "比值"),
     ("Tests", "测试"),

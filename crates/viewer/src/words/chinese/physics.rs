@@ -75,6 +75,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("Exact", "精确解"),
     ("{} a step", "每步 {0}"),
     ("{} a step, {} steps", "每步 {0}，共 {1} 步"),
+    ("stopped", "已停止"),
     ("stopped at {} s", "停在 {0} s"),
     ("not known from here on", "从这里起未知"),
     ("{} m at most so far", "至今最大 {0} m"),

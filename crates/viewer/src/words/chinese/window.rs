@@ -13,7 +13,6 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("next pair of boxes", "下一对盒"),
     ("Right button + W A S D Q E", "右键 + W A S D Q E"),
     ("fly; the mouse looks around", "飞行；移动鼠标环顾"),
-    ("one pair", "逐对"),
     ("The comparison before (J)", "上一次比较 (J)"),
     ("The next comparison (K): one pair of boxes after the other, as a search goes", "下一次比较 (K)：像搜索那样一对盒接一对盒"),
     ("Pair {} of {}: the boxes are apart, and all in them is left out.", "第 {0} 对，共 {1} 对：两个盒分离，其中的一切都略去。"),
