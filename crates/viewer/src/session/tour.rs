@@ -45,7 +45,7 @@ const BETWEEN_THE_EYES: (DVec3, f64) = (DVec3::new(-1.4, 1.2, 0.0), 1.0);
 const COW: (DVec3, f64) = (DVec3::new(-0.1, 1.1, 0.0), 1.6);
 const OVER_HER_BACK: DVec3 = DVec3::new(0.35, 1.85, 0.0);
 /// A ball around both places where the bullet is looked for, and a plate between, m.
-const PAST_THE_PLATE: (DVec3, f64) = (DVec3::new(6.0, 0.0, 0.0), 12.0);
+const PAST_THE_PLATE: (DVec3, f64) = (DVec3::new(7.5, 0.0, 0.0), 9.5);
 
 /// The four labs of the course, and what is beyond them.
 pub static LABS: [Lab; 5] = [
@@ -211,7 +211,8 @@ pub static LABS: [Lab; 5] = [
                 title: "Which edge met which face",
                 scene: "cube-cow",
                 watch: "The cube is just in front of the cow. Go on step by step (right arrow): the orange dot \
-                        is the contact, the thin line its normal, the arrow the impulse.",
+                        is the contact, the thin line its normal, the arrow the impulse. Violet is what of \
+                        each body touches.",
                 attempts: &[
                     Attempt {
                         title: "Naive, held before the impact",

@@ -195,7 +195,11 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
         .custom_x_axes(vec![
             AxisHints::new_x()
                 .label_spacing(Rangef::new(30.0, 45.0))
-                .formatter(|mark, _| format!("{} s", tidy(mark.value))),
+                .formatter(|mark, range| match is_at(*range.end(), mark, range) {
+                    // It would be cut.
+                    true => String::new(),
+                    false => format!("{} s", tidy(mark.value)),
+                }),
         ])
         .include_x(first)
         .include_x(last.max(first + 1e-9))
@@ -350,9 +354,18 @@ fn powers(input: GridInput) -> Vec<GridMark> {
         .collect()
 }
 
+/// Whether a mark is at an end of its axis.
+fn is_at(end: f64, mark: GridMark, range: &std::ops::RangeInclusive<f64>) -> bool {
+    (mark.value - end).abs() < 0.03 * (range.end() - range.start())
+}
+
 fn axis_text(mark: GridMark, range: &std::ops::RangeInclusive<f64>, logarithmic: bool) -> String {
     if logarithmic {
         return format!("{:.0e}", 10_f64.powf(mark.value));
+    }
+    // It would meet the number of the other axis.
+    if is_at(*range.start(), mark, range) {
+        return String::new();
     }
     let size = range.start().abs().max(range.end().abs());
     if mark.value == 0.0 || (1e-3..1e5).contains(&size) {
