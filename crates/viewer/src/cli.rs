@@ -361,7 +361,8 @@ fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
             let session = match is_run_file(&cli.scene) {
                 true => replaying(&cli.scene)?,
                 false => {
-                    Session::new(load(&cli.scene, &cli.settings)?).map_err(Failure::refused)?
+                    let scene = load(&cli.scene, &cli.settings)?;
+                    Session::of_file(scene, &cli.scene).map_err(Failure::refused)?
                 }
             };
             app::run(session)?;

@@ -33,9 +33,22 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// A value, or 0 where it is no more than rounding beside something of its kind.
+pub fn beside(value: f64, other: f64) -> f64 {
+    if value.abs() > 1e-13 * other.abs() {
+        value
+    } else {
+        0.0
+    }
+}
+
 /// A duration in seconds with the unit that suits it.
 pub fn seconds(value: f64) -> String {
-    if value < 1e-3 {
+    if value == 0.0 {
+        "0 s".to_owned()
+    } else if value < 1e-6 {
+        format!("{:.1} ns", value * 1e9)
+    } else if value < 1e-3 {
         format!("{:.1} µs", value * 1e6)
     } else if value < 1.0 {
         format!("{:.1} ms", value * 1e3)
@@ -51,18 +64,6 @@ pub fn length(value: f64) -> String {
     } else {
         format!("{} mm", short(1000.0 * value))
     }
-}
-
-/// 1st, 2nd, 3rd, ...
-pub fn ordinal(count: usize) -> String {
-    let ending = match (count % 10, count % 100) {
-        (_, 11..=13) => "th",
-        (1, _) => "st",
-        (2, _) => "nd",
-        (3, _) => "rd",
-        _ => "th",
-    };
-    format!("{count}{ending}")
 }
 
 /// A number without the digits that are rounding.
@@ -125,7 +126,7 @@ pub fn error(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{count, energy, error, figure, seconds};
+    use super::{beside, count, energy, error, figure, seconds};
 
     #[test]
     fn figures_stay_short() {
@@ -150,6 +151,15 @@ mod tests {
         assert_eq!(seconds(12.34e-6), "12.3 µs");
         assert_eq!(seconds(0.0167), "16.7 ms");
         assert_eq!(seconds(2.0), "2.00 s");
+        assert_eq!(seconds(0.0), "0 s");
+        assert_eq!(seconds(7.04e-9), "7.0 ns");
+    }
+
+    #[test]
+    fn rounding_beside_something_large_is_0() {
+        assert_eq!(beside(9.44e-16, 4.42), 0.0);
+        assert_eq!(beside(-1e-9, 4.42), -1e-9);
+        assert_eq!(beside(2.9e-40, 0.0), 2.9e-40);
     }
 
     #[test]

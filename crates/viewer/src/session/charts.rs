@@ -6,8 +6,9 @@ use super::{Sample, Session, Variant};
 
 /// Points of a curve; where there are more, the least and the greatest of neighbours stand for them.
 const MOST_POINTS: usize = 1200;
-/// The run itself, and parts of its figures, sRGB.
-const RUN: [f32; 3] = [0.93, 0.94, 0.96];
+/// The run itself, sRGB.
+pub const RUN: [f32; 3] = [0.93, 0.94, 0.96];
+/// Parts of its figures.
 const FIRST: [f32; 3] = [0.95, 0.62, 0.25];
 const SECOND: [f32; 3] = [0.40, 0.68, 0.95];
 const THIRD: [f32; 3] = [0.45, 0.80, 0.50];

@@ -6,8 +6,8 @@
 
 use std::time::Duration;
 
-use sim_core::collide::{naive, tree};
-use sim_core::{DVec3, World};
+use sim_core::collide::{Placement, naive, tree};
+use sim_core::{DMat3, DQuat, DVec3, World};
 
 use super::Session;
 
@@ -15,7 +15,7 @@ use super::Session;
 const MOST_TESTS: u64 = 2_000_000_000;
 /// A short answer is given so often that it fills this time, but not more often than that.
 const MEASURED: Duration = Duration::from_micros(100);
-const MOST_ANSWERS: f64 = 200.0;
+const MOST_ANSWERS: f64 = 10_000.0;
 /// How often that is done, and the time after which it is not done again.
 const ROUNDS: usize = 7;
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -32,7 +32,7 @@ pub struct Cost {
     pub tests: u64,
     /// Real time of an answer, s: the median of several means.
     pub seconds: f64,
-    /// The least and the greatest of these, s.
+    /// What the middle half of these lie between, s.
     pub spread: [f64; 2],
 }
 
@@ -51,8 +51,11 @@ pub struct Comparison {
     pub naive: Option<Cost>,
     /// Through hierarchies.
     pub tree: Cost,
-    offset: DVec3,
+    placed: Placed,
 }
+
+/// How the second mesh is turned in the frame of the first, and where its origin is there, m.
+type Placed = (DQuat, DVec3);
 
 /// What there is to compare now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,13 +131,14 @@ impl Trial {
         let (i, j) = self.pair;
         let (first, second) = (self.world.mesh(i)?, self.world.mesh(j)?);
         let (first_tree, second_tree) = (self.world.bvh(i)?, self.world.bvh(j)?);
-        let offset = self.world.position(j) - self.world.position(i);
+        let placed = placed(&self.world, i, j);
+        let at = Placement::turned(placed.0, placed.1)?;
         let edges_by_faces =
             |a: &sim_core::Mesh, b: &sim_core::Mesh| (a.edges().len() * b.triangles().len()) as u64;
         let all_tests = edges_by_faces(first, second) + edges_by_faces(second, first);
         let naive = (all_tests <= MOST_TESTS).then(|| {
-            let work = naive::work(first, second, offset);
-            let (seconds, spread) = time(stopwatch, || naive::intersect(first, second, offset));
+            let work = naive::work(first, second, at);
+            let (seconds, spread) = time(stopwatch, || naive::intersect(first, second, at));
             let cost = Cost {
                 boxes: work.boxes,
                 tests: work.tests,
@@ -143,10 +147,8 @@ impl Trial {
             };
             (cost, work.meet)
         });
-        let work = tree::work(first_tree, second_tree, offset);
-        let (seconds, spread) = time(stopwatch, || {
-            tree::intersect(first_tree, second_tree, offset)
-        });
+        let work = tree::work(first_tree, second_tree, at);
+        let (seconds, spread) = time(stopwatch, || tree::intersect(first_tree, second_tree, at));
         Some(Comparison {
             pair: self.pair,
             time: self.world.time(),
@@ -159,12 +161,12 @@ impl Trial {
                 seconds,
                 spread,
             },
-            offset,
+            placed,
         })
     }
 }
 
-/// Time of an answer, s: the median of several means, and the least and the greatest of them.
+/// Time of an answer, s: the median of several means, and what the middle half of them lie between.
 fn time(stopwatch: &impl Fn() -> Duration, answer: impl Fn() -> bool) -> (f64, [f64; 2]) {
     // What comes first pays for cold caches, and counts only where there is time for no other.
     let (began, first) = timed(stopwatch, &answer, 1);
@@ -179,9 +181,13 @@ fn time(stopwatch: &impl Fn() -> Duration, answer: impl Fn() -> bool) -> (f64, [
         means.push(timed(stopwatch, &answer, answers).1.as_secs_f64());
     }
     means.sort_by(f64::total_cmp);
-    match (means.first(), means.last()) {
-        (Some(&least), Some(&most)) => (means[means.len() / 2], [least, most]),
-        _ => (first.as_secs_f64(), [first.as_secs_f64(); 2]),
+    let quarter = means.len() / 4;
+    match means.len() {
+        0 => (first.as_secs_f64(), [first.as_secs_f64(); 2]),
+        count => (
+            means[count / 2],
+            [means[quarter], means[count - 1 - quarter]],
+        ),
     }
 }
 
@@ -204,8 +210,7 @@ impl Session {
     pub fn contest(&self) -> Contest {
         let world = &self.world;
         let solid: Vec<usize> = (0..world.len())
-            // What turns is not compared.
-            .filter(|&i| world.mesh(i).is_some() && !world.turns(i))
+            .filter(|&i| world.mesh(i).is_some())
             .collect();
         let (mut contest, mut most, mut nearest) = (Contest::NoPair, 0, f64::INFINITY);
         for (n, &i) in solid.iter().enumerate() {
@@ -269,10 +274,16 @@ impl Session {
         let (Contest::Pair(i, j) | Contest::Apart(i, j)) = self.contest() else {
             return false;
         };
-        let offset = self.world.position(j) - self.world.position(i);
+        let now = ((i, j), placed(&self.world, i, j));
         let last = self.compare.last.as_ref();
-        self.compare.on && last.is_none_or(|last| last.pair != (i, j) || last.offset != offset)
+        self.compare.on && last.is_none_or(|last| (last.pair, last.placed) != now)
     }
+}
+
+pub(super) fn placed(world: &World, i: usize, j: usize) -> Placed {
+    let back = world.rotation(i).inverse();
+    let apart = world.origin(j) - world.origin(i);
+    (back * world.rotation(j), back * apart)
 }
 
 /// Distance between two boxes along the axis where it is greatest, m; not above 0 where they overlap.
@@ -280,8 +291,12 @@ fn boxes_gap(world: &World, i: usize, j: usize) -> f64 {
     let (Some(first), Some(second)) = (world.mesh(i), world.mesh(j)) else {
         return f64::INFINITY;
     };
-    let offset = world.position(j) - world.position(i);
-    let centres = second.bounds().centre() + offset - first.bounds().centre();
-    let reach = first.bounds().half_extent() + second.bounds().half_extent();
-    (centres.abs() - reach).max_element()
+    // The boxes around both as they are turned.
+    let [(middle, half), (other, other_half)] = [(first, i), (second, j)].map(|(mesh, i)| {
+        let turned = DMat3::from_quat(world.rotation(i));
+        let bounds = mesh.bounds();
+        let middle = world.origin(i) + turned * bounds.centre();
+        (middle, turned.abs() * bounds.half_extent())
+    });
+    ((other - middle).abs() - (half + other_half)).max_element()
 }

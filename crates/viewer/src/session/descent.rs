@@ -4,8 +4,9 @@
 //! It is the descent of textbooks through the trees of the program, whose own takes many pairs at once,
 //! in another order, and stops at the first hit.
 
-use sim_core::{Aabb, Bvh, DVec3};
+use sim_core::{Aabb, Bvh, DMat3, DQuat, DVec3};
 
+use super::compare::placed;
 use super::{Contest, Session};
 use crate::picture::Line;
 
@@ -36,6 +37,21 @@ pub struct Pair {
     /// How many pairs of the boxes in them come next if they meet; none where neither has boxes in it, and
     /// triangles are tested.
     pub below: usize,
+}
+
+/// Where the second tree is in the frame of the first.
+struct At {
+    turned: DMat3,
+    offset: DVec3,
+}
+
+impl At {
+    fn new((rotation, offset): (DQuat, DVec3)) -> Self {
+        Self {
+            turned: DMat3::from_quat(rotation),
+            offset,
+        }
+    }
 }
 
 /// The boxes of a tree in the order of [`Bvh::boxes`], each with the places of its children.
@@ -87,26 +103,27 @@ impl Tree {
             .collect()
     }
 
-    /// Whether a box meets one of another mesh, which is displaced.
-    fn meets(&self, other: &Self, [a, b]: [usize; 2], offset: DVec3) -> bool {
+    /// Whether a box meets one of another mesh; of one that is turned, the box around that along the axes of
+    /// the first.
+    fn meets(&self, other: &Self, [a, b]: [usize; 2], at: &At) -> bool {
         let (a, b) = (self.boxes[a], other.boxes[b]);
-        let apart = b.centre() + offset - a.centre();
-        let reach = a.half_extent() + b.half_extent();
+        let apart = at.turned * b.centre() + at.offset - a.centre();
+        let reach = a.half_extent() + at.turned.abs() * b.half_extent();
         apart.abs().cmple(reach).all()
     }
 }
 
 /// All comparisons one after the other, each pair of boxes followed by what is in it, as a search goes that
-/// looks for all hits.
-pub fn pairs(first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Pair> {
-    let (first, second) = (Tree::of(first), Tree::of(second));
+/// looks for all hits. The second tree is turned, then displaced.
+pub fn pairs(first: &Bvh, second: &Bvh, placed: (DQuat, DVec3)) -> Vec<Pair> {
+    let (first, second, at) = (Tree::of(first), Tree::of(second), At::new(placed));
     let mut left = vec![[0, 0]];
     let mut pairs = Vec::new();
     while let Some(boxes) = left.pop() {
         if pairs.len() == MOST_PAIRS {
             break;
         }
-        let meet = first.meets(&second, boxes, offset);
+        let meet = first.meets(&second, boxes, &at);
         let after = first.after(&second, boxes);
         pairs.push(Pair {
             boxes,
@@ -120,13 +137,14 @@ pub fn pairs(first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Pair> {
     pairs
 }
 
-/// All levels, from the two boxes around everything to pairs of leaves, with the second mesh displaced.
-pub fn descent(first: &Bvh, second: &Bvh, offset: DVec3) -> Vec<Level> {
-    let (first, second) = (Tree::of(first), Tree::of(second));
+/// All levels, from the two boxes around everything to pairs of leaves, with the second tree turned, then
+/// displaced.
+pub fn descent(first: &Bvh, second: &Bvh, placed: (DQuat, DVec3)) -> Vec<Level> {
+    let (first, second, at) = (Tree::of(first), Tree::of(second), At::new(placed));
     let mut pairs = vec![[0, 0]];
     let mut levels = Vec::new();
     while !pairs.is_empty() && pairs.len() <= MOST_PAIRS {
-        let meets = |&&pair: &&[usize; 2]| first.meets(&second, pair, offset);
+        let meets = |&&pair: &&[usize; 2]| first.meets(&second, pair, &at);
         let meeting: Vec<[usize; 2]> = pairs.iter().filter(meets).copied().collect();
         let listed = |of: usize| {
             let mut boxes: Vec<(usize, bool)> = pairs.iter().map(|p| (p[of], false)).collect();
@@ -163,14 +181,14 @@ impl Session {
         self.descend(pairs).unwrap_or_default()
     }
 
-    /// Looks at the trees of the two bodies that are compared, the second displaced.
-    fn descend<T>(&mut self, look: impl Fn(&Bvh, &Bvh, DVec3) -> T) -> Option<T> {
+    /// Looks at the trees of the two bodies that are compared.
+    fn descend<T>(&mut self, look: impl Fn(&Bvh, &Bvh, (DQuat, DVec3)) -> T) -> Option<T> {
         let (Contest::Pair(i, j) | Contest::Apart(i, j)) = self.contest() else {
             return None;
         };
         self.world.build_bvhs();
-        let offset = self.world.position(j) - self.world.position(i);
-        Some(look(self.world.bvh(i)?, self.world.bvh(j)?, offset))
+        let at = placed(&self.world, i, j);
+        Some(look(self.world.bvh(i)?, self.world.bvh(j)?, at))
     }
 
     /// Goes up or down in the descent that is shown, level by level; shows it if it was not.
@@ -207,13 +225,13 @@ impl Session {
                 continue;
             };
             let boxes: Vec<Aabb> = bvh.boxes().map(|(_, aabb)| aabb).collect();
-            let origin = self.world.position(body);
+            let (origin, rotation) = (self.world.origin(body), self.world.rotation(body));
             for (n, colour, width) in listed {
                 let (middle, half) = (boxes[n].centre(), boxes[n].half_extent());
                 let edges = super::overlaps::edges(middle, half);
                 lines.extend(edges.map(|(from, to)| Line {
-                    from: origin + from,
-                    to: origin + to,
+                    from: origin + rotation * from,
+                    to: origin + rotation * to,
                     colour,
                     width,
                 }));

@@ -9,6 +9,14 @@ use super::record::is_run_file;
 use crate::number;
 
 impl Session {
+    /// A session on a scene that came from here: the name of one of the gallery, or a path. It is saved to its
+    /// own file.
+    pub fn of_file(scene: Scene, name_or_path: &Path) -> anyhow::Result<Self> {
+        let mut session = Self::new(scene)?;
+        session.file = is_scene_file(name_or_path).then(|| name_or_path.to_owned());
+        Ok(session)
+    }
+
     /// Opens a scene of the gallery, by name, or of a file, by path. On failure the present one
     /// stays.
     pub fn open(&mut self, name_or_path: impl AsRef<Path>) {
@@ -17,13 +25,10 @@ impl Session {
             true => self.open_run(name_or_path),
             false => Scene::load(name_or_path)
                 .map_err(anyhow::Error::new)
-                .and_then(Session::new),
+                .and_then(|scene| Session::of_file(scene, name_or_path)),
         };
         match opened {
-            Ok(session) => {
-                let path = PathBuf::from(name_or_path);
-                self.give_way(session, is_scene_file(&path).then_some(path));
-            }
+            Ok(session) => self.give_way(session),
             Err(error) => self.notices.error("open", error.to_string()),
         }
     }
@@ -44,13 +49,13 @@ impl Session {
             forces: Vec::new(),
         };
         match Session::new(scene) {
-            Ok(session) => self.give_way(session, None),
+            Ok(session) => self.give_way(session),
             Err(error) => self.notices.error("open", error.to_string()),
         }
     }
 
     /// Lets another scene take the place of this one; how to look at it stays.
-    fn give_way(&mut self, session: Session, file: Option<PathBuf>) {
+    fn give_way(&mut self, session: Session) {
         let (mut display, edition) = (self.display, self.edition + 1);
         let (parallel, profiled) = (self.camera.parallel, self.profiled);
         let opening = self.opening.next();
@@ -68,7 +73,6 @@ impl Session {
         self.edition = edition;
         self.variants.edition = variants;
         self.opening = opening;
-        self.file = file;
     }
 
     /// Reads the scene's file again if it has become another scene; edits that no file has are kept

@@ -233,7 +233,7 @@ impl Session {
         let bodies = &self.scene.bodies;
         let mut text = last.text(|i| bodies.get(i).map_or_else(String::new, |b| b.name.clone()));
         if count > 1 {
-            text += &format!(" It is the {} such pass.", number::ordinal(count));
+            text += &format!(" Passes so far: {}.", number::count(count as f64));
         }
         self.notices.error("missed", text);
         let remedy = Remedy::Collision(Collision::Continuous);

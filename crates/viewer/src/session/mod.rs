@@ -54,7 +54,7 @@ use sim_core::{Collision, FixedStep, Method, Settings, World};
 pub use arrows::Scale;
 pub use axes::AxisMarks;
 use ball::Balls;
-pub use charts::{CHARTS, Chart, Curve, on_dark};
+pub use charts::{CHARTS, Chart, Curve, RUN, on_dark};
 pub use compare::{Compare, Comparison, Contest, Cost, Trial, Tried};
 pub use descent::{Level, Pair, descent, pairs};
 pub use exact::Exact;

@@ -1,21 +1,22 @@
 //! The view on a scene just opened: all bodies and where they go next.
 //!
-//! Under forces that takes steps ahead, and steps can be slow, so they are a job for another thread
-//! ([`Outlook`]); until it is done the bodies alone are in view.
+//! Under forces, and where a scene tells when it ends, that takes steps ahead, and steps can be slow, so
+//! they are a job for another thread ([`Outlook`]); until it is done the bodies alone are in view.
 
 use std::time::Duration;
 
 use sim_core::{Collision, DVec3, Force, Settings, World};
 
+use super::Session;
 use super::framing::{Bounds, OPENING_REACH};
-use super::{Session, State};
 use crate::camera::Camera;
 
 /// Depth over width and height below which all is in an upright plane, and where to look at that
 /// from: yaw and pitch, radians.
 const FLAT: f64 = 0.3;
 const FRONT: (f64, f64) = (0.2, 0.16);
-/// How far the view looks ahead under forces: simulated time, s, steps, and positions.
+/// How far the view looks ahead: simulated time, s, where the scene does not tell when it ends, steps, and
+/// positions.
 const TIME: f64 = 6.4;
 const STEPS: f64 = 7200.0;
 const POSITIONS: f64 = 20_000.0;
@@ -31,6 +32,8 @@ pub struct Outlook {
     high: DVec3,
     min: DVec3,
     max: DVec3,
+    /// Simulated time that is looked ahead, s.
+    time: f64,
     /// Not after this real time.
     budget: Duration,
     ticket: u64,
@@ -47,6 +50,11 @@ pub(super) struct Opening {
 }
 
 impl Opening {
+    /// The view stays as it is, whatever comes.
+    pub(super) fn settle(&mut self) {
+        self.begun = true;
+    }
+
     /// That of the scene opened after this one's.
     pub(super) fn next(self) -> Self {
         Self {
@@ -67,7 +75,7 @@ impl Outlook {
         let size = (self.high - self.low).max_element();
         let least = self.low - OPENING_REACH * size;
         let most = self.high + OPENING_REACH * size;
-        let steps = (TIME / self.world.settings().dt).min(STEPS);
+        let steps = (self.time / self.world.settings().dt).min(STEPS);
         let steps = steps.min(POSITIONS / self.world.len().max(1) as f64);
         for _ in 0..steps as u32 {
             if self.world.step().is_err() || stopwatch().saturating_sub(began) > self.budget {
@@ -77,8 +85,8 @@ impl Outlook {
                 let (Some(bounds), at) = (bounds, self.world.position(i)) else {
                     continue;
                 };
-                // What falls below the lowest start is let go.
-                if falls && at.y < self.low.y {
+                // What falls below all that was there is let go.
+                if falls && at.y + bounds.half.y < self.low.y {
                     continue;
                 }
                 let at = at.clamp(least, most);
@@ -92,7 +100,7 @@ impl Outlook {
 
 impl Session {
     /// Looks at the bodies as they were set up, or at a single one and where it goes next, so that
-    /// nothing leaves the first view at once. Where forces act, [`outlook`](Self::outlook) does better.
+    /// nothing leaves the first view at once. [`outlook`](Self::outlook) does better where it can.
     pub(super) fn frame_opening(&mut self) {
         let mut bodies = (0..self.world.len()).filter(|&i| !self.is_half_space(i));
         let Some(body) = bodies.next() else {
@@ -121,20 +129,20 @@ impl Session {
     /// The look ahead that the opening view waits for, once.
     pub fn outlook(&mut self) -> Option<Outlook> {
         let begun = std::mem::replace(&mut self.opening.begun, true);
-        if begun || !self.is_pushed() || self.state != State::Layout {
+        if begun || !self.is_pushed() && self.scene.ends.is_none() {
             return None;
         }
         let (low, high) = self.world_box()?;
-        let (low, high) = self.with_feet(low, high);
-        let (mut min, mut max) = (low, high);
+        let (mut low, mut high) = self.with_feet(low, high);
         for force in self.world.forces() {
             if let Force::Anchor { anchor: point, .. } | Force::Attraction { centre: point, .. } =
                 *force
             {
-                (min, max) = (min.min(point), max.max(point));
+                (low, high) = (low.min(point), high.max(point));
             }
         }
-        let mut world = self.world.clone();
+        // A stop of the tour has begun to run by now.
+        let mut world = self.playback.first()?.clone();
         // The same answers in less time.
         if world.settings().collision == Collision::Naive {
             let settings = Settings {
@@ -151,8 +159,9 @@ impl Session {
             bounds,
             low,
             high,
-            min,
-            max,
+            min: low,
+            max: high,
+            time: self.scene.ends.unwrap_or(TIME),
             budget: BUDGET,
             ticket: self.opening.ticket,
         })
@@ -165,7 +174,7 @@ impl Session {
         }
         self.opening.view = None;
         let (size, middle) = (seen.max - seen.min, 0.5 * (seen.min + seen.max));
-        if size.z < FLAT * size.x.max(size.y) {
+        if self.is_pushed() && size.z < FLAT * size.x.max(size.y) {
             // Motion in an upright plane is looked at nearly from the front.
             (self.camera.yaw, self.camera.pitch) = FRONT;
         }

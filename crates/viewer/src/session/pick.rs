@@ -7,6 +7,9 @@ use super::Session;
 /// Half the size, in distances of the camera, up to which a body is drawn as a dot.
 const SPECK: f64 = 0.004;
 
+/// Bodies up to which it is asked whether they hide something.
+const MOST_HIDING: usize = 200;
+
 impl Session {
     /// Selects the nearest body that a ray from `origin` along `direction` meets, or none.
     pub fn pick(&mut self, origin: DVec3, direction: DVec3) {
@@ -29,6 +32,14 @@ impl Session {
                 Some((hit.time, i))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Whether a body is drawn before a point that a ray from `origin` along `direction` leads to; not asked of
+    /// a crowd.
+    pub fn hides(&self, point: DVec3, (origin, direction): (DVec3, DVec3)) -> bool {
+        let along = (point - origin).dot(direction) / direction.length_squared();
+        let hit = (self.world.len() <= MOST_HIDING).then(|| self.hit(origin, direction));
+        hit.flatten().is_some_and(|(hit, _)| hit < along)
     }
 
     /// The body drawn as a dot that a ray passes most closely, in distances along it, and close enough.

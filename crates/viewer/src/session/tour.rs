@@ -39,6 +39,13 @@ pub struct Attempt {
 
 /// Steps to just before the cube hits the cow at 60 Hz.
 const BEFORE_THE_COW: u32 = 44;
+/// A ball around where it hits her, m.
+const BETWEEN_THE_EYES: (DVec3, f64) = (DVec3::new(-1.4, 1.2, 0.0), 1.0);
+/// A ball around her, and a place for the cube that is in the box around her and not in her, m.
+const COW: (DVec3, f64) = (DVec3::new(-0.1, 1.1, 0.0), 1.6);
+const OVER_HER_BACK: DVec3 = DVec3::new(0.35, 1.85, 0.0);
+/// A ball around both places where the bullet is looked for, and a plate between, m.
+const PAST_THE_PLATE: (DVec3, f64) = (DVec3::new(7.5, 0.0, 0.0), 9.5);
 
 /// The four labs of the course, and what is beyond them.
 pub static LABS: [Lab; 5] = [
@@ -204,11 +211,13 @@ pub static LABS: [Lab; 5] = [
                 title: "Which edge met which face",
                 scene: "cube-cow",
                 watch: "The cube is just in front of the cow. Go on step by step (right arrow): the orange dot \
-                        is the contact, the thin line its normal, the arrow the impulse.",
+                        is the contact, the thin line its normal, the arrow the impulse. Violet is what of \
+                        each body touches.",
                 attempts: &[
                     Attempt {
                         title: "Naive, held before the impact",
                         set_up: |session| {
+                            look_at(session, BETWEEN_THE_EYES);
                             session.set_collision(Collision::Naive);
                             (0..BEFORE_THE_COW).for_each(|_| session.step_once());
                         },
@@ -216,6 +225,7 @@ pub static LABS: [Lab; 5] = [
                     Attempt {
                         title: "Continuous, in slow motion",
                         set_up: |session| {
+                            look_at(session, BETWEEN_THE_EYES);
                             session.set_collision(Collision::Continuous);
                             session.set_speed(0.1);
                             session.start();
@@ -263,6 +273,7 @@ pub static LABS: [Lab; 5] = [
                     Attempt {
                         title: "BVH: at the end of each step",
                         set_up: |session| {
+                            look_at(session, PAST_THE_PLATE);
                             session.set_collision(Collision::Bvh);
                             session.step_once();
                         },
@@ -309,14 +320,18 @@ pub static LABS: [Lab; 5] = [
             Stop {
                 title: "Why the BVH wins",
                 scene: "cube-cow",
-                watch: "Look at Naive against BVH at the end of the panel: tests, boxes and time of one answer, \
-                        both ways. The boxes in orange are those that meet; go down level by level with N.",
+                watch: "The cube is over the cow's back, in the box around her. Look at Naive against BVH at the \
+                        end of the panel: tests, boxes and time of one answer, both ways. The boxes in orange are \
+                        those that meet; go down level by level with N, or pair by pair with K.",
                 attempts: &[Attempt {
                     title: "Measure, and show the descent",
                     set_up: |session| {
+                        session.select(Some(1));
+                        session.set_position(OVER_HER_BACK);
+                        session.select(None);
                         session.compare.on = true;
                         session.display.descent = Some(0);
-                        (0..BEFORE_THE_COW).for_each(|_| session.step_once());
+                        look_at(session, COW);
                     },
                 }],
                 question: "How do both ways grow with the number of triangles?",
@@ -377,7 +392,7 @@ pub static LABS: [Lab; 5] = [
             Stop {
                 title: "Half of the energy turns",
                 scene: "cubes-turning",
-                watch: "Twenty cubes fly about and do not turn at first. Impacts are off centre, and make them \
+                watch: "A hundred cubes fly about and do not turn at first. Impacts are off centre, and make them \
                         turn. Watch in the plot of the energy what is in turning, and the total.",
                 attempts: &[Attempt {
                     title: "Let them meet",
@@ -458,7 +473,13 @@ fn compare(session: &mut Session, preset: usize) {
     session.start();
 }
 
+fn look_at(session: &mut Session, (centre, radius): (DVec3, f64)) {
+    session.camera.frame(centre, radius);
+    session.opening.settle();
+}
+
 fn show_boxes(session: &mut Session, depth: usize) {
+    look_at(session, COW);
     session.display.bvh.shown = true;
     session.display.bvh.every_depth = false;
     session.display.bvh.every_body = true;

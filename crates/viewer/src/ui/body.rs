@@ -56,17 +56,16 @@ pub(super) fn show(ui: &mut egui::Ui, handles: &mut Handles, session: &mut Sessi
         session.set_velocity(value);
     }
     turning(ui, session, spin, obstacle);
-    if mass.is_finite()
-        && let Some(value) = field::vector(
-            ui,
-            "Force",
-            "N",
-            "Constant force on the body, F = m a",
-            force,
-        )
-    {
-        session.set_force(value);
-    }
+    ui.add_enabled_ui(!immovable, |ui| {
+        let meaning = "Constant force on the body, F = m a";
+        if let Some(value) = field::vector(ui, "Force", "N", meaning, force) {
+            session.set_force(value);
+        }
+    })
+    .response
+    .on_disabled_hover_text(say(
+        "Nothing moves it: it stands still or keeps its velocity",
+    ));
     mass_and_restitution(ui, session, (mass, immovable), restitution);
     let meaning = "Coefficient of friction µ from 0, smooth, to inf, which never slips: the force \
                    along a contact is at most µ times that across it, |F_t| ≤ µ F_n; of two bodies \

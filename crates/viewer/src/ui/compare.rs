@@ -39,19 +39,20 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
 
 /// The descent through both trees, level by level.
 fn descent(ui: &mut egui::Ui, session: &mut Session) {
-    ui.horizontal(|ui| {
-        let mut shown = session.display.descent.is_some();
-        if ui
-            .checkbox(&mut shown, say("Show the descent"))
-            .on_hover_text(say(
-                "Boxes that are compared level by level, in orange those that meet and come into \
-                 question for the next level. Of the two bodies that are measured",
-            ))
-            .changed()
-        {
-            (session.display.descent, session.display.pair) = (shown.then_some(0), None);
-        }
-        if shown {
+    let mut shown = session.display.descent.is_some();
+    if ui
+        .checkbox(&mut shown, say("Show the descent"))
+        .on_hover_text(say(
+            "Boxes that are compared level by level, in orange those that meet and come into \
+             question for the next level. Of the two bodies that are measured",
+        ))
+        .changed()
+    {
+        (session.display.descent, session.display.pair) = (shown.then_some(0), None);
+    }
+    if shown {
+        ui.horizontal(|ui| {
+            ui.label(say("Level"));
             if ui.button("◀").on_hover_text(say("One level up")).clicked() {
                 session.step_descent(-1);
             }
@@ -62,18 +63,19 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
             {
                 session.step_descent(1);
             }
-            ui.label(RichText::new(say("one pair")).weak());
+            ui.add_space(8.0);
+            ui.label(say("Pair"));
             let hint = "The comparison before (J)";
-            if ui.button("⏴").on_hover_text(say(hint)).clicked() {
+            if ui.button("◀").on_hover_text(say(hint)).clicked() {
                 session.step_pair(-1);
             }
             let hint =
                 "The next comparison (K): one pair of boxes after the other, as a search goes";
-            if ui.button("⏵").on_hover_text(say(hint)).clicked() {
+            if ui.button("▶").on_hover_text(say(hint)).clicked() {
                 session.step_pair(1);
             }
-        }
-    });
+        });
+    }
     let Some(shown) = session.display.descent else {
         return;
     };
@@ -86,7 +88,7 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
     let text = match levels.get(shown.min(last)) {
         None => "It takes two bodies with meshes.".to_owned(),
         Some(level) => format!(
-            "Level {} of {last}: {} pairs of boxes compared, {} meet.",
+            "Level {} of {last}. Pairs of boxes compared: {}; that meet: {}.",
             shown.min(last),
             number::count(level.compared as f64),
             number::count(level.meeting as f64)
@@ -195,8 +197,8 @@ fn table(ui: &mut egui::Ui, session: &Session, last: &Comparison) {
 const TESTS: &str =
     "Naive: an edge with a triangle. BVH: two triangles whose boxes meet. Until the first hit.";
 const BOXES: &str = "Pairs of boxes compared";
-const TIME: &str = "Real time of one answer: the median of up to seven times, of short answers each the mean of up to 200";
-const SPREAD: &str = "Half of what lies between the least and the greatest of these times";
+const TIME: &str = "Real time of one answer: the median of up to seven times, of short answers each the mean of up to 10,000";
+const SPREAD: &str = "Half of what the middle half of these times lie between";
 
 fn row(
     ui: &mut egui::Ui,

@@ -156,6 +156,8 @@ fn spins(ui: &mut egui::Ui, session: &mut Session) {
     for (name, scale, unit, meaning) in rows {
         ui.horizontal(|ui| {
             field::label(ui, name, meaning);
+            // Less room, as the units are long.
+            ui.spacing_mut().slider_width = 100.0;
             let slider = Slider::new(scale, 1e-4..=1e3)
                 .logarithmic(true)
                 .suffix(unit);

@@ -5,29 +5,33 @@ use egui::{Panel, ScrollArea};
 use super::{Ui, live};
 use crate::session::Session;
 
-/// Height of the window, points, below which there is room for the picture alone.
-const LEAST_HEIGHT: f32 = 440.0;
-/// Width of the live figures, points.
+/// Height that is left to the picture, and the least of what is under it, points: where there is room for less, the
+/// picture is alone.
+const PICTURE: f32 = 240.0;
+const LEAST: f32 = 120.0;
+/// Width of the live figures where there is room, and of plots beside them, points.
 const FIGURES: f32 = 348.0;
+const PLOTS: f32 = 320.0;
 
 pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
     let room = root.available_size();
-    if state.live_hidden && state.plots_hidden || room.y < LEAST_HEIGHT {
+    if state.live_hidden && state.plots_hidden || room.y < PICTURE + LEAST {
         return;
     }
     Panel::bottom("dock")
         .resizable(true)
         .default_size((0.4 * room.y).clamp(180.0, 300.0))
-        .min_size(120.0)
-        .max_size(0.75 * room.y)
+        .min_size(LEAST)
+        .max_size((0.75 * room.y).min(room.y - PICTURE))
         .show(root, |ui| {
-            if state.plots_hidden || ui.available_width() < FIGURES + 160.0 {
+            let width = FIGURES.min(ui.available_width() - PLOTS);
+            if state.plots_hidden || width < 160.0 {
                 figures(ui, session);
                 return;
             }
             if !state.live_hidden {
                 Panel::left("figures")
-                    .exact_size(FIGURES)
+                    .exact_size(width)
                     .resizable(false)
                     .show(ui, |ui| figures(ui, session));
             }

@@ -4,6 +4,7 @@ use egui::{DragValue, RichText};
 use sim_core::DVec3;
 
 use crate::expression;
+use crate::session::Notices;
 use crate::words::say;
 
 /// Width of the labels, so that values line up, in points.
@@ -45,7 +46,7 @@ pub(super) fn vector(
     changed.then_some(value)
 }
 
-/// A row of one number; the new value if it was changed.
+/// A row of one number and its unit; the new value if it was changed.
 pub(super) fn scalar(
     ui: &mut egui::Ui,
     name: &str,
@@ -55,12 +56,15 @@ pub(super) fn scalar(
 ) -> Option<f64> {
     let mut changed = false;
     ui.horizontal(|ui| {
-        label(ui, &titled(name, unit), meaning);
+        label(ui, name, meaning);
         ui.spacing_mut().item_spacing.x = 4.0;
         let width = (ui.available_width() - 8.0) / 3.0;
         changed = number(ui, &mut value, width)
             .on_hover_text(typed(meaning))
             .changed();
+        if !unit.is_empty() {
+            ui.label(unit);
+        }
     });
     changed.then_some(value)
 }
@@ -84,12 +88,19 @@ pub(super) fn figure(ui: &mut egui::Ui, name: &str, meaning: &str, value: impl I
     });
 }
 
-/// What was typed into a field since the last call and is no number, as a message.
-pub(super) fn take_refused(ctx: &egui::Context) -> Option<String> {
-    let typed = ctx.data_mut(|data| data.remove_temp::<String>(refused_id()))?;
-    Some(format!(
-        "\"{typed}\" is not a number: write it like 1.5, -2e-3 or 1/60."
-    ))
+/// What was typed into a field since the last call and is no number.
+type Refused = Option<String>;
+
+/// Says what was typed since the last call and is no number, until a number is taken.
+pub(super) fn tell_refused(ctx: &egui::Context, notices: &mut Notices) {
+    match ctx.data_mut(|data| data.remove_temp::<Refused>(refused_id())) {
+        Some(Some(typed)) => {
+            let text = format!("\"{typed}\" is not a number: write it like 1.5, -2e-3 or 1/60.");
+            notices.error("number", text);
+        }
+        Some(None) => notices.dismiss("number"),
+        None => {}
+    }
 }
 
 fn refused_id() -> egui::Id {
@@ -116,8 +127,9 @@ fn number(ui: &mut egui::Ui, value: &mut f64, width: f32) -> egui::Response {
             })
             .update_while_editing(false),
     );
-    if let Some(typed) = refused.take() {
-        ui.data_mut(|data| data.insert_temp(refused_id(), typed));
+    let refused: Refused = refused.take();
+    if refused.is_some() || response.changed() {
+        ui.data_mut(|data| data.insert_temp(refused_id(), refused));
     }
     response
 }

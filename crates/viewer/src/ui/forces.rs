@@ -69,8 +69,8 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
                 | scalar(
                     ui,
                     "Coefficient",
-                    "",
-                    "c of F = -c v, kg/s, from 0",
+                    "kg/s",
+                    "c of F = -c v, from 0",
                     coefficient,
                 )
         }
@@ -79,8 +79,8 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
                 | scalar(
                     ui,
                     "Coefficient",
-                    "",
-                    "c of F = -c |v| v, kg/m, from 0",
+                    "kg/m",
+                    "c of F = -c |v| v, from 0",
                     coefficient,
                 )
         }
@@ -97,13 +97,13 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
                     vector(ui, "Point", "m", POINT, point)
                 })
                 | vector(ui, "Anchor", "m", "The fixed point", anchor)
-                | scalar(ui, "Stiffness", "", "N/m, from 0", stiffness)
-                | scalar(ui, "Damping", "", "kg/s, from 0", damping)
+                | scalar(ui, "Stiffness", "N/m", "From 0", stiffness)
+                | scalar(ui, "Damping", "kg/s", "From 0", damping)
                 | scalar(
                     ui,
                     "Rest length",
-                    "",
-                    "Length without force, m, from 0",
+                    "m",
+                    "Length without force, from 0",
                     rest_length,
                 )
         }
@@ -121,13 +121,13 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
                     vector(ui, "Point of the first", "m", POINT, from)
                         | vector(ui, "Point of the second", "m", POINT, to)
                 })
-                | scalar(ui, "Stiffness", "", "N/m, from 0", stiffness)
-                | scalar(ui, "Damping", "", "kg/s, from 0", damping)
+                | scalar(ui, "Stiffness", "N/m", "From 0", stiffness)
+                | scalar(ui, "Damping", "kg/s", "From 0", damping)
                 | scalar(
                     ui,
                     "Rest length",
-                    "",
-                    "Length without force, m, from 0",
+                    "m",
+                    "Length without force, from 0",
                     rest_length,
                 )
         }
@@ -143,10 +143,10 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
         } => {
             maybe_body(ui, names, body)
                 | vector(ui, "Centre", "m", "The point that attracts", centre)
-                | scalar(ui, "Strength", "", "G M, m³/s², from 0", strength)
+                | scalar(ui, "Strength", "m³/s²", "G M, from 0", strength)
         }
         Force::Gravitation { constant } => {
-            scalar(ui, "Constant", "", "G, m³/(kg s²), from 0", constant)
+            scalar(ui, "Constant", "m³/(kg s²)", "G, from 0", constant)
         }
         Force::Body { .. } | Force::Pair { .. } => false,
     };

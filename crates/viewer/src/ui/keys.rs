@@ -354,6 +354,8 @@ pub(super) fn show_help(ctx: &egui::Context, open: &mut bool) {
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(ctx.content_rect().center())
         .show(ctx, |ui| {
+            // All of them in a window of 600 points.
+            ui.spacing_mut().interact_size.y = 16.0;
             let plain = SHORTCUTS.iter().map(|s| (s.label, s.meaning));
             let held = WITH_CTRL.iter().map(|held| (held.label, held.meaning));
             let all: Vec<_> = plain.chain(held).chain([MAGNIFY]).chain(GESTURES).collect();

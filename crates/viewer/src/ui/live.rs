@@ -68,8 +68,8 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
          at the origin, a spring at rest, and masses infinitely far apart",
         format!(
             "{} kin.  {} pot.",
-            number::energy(kinetic),
-            number::energy(potential)
+            number::energy(number::beside(kinetic, potential)),
+            number::energy(number::beside(potential, kinetic))
         ),
     );
     let (name, meaning) = match drift.energy_is_error() {
@@ -95,7 +95,10 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
         ui,
         "Momentum",
         "Sum of mass times velocity, p = Σ m v, kg m/s",
-        [p.x, p.y, p.z].map(number::figure).join("  ") + " kg m/s",
+        [p.x, p.y, p.z]
+            .map(|part| number::figure(number::beside(part, drift.pushes)))
+            .join("  ")
+            + " kg m/s",
     );
     field::figure(
         ui,

@@ -56,6 +56,8 @@ pub struct Ui {
     /// Whether a font has Chinese characters; not known before the first frame.
     has_chinese: Option<bool>,
     light: bool,
+    /// Naive against BVH is measured, and a figure of it has come since it is.
+    measured: [bool; 2],
 }
 
 impl Ui {
@@ -81,9 +83,7 @@ impl Ui {
             self.side_panel(root, session);
         }
         dock::show(root, self, session);
-        if let Some(text) = field::take_refused(root.ctx()) {
-            session.notices().error("number", text);
-        }
+        field::tell_refused(root.ctx(), session.notices());
         let rect = viewport::show(root, &mut self.handles, session, picture);
         let pixels = root.ctx().pixels_per_point() * rect.size();
         self.pixels = [pixels.x, pixels.y].map(|side| side.round().max(1.0) as u32);
@@ -166,14 +166,23 @@ impl Ui {
                         });
                         section(ui, "Forces", |ui| forces::show(ui, session));
                         section(ui, "Display", |ui| display::show(ui, session));
-                        section(ui, "Naive against BVH", |ui| compare::show(ui, session));
+                        let measuring = section(ui, "Naive against BVH", |ui| {
+                            compare::show(ui, session);
+                        });
+                        // It is at the end of the panel, and the tour switches it on as well.
+                        let on = session.compare.on;
+                        let figure = self.measured[1] || session.compare.last().is_some();
+                        let before = std::mem::replace(&mut self.measured, [on, on && figure]);
+                        if on && before != self.measured {
+                            measuring.scroll_to_me(None);
+                        }
                     });
             });
     }
 }
 
-fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui)) {
-    CollapsingHeader::new(RichText::new(say(title)).heading())
+fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui)) -> egui::Response {
+    let shown = CollapsingHeader::new(RichText::new(say(title)).heading())
         .default_open(true)
         .show_unindented(ui, |ui| {
             ui.add_space(2.0);
@@ -181,4 +190,5 @@ fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui))
             ui.add_space(8.0);
         });
     ui.separator();
+    shown.body_response.unwrap_or(shown.header_response)
 }

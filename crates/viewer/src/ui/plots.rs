@@ -1,13 +1,13 @@
 //! The plots under the picture: curves over all kept time, and speed against error.
 
-use egui::{Color32, Rangef, RichText, Sense, Vec2b};
+use egui::{Color32, Rangef, RichText, Sense, Vec2b, Visuals};
 use egui_plot::{
     AxisHints, GridInput, GridMark, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points, VLine,
 };
 
 use super::style;
 use crate::number::{self, tidy};
-use crate::session::{CHARTS, Chart, Curve, Session, State};
+use crate::session::{CHARTS, Chart, Curve, RUN, Session, State};
 use crate::words::say;
 
 /// Which plots are shown.
@@ -105,6 +105,14 @@ fn heading(ui: &mut egui::Ui, title: &str, unit: &str, meaning: &str, curves: &[
     });
 }
 
+/// Why there is no curve.
+fn note(ui: &mut egui::Ui, text: &str) {
+    // Columns would spread the words over their width.
+    ui.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
+        ui.label(RichText::new(say(text)).weak());
+    });
+}
+
 /// The names of all runs, in the colours that they have in every plot.
 fn legend(ui: &mut egui::Ui, curves: &[Curve]) {
     ui.horizontal_wrapped(|ui| {
@@ -115,11 +123,19 @@ fn legend(ui: &mut egui::Ui, curves: &[Curve]) {
 
 fn names(ui: &mut egui::Ui, curves: &[Curve]) {
     for curve in curves {
-        ui.label(
-            RichText::new(say(&curve.name))
-                .small()
-                .color(style::word(curve.colour, ui.visuals())),
-        );
+        ui.label(RichText::new(say(&curve.name)).small().color(ink(
+            curve.colour,
+            ui.visuals(),
+            style::word,
+        )));
+    }
+}
+
+/// The colour of a run; the run itself is as strong as text, in either theme.
+fn ink(colour: [f32; 3], visuals: &Visuals, other: fn([f32; 3], &Visuals) -> Color32) -> Color32 {
+    match colour == RUN {
+        true => visuals.strong_text_color(),
+        false => other(colour, visuals),
     }
 }
 
@@ -157,14 +173,15 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
     if curves.iter().all(|curve| curve.points.len() < 2) {
         let why = match session.state() {
             _ if session.playback().len() < 2 => "Start, and curves grow here.",
-            // It has no logarithm.
-            _ if chart.title == "Path error" && session.path_error() == Some(0.0) => {
-                "The error is 0: every body is where it would be exactly."
-            }
-            _ if chart.title == "Path error" => "The exact path is not known here.",
+            _ if chart.title == "Path error" => match session.path_error() {
+                None => "The exact path is not known here.",
+                // It has no logarithm.
+                Some(0.0) => "The error is 0: every body is where it would be exactly.",
+                Some(_) => "Nothing yet.",
+            },
             _ => "Nothing yet.",
         };
-        ui.label(RichText::new(say(why)).weak());
+        note(ui, why);
         return;
     }
     let group = egui::Id::unique("time of the plots");
@@ -178,7 +195,11 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
         .custom_x_axes(vec![
             AxisHints::new_x()
                 .label_spacing(Rangef::new(30.0, 45.0))
-                .formatter(|mark, _| format!("{} s", tidy(mark.value))),
+                .formatter(|mark, range| match is_at(*range.end(), mark, range) {
+                    // It would be cut.
+                    true => String::new(),
+                    false => format!("{} s", tidy(mark.value)),
+                }),
         ])
         .include_x(first)
         .include_x(last.max(first + 1e-9))
@@ -204,13 +225,21 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
         Some((value, size)) if !logarithmic => plot.include_y(value - size).include_y(value + size),
         _ => plot,
     };
+    // What is rounding lies at the bottom, below a nanometre.
+    let plot = match chart.title {
+        "Path error" => plot.include_y(-9.0),
+        _ => plot,
+    };
     let now = session.shown_time();
     let visuals = ui.visuals().clone();
     let shown = plot.show(ui, |plot| {
         for curve in &curves {
             let points = PlotPoints::from(curve.points.clone());
-            let line =
-                Line::new(say(&curve.name), points).color(style::curve(curve.colour, &visuals));
+            let line = Line::new(say(&curve.name), points).color(ink(
+                curve.colour,
+                &visuals,
+                style::curve,
+            ));
             plot.line(line.width(1.8));
         }
         plot.vline(
@@ -238,8 +267,7 @@ fn precision(ui: &mut egui::Ui, session: &Session, height: f32) {
     heading(ui, "Speed against error", "", meaning, &[]);
     let height = height - (ui.cursor().top() - top);
     if runs.is_empty() {
-        let text = "Needs a run whose exact path is known.";
-        ui.label(RichText::new(say(text)).weak());
+        note(ui, "Needs a run whose exact path is known.");
         return;
     }
     let visuals = ui.visuals().clone();
@@ -268,7 +296,7 @@ fn precision(ui: &mut egui::Ui, session: &Session, height: f32) {
             for run in &runs {
                 let points = PlotPoints::from(run.points.clone());
                 let points = Points::new(say(&run.name), points).radius(5.0);
-                plot.points(points.color(style::curve(run.colour, &visuals)));
+                plot.points(points.color(ink(run.colour, &visuals, style::curve)));
             }
         });
 }
@@ -326,12 +354,21 @@ fn powers(input: GridInput) -> Vec<GridMark> {
         .collect()
 }
 
+/// Whether a mark is at an end of its axis.
+fn is_at(end: f64, mark: GridMark, range: &std::ops::RangeInclusive<f64>) -> bool {
+    (mark.value - end).abs() < 0.03 * (range.end() - range.start())
+}
+
 fn axis_text(mark: GridMark, range: &std::ops::RangeInclusive<f64>, logarithmic: bool) -> String {
     if logarithmic {
         return format!("{:.0e}", 10_f64.powf(mark.value));
     }
+    // It would meet the number of the other axis.
+    if is_at(*range.start(), mark, range) {
+        return String::new();
+    }
     let size = range.start().abs().max(range.end().abs());
-    if (1e-3..1e5).contains(&size) {
+    if mark.value == 0.0 || (1e-3..1e5).contains(&size) {
         tidy(mark.value)
     } else {
         format!("{:.1e}", mark.value)

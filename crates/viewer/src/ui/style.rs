@@ -63,7 +63,8 @@ pub fn apply(ctx: &egui::Context) {
             (TextStyle::Heading, FontId::proportional(14.5)),
             (TextStyle::Body, FontId::proportional(13.0)),
             (TextStyle::Button, FontId::proportional(13.0)),
-            (TextStyle::Monospace, FontId::monospace(12.0)),
+            // Its digits are all as wide as each other, and its zeros are no eights from afar.
+            (TextStyle::Monospace, FontId::proportional(13.0)),
             (TextStyle::Small, FontId::proportional(11.0)),
         ]
         .into();
@@ -113,7 +114,7 @@ fn light(visuals: &mut Visuals) {
     visuals.widgets.inactive.bg_fill = Color32::from_rgb(206, 210, 217);
 }
 
-/// A colour of the picture for a curve, dot or word on the background of plots, made darker or lighter
+/// A colour of the picture for a curve or dot on the background of plots, made darker or lighter
 /// until it is seen there.
 pub(super) fn curve(colour: [f32; 3], visuals: &Visuals) -> Color32 {
     apart(colour, visuals.extreme_bg_color, CURVE_CONTRAST)

@@ -31,6 +31,8 @@ pub(super) fn show(root: &mut egui::Ui, tour: &mut Tour, session: &mut Session) 
                     part(ui, "Watch", here.watch);
                     ui.add_space(8.0);
                     ui.label(RichText::new(say("Try")).strong());
+                    let hint = "Each of these opens the scene anew.";
+                    ui.label(RichText::new(say(hint)).weak());
                     for (attempt, what) in here.attempts.iter().enumerate() {
                         let button = ui.button(say(what.title));
                         if button

@@ -170,9 +170,11 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
                 let text = text.color(super::style::word(variant.colour, ui.visuals()));
                 run_name(ui, text, name);
                 if let Some(why) = &variant.failure {
-                    let text = format!("stopped at {:.3} s", variant.time());
-                    ui.label(RichText::new(say(text)).color(super::style::AMBER.of(ui.visuals())))
-                        .on_hover_text(say(why));
+                    // When and why on hovering, as the table is narrow.
+                    let when = say(format!("stopped at {:.3} s", variant.time()));
+                    let colour = super::style::AMBER.of(ui.visuals());
+                    ui.label(RichText::new(say("stopped")).color(colour))
+                        .on_hover_text(format!("{when}\n{}", say(why)));
                     ui.label("");
                     ui.label("");
                 } else {
@@ -220,7 +222,7 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
 
 /// The name of a run, cut where it is too long.
 fn run_name(ui: &mut egui::Ui, name: RichText, more: &str) {
-    let size = egui::vec2(98.0, ui.spacing().interact_size.y);
+    let size = egui::vec2(102.0, ui.spacing().interact_size.y);
     let left = egui::Layout::left_to_right(egui::Align::Center);
     ui.allocate_ui_with_layout(size, left, |ui| {
         ui.set_min_width(size.x);

@@ -174,7 +174,7 @@ pub(super) fn place(rect: Rect, aspect: f64, session: &Session, point: DVec3) ->
     Some(rect.center() + 0.5 * egui::vec2(x as f32, -y as f32) * rect.size())
 }
 
-/// Writes letters and numbers, m, on the axes.
+/// Writes letters and numbers, m, on the axes, where no body is before them.
 fn number_axes(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
     if !session.display.grid || !session.display.numbers {
         return;
@@ -189,7 +189,11 @@ fn number_axes(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
         };
         let text = painter.layout_no_wrap(text, font.clone(), colour);
         let area = Align2::CENTER_TOP.anchor_size(at + egui::vec2(0.0, 3.0), text.size());
-        if taken.iter().any(|other| other.intersects(area)) {
+        let covered = taken.iter().any(|other| other.intersects(area));
+        if !rect.contains_rect(area) || covered {
+            return;
+        }
+        if session.hides(point, ray(rect, at, aspect, session)) {
             return;
         }
         taken.push(area);

@@ -65,7 +65,7 @@ pub fn say(text: impl AsRef<str>) -> String {
     spoken().say(text.as_ref())
 }
 
-static CHINESE: LazyLock<Table> = LazyLock::new(|| Table::new(chinese::TEXTS));
+static CHINESE: LazyLock<Table> = LazyLock::new(|| Table::new(&chinese::TEXTS));
 
 /// Texts and what they are in another language.
 struct Table {
@@ -75,12 +75,12 @@ struct Table {
 }
 
 impl Table {
-    fn new(texts: &[(&'static str, &'static str)]) -> Self {
+    fn new(texts: &[&[(&'static str, &'static str)]]) -> Self {
         let mut table = Table {
             whole: HashMap::new(),
             patterns: Vec::new(),
         };
-        for &(english, other) in texts {
+        for &(english, other) in texts.iter().copied().flatten() {
             if english.contains("{}") {
                 let pieces = english.split("{}").collect();
                 table.patterns.push((pieces, other));
@@ -148,12 +148,12 @@ mod tests {
 
     #[test]
     fn texts_are_found_whole_and_by_their_pattern() {
-        let table = Table::new(&[
+        let table = Table::new(&[&[
             ("Start", "开始"),
             ("now", "现在"),
             ("{} and {} meet, as of {}.", "{2!},{0} 与 {1} 相交。"),
             ("{} meet.", "{0} 相交。"),
-        ]);
+        ]]);
         let cases = [
             ("Start", Some("开始")),
             ("a and b meet, as of now.", Some("现在,a 与 b 相交。")),
@@ -172,7 +172,7 @@ mod tests {
     #[test]
     fn every_text_is_there_once_and_is_chinese_with_all_its_parts() {
         let mut seen = std::collections::HashSet::new();
-        for (english, chinese) in chinese::TEXTS {
+        for (english, chinese) in chinese::TEXTS.into_iter().flatten() {
             assert!(seen.insert(english), "twice: {english}");
             assert!(!english.is_empty() && !chinese.is_empty());
             let count = english.matches("{}").count();

@@ -1,6 +1,7 @@
 //! The descent that is shown level by level.
 
 use super::*;
+use crate::session::{Contest, Leaving, stop};
 
 fn cow() -> Session {
     let mut session =
@@ -67,4 +68,36 @@ fn the_descent_pair_by_pair_compares_what_the_levels_do() {
     assert_eq!(session.display.pair, Some(pairs.len() - 1), "it ends");
     session.step_descent(-1);
     assert_eq!(session.display.pair, None, "level by level again");
+}
+
+#[test]
+fn what_turns_is_compared_as_it_is_turned() {
+    let scene = Scene::load("cube-cow-spin").expect("in the gallery");
+    let mut session = Session::new(scene).expect("a world");
+    assert_eq!(session.contest(), Contest::Apart(0, 1));
+    session.select(Some(1));
+    session.set_position(session.world().position(0) + DVec3::new(0.0, 0.5, 0.0));
+    assert_eq!(session.contest(), Contest::Pair(0, 1));
+    session.compare.on = true;
+    let trial = session.trial_due(FRAME).expect("it is due");
+    session.accept_trial(trial.run(slow(Duration::from_millis(1))));
+    let last = session.compare.last().expect("a figure");
+    assert!(last.meet && last.agree && last.naive.is_some());
+    assert!(!session.wants_trial(), "nothing has moved");
+    let levels = session.descent();
+    assert!(levels.len() > 3 && levels.last().is_some_and(|level| level.meeting > 0));
+    // A quarter of a turn about itself moves no centre, and is another question.
+    session.set_rotation(DVec3::new(20.0, 30.0, 130.0));
+    assert!(session.wants_trial());
+}
+
+#[test]
+fn the_tour_has_a_descent_to_go_down() {
+    let mut session = cow();
+    let titled = |number: &usize| stop(*number).is_some_and(|(_, s)| s.title == "Why the BVH wins");
+    let stop = (0..).find(titled).expect("it is in the tour");
+    session.leave(Leaving::Tour { stop, attempt: 0 });
+    let levels = session.descent();
+    assert!(levels.len() > 3, "{levels:?}");
+    assert!(session.world().overlapping().is_empty());
 }

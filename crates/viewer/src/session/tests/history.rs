@@ -152,3 +152,24 @@ fn a_file_that_has_changed_is_read_again_but_not_over_edits() {
     assert!(session.notices().iter().any(|notice| notice.error));
     std::fs::remove_dir_all(folder).expect("removed");
 }
+
+#[test]
+fn a_scene_that_came_from_a_file_is_saved_to_it() {
+    let name = format!("cowbell-own-{}.toml", std::process::id());
+    let path = std::env::temp_dir().join(name);
+    let text = "rate = 60\n[[body]]\nname = \"cube\"\nmesh = \"cube.obj\"\n";
+    std::fs::write(&path, text).expect("a file can be written");
+    let scene = Scene::load(&path).expect("a scene");
+    let mut session = Session::of_file(scene, &path).expect("a world");
+    session.select(Some(0));
+    session.set_mass(7.0);
+    session.settle(LONG);
+    session.save_own();
+    let saved = Scene::load(&path).expect("a scene");
+    assert_eq!(saved.bodies[0].mass, 7.0);
+    assert!(!session.is_changed());
+    std::fs::remove_file(&path).expect("it is there");
+    let gallery = Scene::load("spring").expect("in the gallery");
+    let session = Session::of_file(gallery, Path::new("spring")).expect("a world");
+    assert_eq!(session.file(), None, "it comes with the program");
+}

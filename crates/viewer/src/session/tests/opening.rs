@@ -1,6 +1,7 @@
 //! The view on a scene just opened, and places for what is added.
 
 use super::*;
+use crate::session::Leaving;
 use scene::SceneShape;
 
 fn gallery(name: &str, collision: Collision) -> Session {
@@ -37,6 +38,63 @@ fn the_person_keeps_the_view_that_they_have_turned_to() {
     let other = session.camera;
     session.accept_outlook(&late.run(free()));
     assert_eq!(session.camera, other, "of the scene before");
+}
+
+#[test]
+fn what_a_stop_of_the_tour_sets_going_stays_in_view() {
+    for (number, attempt) in [(0, 0), (0, 1), (2, 0), (2, 1), (5, 0)] {
+        let mut session = session();
+        session.leave(Leaving::Tour {
+            stop: number,
+            attempt,
+        });
+        advance(&mut session, FRAME, free());
+        session.look_ahead();
+        for _ in 0..600 {
+            advance(&mut session, FRAME, free());
+            let out = session.out_of_view(1.4);
+            assert!(out.is_empty(), "{number}.{attempt}: {out:?}");
+            if session.state() == State::Paused {
+                break;
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_leaves_the_view_before_its_scene_ends() {
+    let mut seen = 0;
+    for entry in scene::SCENES {
+        let scene = Scene::load(entry.name).expect("in the gallery");
+        let Some(ends) = scene.ends else { continue };
+        let mut session = Session::new(scene).expect("a world");
+        session.look_ahead();
+        session.start();
+        while session.state() == State::Running {
+            advance(&mut session, Duration::from_millis(100), free());
+            let (time, out) = (session.shown_time(), session.out_of_view(1.4));
+            assert!(
+                out.is_empty(),
+                "{} at {time} of {ends}: {out:?}",
+                entry.name
+            );
+        }
+        seen += 1;
+    }
+    assert!(seen >= 12);
+}
+
+#[test]
+fn what_a_spring_pulls_down_comes_to_rest_in_view() {
+    let mut session = gallery("stiff-spring", Collision::Continuous);
+    session.look_ahead();
+    session.start();
+    (0..60).for_each(|_| advance(&mut session, FRAME, free()));
+    let [middle, below] = [0.0, 0.5].map(|down| session.shown_position(0) - down * DVec3::Y);
+    for point in [middle, below] {
+        let place = session.camera.project(point, 1.4).expect("before the eye");
+        assert!(place.iter().all(|part| part.abs() < 0.95), "{place:?}");
+    }
 }
 
 #[test]

@@ -42,6 +42,25 @@ fn what_has_left_the_view_is_pointed_out() {
 }
 
 #[test]
+fn a_body_hides_what_is_behind_it_and_nothing_else() {
+    let mut session = session();
+    for parallel in [false, true] {
+        session.camera.parallel = parallel;
+        // The target is a cube of 1 m about the origin.
+        let forward = session.camera.forward();
+        for (point, hidden) in [
+            (2.0 * forward, true),
+            (-2.0 * forward, false),
+            (DVec3::new(0.0, 3.0, 0.0), false),
+        ] {
+            let [x, y] = session.camera.project(point, 1.5).expect("it is seen");
+            let ray = session.camera.ray(x, y, 1.5);
+            assert_eq!(session.hides(point, ray), hidden, "{point}, {parallel}");
+        }
+    }
+}
+
+#[test]
 fn the_arrow_of_an_impact_is_on_what_moves() {
     let text = "rate = 60\n[[body]]\nname = \"ball\"\nsphere = 0.5\nposition = [0, 1, 0]\nvelocity = [0, -5, 0]\n\
                 [[body]]\nname = \"floor\"\nhalf-space = [0, 1, 0]";
