@@ -157,7 +157,7 @@ impl Flight {
             }
         }
         let pull = self.torque.length() / self.moments.min_element();
-        if !spin.is_finite() {
+        if !(spin.is_finite() && pull.is_finite()) {
             return Err(FlightError::NotFinite);
         }
         let whole = rate(spin.length(), pull) * self.duration.abs();
