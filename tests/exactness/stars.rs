@@ -99,3 +99,48 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
 fn clumps_of_stars_keep_what_they_have() {
     judge(25, case);
 }
+
+/// Two stars at rest 1 m apart, which meet when they touch and part as they came; a method of a fixed step that
+/// finds no motion there says so, of whom, and what to do.
+#[test]
+fn stars_head_on_part_again_or_the_error_names_both() {
+    for radius in [0.1, 1e-3, 1e-6] {
+        for method in METHODS {
+            let (dt, tolerance) = (1.0 / 240.0, 1e-10);
+            let settings = Settings {
+                method,
+                dt,
+                tolerance,
+                ..Settings::default()
+            };
+            let star = |x: f64, mass: f64| Body {
+                mass,
+                ..body(&ball(radius), x * DVec3::X, DVec3::ZERO)
+            };
+            let mut world = world_of(settings, &[star(0.0, 4.0), star(1.0, 7.0)]);
+            let force = Force::Gravitation { constant: 1.0 };
+            world.add_force(force).expect("a force");
+            let (start, name) = (total(&world), (method.name, radius));
+            let done = (0..200).try_for_each(|_| world.step());
+            match done {
+                Ok(()) if method.adaptive => {
+                    let closing = -28.0 + 28.0 / (2.0 * radius);
+                    assert_eq!(world.impacts(), 1, "{name:?}");
+                    let off = (total(&world) - start).abs();
+                    assert!(off < STEPS * tolerance * closing, "{name:?}: {off:e} J");
+                }
+                Ok(()) => {}
+                Err(error) => {
+                    assert!(!method.adaptive, "{name:?}: {error}");
+                    let text = error.to_string();
+                    assert!(text.contains("body 0 beside body 1"), "{text}");
+                    assert!(text.contains(method.title), "{text}");
+                    assert!(
+                        text.contains("choose a method that controls its error"),
+                        "{text}"
+                    );
+                }
+            }
+        }
+    }
+}

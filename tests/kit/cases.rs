@@ -4,24 +4,26 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use scene::{FORMATS, Scene, mesh_file};
+use scene::{FORMATS, Scene, mesh_file, shown};
 use sim_core::collide::{naive, touch, tree};
 use sim_core::{
-    Body, BodyKind, Bvh, Collision, DVec3, METHODS, Mesh, Settings, Shape, Vec3, World,
+    Body, BodyKind, Bvh, Collision, DVec3, METHODS, Mesh, Settings, Shape, StepError, Vec3, World,
 };
 
+use crate::hostile;
 use crate::oracle::segment_meets_triangle;
 
 /// A name and what is done with bytes.
 pub type Case = (&'static str, fn(&[u8]));
 
 /// All of them.
-pub const CASES: [Case; 8] = [
+pub const CASES: [Case; 9] = [
     ("obj", |bytes| mesh("obj", bytes)),
     ("collada", |bytes| mesh("dae", bytes)),
     ("stl", |bytes| mesh("stl", bytes)),
     ("ply", |bytes| mesh("ply", bytes)),
     ("scene", scene),
+    ("values", values),
     ("pair", pair),
     ("sweep", sweep),
     ("step", step),
@@ -51,42 +53,94 @@ fn mesh(format: &str, bytes: &[u8]) {
 
 /// No message is long, or acts on a terminal.
 fn assert_message(message: &str) {
-    assert!(message.len() < 4096, "{} bytes", message.len());
-    assert!(!message.chars().any(char::is_control), "{message:?}");
+    assert!(message.len() < 1000, "{} bytes", message.len());
+    assert!(!message.contains(shown::is_unsafe), "{message:?}");
 }
 
-/// The text of a scene: an error, or a scene that is the same after it has been written, and whose motion
-/// stays among the numbers.
+/// The text of a scene.
 fn scene(bytes: &[u8]) {
-    let Ok(text) = std::str::from_utf8(bytes) else {
-        return;
-    };
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        scene_text(text);
+    }
+}
+
+/// A scene of the gallery with other values.
+fn values(bytes: &[u8]) {
+    scene_text(&hostile::text(&mut Source(bytes)));
+}
+
+/// An error with its line, or a scene that is the same after it has been written, that makes a world, and whose
+/// motion stays among the numbers in every mode.
+fn scene_text(text: &str) {
     let scene = match Scene::parse(text, Path::new("fuzz.toml")) {
         Ok(scene) => scene,
-        Err(error) => return assert_message(&error.to_string()),
+        Err(error) => return assert_placed(&error.to_string(), text),
     };
     let written = scene.to_toml();
     let again = Scene::parse(&written, Path::new("fuzz.toml"));
     let again = again.unwrap_or_else(|error| panic!("{error}: {written}"));
     assert_eq!(again.to_toml(), written);
-    if scene.bodies.len() > 40 {
+    let world = scene.world();
+    let world = world.unwrap_or_else(|error| panic!("{error}, without a line: {text}"));
+    let triangles = |body| match world.shape(body) {
+        Some(Shape::Mesh(mesh)) => mesh.triangles().len(),
+        _ => 0,
+    };
+    if world.len() > MOST_BODIES {
         return;
     }
-    let Ok(mut world) = scene.world() else {
-        return;
-    };
-    for _ in 0..4 {
-        if world.step().is_err() {
-            break;
+    let is_small = (0..world.len()).map(triangles).sum::<usize>() <= MOST_NAIVE;
+    let modes = [Collision::Continuous, Collision::Bvh, Collision::Naive];
+    for collision in modes.into_iter().take(if is_small { 3 } else { 2 }) {
+        let mut world = world.clone();
+        let settings = Settings {
+            collision,
+            ..*world.settings()
+        };
+        world.set_settings(settings).expect("settings");
+        for _ in 0..4 {
+            if let Err(error) = world.step() {
+                assert_message(&error.to_string());
+                // That has taken long, and takes as long in the other modes.
+                if matches!(
+                    error,
+                    StepError::TooMuchWork { .. } | StepError::TooManySteps { .. }
+                ) {
+                    return;
+                }
+                break;
+            }
+            let is_finite =
+                |body: usize| world.position(body).is_finite() && world.velocity(body).is_finite();
+            assert!((0..world.len()).all(is_finite), "{text}");
+            assert!(world.kinetic_energy().is_finite(), "{text}");
         }
     }
-    let is_finite =
-        |body: usize| world.position(body).is_finite() && world.velocity(body).is_finite();
-    assert!((0..world.len()).all(is_finite));
+}
+
+/// Bodies of a world that is stepped here, and triangles of one that is searched naively.
+const MOST_BODIES: usize = 40;
+const MOST_NAIVE: usize = 1_000;
+
+/// A message names file and line, but for a step that stands nowhere.
+fn assert_placed(message: &str, text: &str) {
+    assert_message(message);
+    let place = message.strip_prefix("fuzz.toml:").expect("the file");
+    let line = place.split(':').next().map(str::parse::<usize>);
+    match line {
+        Some(Ok(line)) => assert!(
+            (1..=1 + text.matches('\n').count()).contains(&line),
+            "{message}"
+        ),
+        _ => assert!(
+            place.starts_with(" the step is missing"),
+            "{message}: {text}"
+        ),
+    }
 }
 
 /// Numbers from bytes, 0 once there are none left.
-struct Source<'a>(&'a [u8]);
+pub(crate) struct Source<'a>(pub(crate) &'a [u8]);
 
 impl Source<'_> {
     fn byte(&mut self) -> u8 {
@@ -95,6 +149,11 @@ impl Source<'_> {
         };
         self.0 = rest;
         first
+    }
+
+    /// A whole number less than a count of up to 65,536.
+    pub(crate) fn below(&mut self, count: usize) -> usize {
+        (usize::from(self.byte()) << 8 | usize::from(self.byte())) % count
     }
 
     /// Mostly few values, so that features lie on each other; else of any size.

@@ -4,6 +4,7 @@ pub mod agree;
 pub mod bodies;
 pub mod cases;
 pub mod elliptic;
+mod hostile;
 pub mod inputs;
 pub mod meshes;
 pub mod oracle;

@@ -427,3 +427,24 @@ fn what_cannot_be_followed_is_an_error() {
     assert_eq!(new(tumbles.x * DVec3::X, DVec3::ZERO, duration), Ok(()));
     assert!(new(1e-300 * tumbles, 1e-300 * torque, 1.0).is_ok());
 }
+
+#[test]
+fn a_flight_is_the_same_at_every_speed() {
+    let moments = DVec3::new(1.0, 2.0, 2.5);
+    let start = DVec3::new(0.1, 1.5, -0.4);
+    let torque = DVec3::new(0.2, 0.1, -0.3);
+    for by in [1e-60_f64, 1e-30, 1e12, 1e40, 1e70].map(|by| by.log2().round().exp2()) {
+        for torque in [DVec3::ZERO, torque] {
+            let flight = |by: f64| {
+                let (momentum, torque) = (moments * start * by, torque * by * by);
+                Flight::new(moments, DQuat::IDENTITY, momentum, torque, 10.0 / by)
+                    .expect("a flight")
+            };
+            // By a power of two, which changes no digit.
+            let (slow, fast) = (flight(1.0), flight(by));
+            for t in [0.1, 5.0, 10.0] {
+                assert_eq!(slow.rotation_at(t), fast.rotation_at(t / by), "{by} {t}");
+            }
+        }
+    }
+}

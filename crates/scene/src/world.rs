@@ -29,11 +29,7 @@ impl Scene {
             World::new(settings).map_err(|error| self.world_error(None, None, error))?;
         let names = group_names(&self.bodies);
         if names.len() > MOST_GROUPS {
-            let what = format!(
-                "{} groups are named: there can be {MOST_GROUPS}",
-                names.len()
-            );
-            return Err(self.world_error(None, Some("groups"), what));
+            return Err(self.world_error(None, Some("groups"), TOO_MANY_GROUPS));
         }
         let mut baked = Baked::default();
         for body in &self.bodies {
@@ -100,21 +96,27 @@ impl Scene {
 }
 
 /// Groups that bodies of a scene can be in.
-const MOST_GROUPS: usize = 32;
+pub(crate) const MOST_GROUPS: usize = 32;
+
+/// What is wrong with more.
+pub(crate) const TOO_MANY_GROUPS: &str =
+    "more than 32 groups are named up to here: use some of them for several bodies";
 
 /// The names of all groups of some bodies, in the order in which they come up.
 fn group_names(bodies: &[SceneBody]) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
-    for body in bodies {
-        let own = body.groups.iter().chain(&body.collides_with).flatten();
-        for name in own {
-            // More than there can be are not counted one by one.
-            if !names.contains(&name.as_str()) && names.len() <= MOST_GROUPS {
-                names.push(name);
-            }
+    bodies.iter().for_each(|body| note_groups(body, &mut names));
+    names
+}
+
+/// Adds the names of the groups of a body that are not known yet; more than there can be are not counted one by one.
+pub(crate) fn note_groups<'a>(body: &'a SceneBody, names: &mut Vec<&'a str>) {
+    let own = body.groups.iter().chain(&body.collides_with).flatten();
+    for name in own {
+        if !names.contains(&name.as_str()) && names.len() <= MOST_GROUPS {
+            names.push(name);
         }
     }
-    names
 }
 
 /// A bit for each of some groups, all bits where none are named.
@@ -147,6 +149,12 @@ fn rotation(degrees: DVec3) -> DQuat {
     // Fixed axes in the order x, y, z are moving axes in the order z, y, x.
     let [x, y, z] = degrees.to_array().map(f64::to_radians);
     DQuat::from_euler(EulerRot::ZYX, z, y, x)
+}
+
+/// The angular momentum of a body as its world has it, kg m²/s.
+pub(crate) fn angular_momentum(body: &SceneBody, inertia: &Inertia, spin: DVec3) -> DVec3 {
+    let axes = rotation(body.rotation).normalize() * inertia.axes();
+    axes * (inertia.moments() * (axes.inverse() * spin))
 }
 
 /// Meshes that have been turned and scaled, and what they enclose, each once.

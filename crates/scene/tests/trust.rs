@@ -145,6 +145,40 @@ fn a_mesh_that_cannot_be_made_is_told_with_its_line() {
 }
 
 #[test]
+fn what_a_world_would_refuse_is_told_with_its_line() {
+    let group = |i: usize| {
+        format!("[[body]]\nname = 'b{i}'\nsphere = 0\ngroups = ['g{i}']\nposition = [{i}, 0, 0]\n")
+    };
+    let groups: String = (0..33).map(group).collect();
+    let ball = "[[body]]\nname = 'a'\nsphere = 1e30\nmass = 1e60\n";
+    for (text, expected) in [
+        (groups, ":163: body `b32`, groups: more than 32 groups"),
+        (
+            format!(
+                "{ball}velocity = [1e100, 0, 0]\ncopies = 9\nspeed = 1e100\ninside = [[0, 0, 0], [1e31, 1e31, 1e31]]\n"
+            ),
+            ":8: body `a`, speed: must be so",
+        ),
+        (
+            format!("{ball}turns = true\nspin = [1, 2, 3]\n"),
+            ":7: body `a`, spin: the angular momentum must be",
+        ),
+        (
+            format!("{ball}copies = nan\n"),
+            ":6: body `a`, copies: invalid type: floating point `NaN`, expected a whole number from 0",
+        ),
+        (
+            format!("{ball}friction = 1e400\n"),
+            ":6: body `a`, friction: floating-point number overflowed: give one within ±1e100",
+        ),
+    ] {
+        let message = refusal(&format!("rate = 60\n{text}"));
+        assert!(message.contains(expected), "{message}");
+        fit_to_be_shown(&message);
+    }
+}
+
+#[test]
 fn a_key_given_twice_is_named() {
     let message = refusal("rate = 60\nrate = 50\n");
     assert!(

@@ -13,7 +13,7 @@ use crate::colour;
 use crate::error::SceneError;
 use crate::scene::{SceneBody, SceneShape, SceneTurn};
 use crate::shown;
-use crate::world::baked_field;
+use crate::world::{angular_momentum, baked_field};
 
 /// The bodies of a table: one, or its copies, which keep clear of those before it.
 pub(super) fn parse(
@@ -154,6 +154,7 @@ fn turn(
         };
     };
     let inertia_span = inertia.as_ref().map(Spanned::span);
+    let spin_span = spin.as_ref().map_or(turns.span(), Spanned::span);
     let turn = SceneTurn {
         spin: place.vector("spin", spin)?,
         torque: place.vector("torque", torque)?,
@@ -165,6 +166,16 @@ fn turn(
         ..body.clone()
     };
     match obstacles.baked.inertia(&turning) {
+        Ok(Some(inertia)) if !body.immovable => {
+            let momentum = angular_momentum(&turning, &inertia, turn.spin);
+            match momentum.abs().cmple(DVec3::splat(LARGEST)).all() {
+                true => Ok(Some(turn)),
+                false => {
+                    let what = "the angular momentum must be within ±1e100 kg m²/s: lower the spin, or the inertia";
+                    Err(place.error(spin_span, "spin", what))
+                }
+            }
+        }
         Ok(_) => Ok(Some(turn)),
         Err(what) => match inertia_span {
             Some(span) => Err(place.error(span, "inertia", what)),

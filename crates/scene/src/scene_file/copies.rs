@@ -1,5 +1,7 @@
 //! `copies`: many bodies from one table, at random places where none touches another.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use toml::Spanned;
 
@@ -19,6 +21,7 @@ const TRIES: usize = 10_000;
 /// What a table says of its copies.
 pub(super) struct Copies {
     count: Spanned<usize>,
+    speed_span: Range<usize>,
     /// Least and greatest corner of the box that they are in.
     inside: (DVec3, DVec3),
     speed: f64,
@@ -59,17 +62,18 @@ pub(super) fn parse(place: &Place, text: &Body) -> Result<Option<Copies>, SceneE
         return Err(place.error(count.span(), "copies", what));
     };
     let speed = text.speed.as_ref().map_or(0.0, |value| value.get_ref().0);
+    let speed_span = text.speed.as_ref().map_or(count.span(), Spanned::span);
     if !(0.0..=LARGEST).contains(&speed) {
         let what = format!(
             "must be a speed in m/s from 0 to 1e100, is {}",
             shown::number(speed)
         );
-        let span = text.speed.as_ref().map_or(count.span(), Spanned::span);
-        return Err(place.error(span, "speed", what));
+        return Err(place.error(speed_span, "speed", what));
     }
     Ok(Some(Copies {
         inside: inside(place, corners)?,
         count,
+        speed_span,
         speed,
         seed: text.seed.as_ref().map_or(0, |value| *value.get_ref()),
     }))
@@ -109,7 +113,10 @@ impl Copies {
         if !least.cmple(greatest).all() {
             let size = max - min;
             return Err(wrong(format!(
-                "the box `inside` is smaller than the body, which takes up {size} m"
+                "the box `inside` is smaller than the body, which takes up [{}, {}, {}] m: enlarge it",
+                shown::number(size.x),
+                shown::number(size.y),
+                shown::number(size.z)
             )));
         }
         let count = *self.count.get_ref();
@@ -135,10 +142,16 @@ impl Copies {
                 )));
             };
             taken.add(here);
+            let velocity = body.velocity + self.speed * random.direction();
+            if !velocity.abs().cmple(DVec3::splat(LARGEST)).all() {
+                let what =
+                    "must be so that with `velocity` no copy has a speed above 1e100 m/s: lower it";
+                return Err(place.error(self.speed_span.clone(), "speed", what));
+            }
             copies.push(SceneBody {
                 name: format!("{} {number}", body.name),
                 position,
-                velocity: body.velocity + self.speed * random.direction(),
+                velocity,
                 ..body.clone()
             });
         }

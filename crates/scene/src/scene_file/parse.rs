@@ -19,6 +19,7 @@ use super::{body, force};
 use crate::error::SceneError;
 use crate::scene::Scene;
 use crate::shown;
+use crate::world::{MOST_GROUPS, TOO_MANY_GROUPS, note_groups};
 
 /// The ways to search for collisions, by the names in scene files.
 const COLLISIONS: [(&str, Collision); 3] = [
@@ -83,6 +84,15 @@ pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<S
             }
         }
         scene.bodies.extend(bodies);
+    }
+    let mut groups = Vec::new();
+    for body in &scene.bodies {
+        note_groups(body, &mut groups);
+        if groups.len() > MOST_GROUPS {
+            let start = starts.get(&body.name).copied().unwrap_or_default();
+            let place = Place::new(&source, Subject::Body(&body.name));
+            return Err(place.error(start..start, "groups", TOO_MANY_GROUPS));
+        }
     }
     let names = scene.bodies.iter().map(|body| body.name.as_str());
     let names: HashMap<&str, usize> = names.zip(0..).collect();
@@ -171,6 +181,13 @@ impl Source<'_> {
             && what == "duplicate key"
         {
             what += &format!(" `{}`: give it once", shown::name(key));
+        }
+        if what == "floating-point number overflowed" {
+            what += ": give one within ±1e100";
+        }
+        // Types of Rust say little to who writes a scene.
+        for whole in ["expected usize", "expected u64"] {
+            what = what.replace(whole, "expected a whole number from 0");
         }
         SceneError::Content {
             file: self.file.to_owned(),

@@ -28,7 +28,8 @@ pub fn spin(moments: DVec3, rotation: DQuat, momentum: DVec3) -> DVec3 {
 pub enum FlightError {
     /// Something is not a number, or beyond all numbers on the way.
     #[error(
-        "a rotation, its momentum and its torque must be finite, and so must what becomes of them"
+        "its angular momentum and torque, and what becomes of them, must be finite: lower the spin, the torque or \
+         the forces, or take shorter steps"
     )]
     NotFinite,
     /// It turns by half a turn or more while forces act at points of it.
@@ -157,7 +158,7 @@ impl Flight {
             }
         }
         let pull = self.torque.length() / self.moments.min_element();
-        if !spin.is_finite() {
+        if !(spin.is_finite() && pull.is_finite()) {
             return Err(FlightError::NotFinite);
         }
         let whole = rate(spin.length(), pull) * self.duration.abs();

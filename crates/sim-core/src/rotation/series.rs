@@ -45,12 +45,18 @@ pub(super) fn rate(spin: f64, a: f64) -> f64 {
     }
 }
 
+/// Exponents of units whose squares are numbers.
+const MOST_UNITS: i32 = 500;
+
 pub(super) const ROOT_3: f64 = 1.732_050_807_568_877_2;
 
 /// The rotation since the start of a piece, as a polynomial.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Series {
     order: usize,
+    /// Units of time in a second, a power of two: a unit is about what the body turns by a radian in, as powers
+    /// of its speed in seconds may be no numbers. That changes no digit.
+    units: f64,
     /// Of `x, y, z, w`.
     turn: [[f64; 4]; MOST + 1],
 }
@@ -59,6 +65,12 @@ impl Series {
     /// Of a body with principal moments, of an angular velocity and a torque in its frame.
     pub(super) fn new(moments: DVec3, spin: DVec3, torque: Option<DVec3>, order: usize) -> Series {
         let inverse = moments.recip();
+        let pull = torque.map_or(0.0, |torque| (inverse * torque).abs().max_element());
+        let speed = spin.abs().max_element().max(libm::sqrt(pull));
+        let exponent = libm::frexp(speed).1.clamp(-MOST_UNITS, MOST_UNITS);
+        let units = libm::ldexp(1.0, exponent);
+        let spin = spin / units;
+        let torque = torque.map(|torque| torque / (units * units));
         let factor = DVec3::new(
             moments.y - moments.z,
             moments.z - moments.x,
@@ -100,11 +112,12 @@ impl Series {
             }
             turn[n + 1] = d.map(|d| 0.5 * part * d);
         }
-        Series { order, turn }
+        Series { order, units, turn }
     }
 
     /// The rotation since the start of the piece, after a time, s.
     pub(super) fn at(&self, t: f64) -> DQuat {
+        let t = t * self.units;
         let mut sum = [0.0; 4];
         for term in self.turn[1..=self.order].iter().rev() {
             for (sum, term) in sum.iter_mut().zip(term) {

@@ -209,11 +209,15 @@ pub enum StepError {
     },
     /// An implicit method found no solution of its equations.
     #[error(
-        "step {step}: {method} found no motion of body {body} in {iterations} iterations; lower dt"
+        "step {step}: {method} found no motion of body {body}{} in {iterations} iterations; lower dt, or choose \
+         a method that controls its error",
+        beside(*other)
     )]
     NotConverged {
         /// Index of the body farthest from a solution.
         body: usize,
+        /// The nearest of those that forces tie it to, if there are some.
+        other: Option<usize>,
         /// The step that failed, from 1.
         step: u64,
         /// Title of the method.
@@ -224,11 +228,14 @@ pub enum StepError {
     /// An adaptive method did not reach the end of the step.
     #[error(
         "step {step}: {method} needs more than {steps} steps within dt to hold the tolerance for \
-         body {body}; lower dt or raise the tolerance"
+         body {body}{}; lower dt or raise the tolerance{}",
+        beside(*other), nearer_origin(*other)
     )]
     TooManySteps {
         /// Index of the body.
         body: usize,
+        /// The nearest of those that forces tie it to, if there are some.
+        other: Option<usize>,
         /// The step that failed, from 1.
         step: u64,
         /// Title of the method.
@@ -295,6 +302,15 @@ impl StepError {
             | StepError::TooMuchWork { body, .. } => body,
         }
     }
+}
+
+fn beside(other: Option<usize>) -> String {
+    other.map_or_else(String::new, |other| format!(" beside body {other}"))
+}
+
+/// Where two are so close that their coordinates have few digits for it.
+fn nearer_origin(other: Option<usize>) -> &'static str {
+    other.map_or("", |_| ", or put the origin nearer to both")
 }
 
 fn remedy(stable_dt: Option<f64>) -> String {

@@ -64,7 +64,8 @@ impl World {
     ///
     /// # Errors
     ///
-    /// [`WorldError::NoBody`], or [`WorldError::Mass`] out of that range.
+    /// [`WorldError::NoBody`], [`WorldError::Mass`] out of that range, or [`WorldError::Vector`] where the angular
+    /// momentum of a body that turns would be beyond ±1e100.
     pub fn set_mass(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_mass(body, mass)?;

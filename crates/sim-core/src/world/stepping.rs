@@ -526,17 +526,31 @@ impl World {
             Cause::Turning(error) => StepError::Turning { body, step, error },
             Cause::Failure(Failure::NotConverged { iterations, .. }) => StepError::NotConverged {
                 body,
+                other: self.nearest_tied(body),
                 step,
                 method,
                 iterations,
             },
             Cause::Failure(Failure::TooManySteps { steps, .. }) => StepError::TooManySteps {
                 body,
+                other: self.nearest_tied(body),
                 step,
                 method,
                 steps,
             },
         }
+    }
+
+    /// The nearest of the bodies that forces tie one to, where the step starts.
+    fn nearest_tied(&self, body: usize) -> Option<usize> {
+        let scene = scene!(self);
+        let section = scene.forces.plan.section_at(body)?;
+        let mut groups = section.groups.iter();
+        let group = groups.find(|group| group.bodies.contains(&body))?;
+        let from = scene.before.position[body];
+        let distance = |other: usize| scene.before.position[other].distance(from);
+        let others = group.bodies.iter().copied().filter(|&other| other != body);
+        others.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
     }
 }
 

@@ -352,8 +352,10 @@ pub(super) fn prepared(index: usize, turn: Turn, body: &Body) -> Result<Prepared
         torque = DVec3::ZERO;
     }
     let rotation = (turn.rotation.normalize() * inertia.axes()).normalize();
+    let turned = Turned::spinning(&inertia, rotation, turn.spin);
+    error::check_vector(index, "angular momentum", turned.momentum)?;
     Ok(Prepared {
-        turned: Turned::spinning(&inertia, rotation, turn.spin),
+        turned,
         radius: radius_about(body.shape.as_ref(), inertia.centre()),
         inertia,
         torque,
@@ -463,7 +465,9 @@ impl World {
         let slot = self.slot_of(body)?;
         let inertia = self.bodies.turners.inertia[slot];
         let rotation = self.current.turned[slot].rotation;
-        self.current.turned[slot] = Turned::spinning(&inertia, rotation, spin);
+        let turned = Turned::spinning(&inertia, rotation, spin);
+        error::check_vector(body, "angular momentum", turned.momentum)?;
+        self.current.turned[slot] = turned;
         Ok(())
     }
 
@@ -483,6 +487,8 @@ impl World {
         let ratio = mass / self.mass(body);
         let old = self.bodies.turners.inertia[slot];
         let new = Inertia::new(ratio * old.moments(), old.axes(), old.centre());
+        let momentum = ratio * self.current.turned[slot].momentum;
+        error::check_vector(body, "angular momentum", momentum)?;
         self.bodies.turners.inertia[slot] =
             new.map_err(|error| WorldError::Inertia { body, error })?;
         for state in [&mut self.current, &mut self.previous] {

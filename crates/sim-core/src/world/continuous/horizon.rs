@@ -159,9 +159,11 @@ impl Scene<'_> {
         Err(failure)
     }
 
-    /// Whether forces on these bodies may grow without bound where contact keeps them from going.
+    /// Whether forces on these bodies may grow without bound where contact keeps them from going. A method of first
+    /// order makes one parabola of the whole step.
     fn has_horizon(&self, block: &Block<'_>) -> bool {
         self.settings.collision == crate::Collision::Continuous
+            && self.settings.method.order > 1
             && self.bodies.solid.len() > 1
             && self.are_forces_steep(&block.bodies, block.is_coupled)
     }
