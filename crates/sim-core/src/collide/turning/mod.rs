@@ -80,7 +80,8 @@ pub struct TurningTouch {
     /// How far apart they are then, m.
     pub distance: f64,
     /// No more than this, m, is a contact: 2^-46 of sizes, distance and way together. A greater distance
-    /// tells that no direction gave a proof, which no test has seen.
+    /// tells that the search has ended after 2^20 pairs of pieces: until then they are apart. It takes long
+    /// things that whirl within each other's reach for tens of turns.
     pub near: f64,
     /// The points nearest each other at that time, of the first shape and of the second, as seen from the
     /// first one's centre of mass, m.
