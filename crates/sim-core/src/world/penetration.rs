@@ -131,6 +131,9 @@ impl Layout<'_> {
         if let Some(exact) = in_closed_form(first, second, offset) {
             return exact;
         }
+        if let Some(exact) = self.out_of_box((i, j), offset) {
+            return exact;
+        }
         let directions = self.ways_out(i, j, offset);
         let Some((normal, depth)) = self.shortest_out((i, j), offset, &directions) else {
             return self.unknown_penetration(i, j);
@@ -139,7 +142,7 @@ impl Layout<'_> {
         Penetration {
             normal,
             depth,
-            is_least: is_least(first, second, offset, depth) || self.are_boxes_in_boxes(i, j),
+            is_least: is_least(first, second, offset, depth),
         }
     }
 
@@ -224,7 +227,10 @@ impl Layout<'_> {
         // What is held is about as deep as it was.
         let known = self.overlaps.depth_at_start((i, j));
         let known = known.map(|depth| 0.125 * depth);
-        let mut far = known.unwrap_or_else(|| self.flush(i, j)).max(least);
+        // Else from what is about deep on: where surfaces nearly coincide, each look takes longest.
+        let size = |body: usize| self.bodies.extent(body).farthest;
+        let deep = || (0.25 * size(i).min(size(j))).max(self.flush(i, j));
+        let mut far = known.unwrap_or_else(deep).max(least);
         if some_part(far) {
             while far > least && some_part(0.5 * far) {
                 far *= 0.5;
@@ -278,22 +284,30 @@ impl Layout<'_> {
         best
     }
 
-    /// Whether two bodies are boxes along the axes of which neither fits into the other: the only way out
-    /// of each other is then past a face.
-    fn are_boxes_in_boxes(&self, i: usize, j: usize) -> bool {
-        let is_box = |body: usize| {
-            self.bodies
-                .bvh(body)
-                .is_some_and(|bvh| bvh.cuboid().is_some())
-        };
-        let size = |body: usize| {
-            let extent = self.bodies.extent(body);
-            extent.high - extent.low
-        };
-        is_box(i) && is_box(j) && {
-            let (first, second) = (size(i), size(j));
-            first.cmpge(second).any() && second.cmpge(first).any()
+    /// The way out of boxes along the axes of which neither fits into the other: past a face; of several the one
+    /// that parts them most.
+    fn out_of_box(&self, (i, j): (usize, usize), offset: DVec3) -> Option<Penetration> {
+        let ends = |body: usize| Some(self.bodies.bvh(body)?.cuboid()?.ends);
+        let ([low, high], [other_low, other_high]) = (ends(i)?, ends(j)?);
+        let (size, other) = (high - low, other_high - other_low);
+        if !(size.cmpge(other).any() && other.cmpge(size).any()) {
+            return None;
         }
+        let (up, down) = (high - (other_low + offset), (other_high + offset) - low);
+        let along = self.apart_along(i, j);
+        let ways = DVec3::AXES.into_iter().flat_map(|axis| {
+            let of = |normal: DVec3, depth: DVec3| (normal, depth.dot(axis).max(0.0));
+            [of(axis, up), of(-axis, down)]
+        });
+        let least = ways.min_by(|(a, first), (b, second)| {
+            let by_way = b.dot(along).total_cmp(&a.dot(along));
+            first.total_cmp(second).then(by_way)
+        });
+        least.map(|(normal, depth)| Penetration {
+            normal,
+            depth,
+            is_least: true,
+        })
     }
 }
 
