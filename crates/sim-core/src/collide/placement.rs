@@ -101,10 +101,7 @@ impl Placement {
         let (near, far) = (first.centre(), second.centre());
         let (half, reach) = (first.half_extent(), second.half_extent());
         let height = back * (self.offset - near) + far;
-        let reach = back.x_axis.abs() * half.x
-            + back.y_axis.abs() * half.y
-            + back.z_axis.abs() * half.z
-            + reach;
+        let reach = back.abs() * half + reach;
         let size = near.abs() + far.abs() + reach + half + self.offset.abs();
         // More than all roundings, of placed corners as well.
         let rounding = 64.0 * f64::EPSILON * size.element_sum() + TINY;

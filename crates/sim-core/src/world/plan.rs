@@ -88,15 +88,6 @@ impl Plan {
         plan
     }
 
-    /// The section of a body, if it is in one.
-    pub(super) fn section_of(&self, body: usize) -> Option<&Section> {
-        let after = self
-            .sections
-            .partition_point(|section| section.bodies.end <= body);
-        let section = self.sections.get(after)?;
-        section.bodies.contains(&body).then_some(section)
-    }
-
     /// The runs from the lower to the higher body of each pair, united where they share a body; and bodies with
     /// levers, as forces couple how they turn to where they are.
     fn coupled_sections(&self, bodies: usize) -> Vec<Section> {

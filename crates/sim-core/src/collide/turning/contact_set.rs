@@ -124,9 +124,7 @@ fn between_meshes(
         // Along the axes of both; for a bound on what is near, that is enough.
         let between = turn * second.centre + offset - first.centre;
         let is_far = |apart: DVec3, own: DVec3, other: DVec3, turn: &DMat3| {
-            let half = turn.x_axis.abs() * other.x
-                + turn.y_axis.abs() * other.y
-                + turn.z_axis.abs() * other.z;
+            let half = turn.abs() * other;
             let slack = 16.0 * f64::EPSILON * (apart + half + own);
             (apart - half - own).cmpgt(wide + slack).any()
         };

@@ -226,10 +226,13 @@ impl Trajectories {
         motion.clear();
         turned.clear();
         let found = bodies.clone().try_for_each(|body| {
-            let motion_there = self.motion(scene);
             let there = match body == bodies.start {
-                true => motion_there.pose_at(body, time, &mut probe)?,
-                false => motion_there.pose_after(bodies.start, body, time, &mut probe)?,
+                true => self.motion(scene).pose_at(body, time, &mut probe)?,
+                false => {
+                    let first = bodies.start;
+                    self.motion(scene)
+                        .pose_after(first, body, time, &mut probe)?
+                }
             };
             motion.push((there.position, there.velocity));
             if let Some(slot) = scene.bodies.turners.slot(body) {
@@ -333,7 +336,7 @@ impl<'a> Motion<'a> {
         if self.is_pressed(body) || self.paths.frozen.get(body) == Some(&true) {
             return None;
         }
-        match self.scene.forces.plan.section_of(body) {
+        match self.scene.forces.plan.section_at(body) {
             Some(section) if section.is_coupled => Some((section.bodies.clone(), true)),
             None if self.scene.settings.method.fall.is_some() => None,
             _ => Some((body..body + 1, false)),

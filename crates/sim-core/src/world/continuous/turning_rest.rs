@@ -448,7 +448,7 @@ impl ContactSolver<'_> {
             self.paths.start.turned[slot].momentum += kick;
             if self.is_stopped(body) {
                 // Others get from forces between bodies what it loses.
-                let section = self.scene.forces.plan.section_of(body);
+                let section = self.scene.forces.plan.section_at(body);
                 let is_coupled = section.is_some_and(|section| section.bodies.len() > 1);
                 let given = if is_coupled { left } else { 0.0 };
                 let torque = self.view().motion().torque_there(slot, body);
