@@ -52,6 +52,7 @@ mod tallies;
 #[cfg(test)]
 mod tests;
 mod trajectory;
+mod turning_forces;
 mod turning_response;
 mod turning_rest;
 mod turning_search;

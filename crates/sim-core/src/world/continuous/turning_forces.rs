@@ -1,0 +1,351 @@
+//! The forces of turning bodies in contact ([`super::turning_rest`]).
+//!
+//! They are those after which no gap is less than its room, at the end of the step and at times within, and no gap
+//! begins to close: `0 <= f ⟂ g(τ) - room >= 0`, where `g(t)` is the gap of the features that touch as bodies really
+//! move, by Newton's method over problems of complementarity.
+//!
+//! **Energy.** A force does the work `f D`, where `D(s)` is how far its point gets along it. With arms and
+//! normals of the start `D(s) = g(s) - g(0) - c s²/2`, and with those of the end `g(s) - g(0) + c (τ s - s²/2)`,
+//! where `c` is how the gap would be bent if bodies kept their velocities, third orders apart. Each contact
+//! takes the one with which it does no work but for the room that it lacks, whenever the step is cut short:
+//! contact never gives energy to second order. What flat faces do, and what does not turn, has `c = 0` and
+//! is exact; else the loss is `f |c| τ²/2` in a step, and vanishes with its length.
+
+use alloc::{vec, vec::Vec};
+use glam::{DQuat, DVec3};
+
+use super::super::{state::Turned, stepping::Cause};
+use super::turning_response::Touching;
+use crate::{
+    impulse::arms::{self, Arms, Twist, Yielding},
+    rotation::Flight,
+};
+
+/// Parts of what is left of the step at which bodies are looked at: its start, its end, and times within.
+pub(super) const PARTS: [f64; 4] = [0.0, 1.0, 0.5, 0.125];
+
+/// Rounds in which forces are found at most. What is left of a gap then is met early.
+pub(super) const ROUNDS: usize = 12;
+
+/// A contact by points of both bodies.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Anchored {
+    pub(super) bodies: (usize, usize),
+    /// As seen from the centres of mass, in the frames of the shapes, m.
+    pub(super) points: [DVec3; 2],
+    /// In the frame of the one whose surface it is.
+    pub(super) normal: DVec3,
+    pub(super) owner: usize,
+    /// Directions of edges that cross, in the frames of their shapes.
+    pub(super) edges: Option<[DVec3; 2]>,
+    pub(super) room: f64,
+}
+
+/// How a body of an island moves on.
+pub(super) struct Mover {
+    pub(super) body: usize,
+    pub(super) turns: Option<Turns>,
+    pub(super) position: DVec3,
+    pub(super) velocity: DVec3,
+    /// Inverse mass, 1/kg; zero where nothing moves it.
+    pub(super) mass: f64,
+    /// How it is turned after [`PARTS`] of what is left, if contacts do not turn it.
+    pub(super) rotations: [DQuat; PARTS.len()],
+}
+
+/// What a body has that turns and is moved by contacts.
+pub(super) struct Turns {
+    pub(super) slot: usize,
+    /// What forces other than contacts do, m/s² and N m.
+    pub(super) pull: DVec3,
+    pub(super) torque: DVec3,
+    pub(super) moments: DVec3,
+    pub(super) axes: DQuat,
+    pub(super) turned: Turned,
+}
+
+/// Contacts of an island and how its bodies move, without the forces that are sought.
+pub(super) struct Pressing<'a> {
+    pub(super) left: f64,
+    pub(super) movers: Vec<Mover>,
+    /// What impulses do to mean velocities.
+    pub(super) yielding: Vec<Yielding>,
+    pub(super) touching: &'a [Touching],
+    pub(super) anchored: Vec<Anchored>,
+    /// The gap that each is kept at, m.
+    pub(super) room: Vec<f64>,
+    pub(super) contacts: &'a [Arms],
+}
+
+/// Forces of contacts, with the arms and normals along which they push.
+pub(super) struct Forces {
+    /// Over what is left, N s.
+    pub(super) impulse: Vec<f64>,
+    pub(super) contacts: Vec<Arms>,
+}
+
+/// A contact somewhere on its way.
+pub(super) struct Later {
+    pub(super) gap: f64,
+    pub(super) normal: DVec3,
+    /// From the centres of mass, m.
+    pub(super) arms: (DVec3, DVec3),
+}
+
+/// A pose.
+#[derive(Clone, Copy)]
+pub(super) struct At {
+    pub(super) position: DVec3,
+    pub(super) rotation: DQuat,
+}
+
+impl Anchored {
+    /// A contact in the frames of its shapes, by what turns the world into those.
+    pub(super) fn of(touching: &Touching, inverse: [DQuat; 2]) -> Anchored {
+        Anchored {
+            bodies: touching.bodies,
+            points: [inverse[0] * touching.arms.0, inverse[1] * touching.arms.1],
+            normal: inverse[touching.owner] * touching.normal,
+            owner: touching.owner,
+            edges: touching
+                .edges
+                .map(|[e, f]| [inverse[0] * e, inverse[1] * f]),
+            room: touching.room,
+        }
+    }
+
+    /// Where it is in some poses.
+    pub(super) fn later(&self, at: [At; 2]) -> Later {
+        let [first, second] = at;
+        let arms = (
+            first.rotation * self.points[0],
+            second.rotation * self.points[1],
+        );
+        let owned = at[self.owner].rotation * self.normal;
+        let normal = match self.edges {
+            None => owned,
+            Some([e, f]) => {
+                let across = (first.rotation * e).cross(second.rotation * f);
+                let sign = 1.0_f64.copysign(across.dot(owned));
+                across.try_normalize().map_or(owned, |n| sign * n)
+            }
+        };
+        let between = second.position - first.position;
+        Later {
+            gap: (between + arms.1 - arms.0).dot(normal),
+            normal,
+            arms,
+        }
+    }
+}
+
+/// How a body moves at the start.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Rates {
+    pub(super) velocity: DVec3,
+    pub(super) acceleration: DVec3,
+    pub(super) spin: DVec3,
+    pub(super) turning: DVec3,
+}
+
+impl Rates {
+    /// Velocity and acceleration of a point at an arm.
+    pub(super) fn at(&self, arm: DVec3) -> (DVec3, DVec3) {
+        let swept = self.spin.cross(arm);
+        let bent = self.turning.cross(arm) + self.spin.cross(swept);
+        (self.velocity + swept, self.acceleration + bent)
+    }
+}
+
+/// Motion of the bodies of an island under some forces.
+pub(super) struct Course {
+    /// By body at the start.
+    pub(super) rates: Vec<Rates>,
+    /// By body after [`PARTS`] of what is left.
+    pub(super) at: Vec<[At; PARTS.len()]>,
+    /// By body the angle that it turns by, as a vector: the integral of its spin.
+    pub(super) turn: Vec<DVec3>,
+}
+
+impl Pressing<'_> {
+    /// What forces give to each body: impulse and torque.
+    pub(super) fn pushes(&self, forces: &Forces) -> Vec<(DVec3, DVec3)> {
+        let mut pushes = vec![(DVec3::ZERO, DVec3::ZERO); self.movers.len()];
+        for (contact, &impulse) in forces.contacts.iter().zip(&forces.impulse) {
+            let push = impulse * contact.normal;
+            let (i, j) = contact.bodies;
+            pushes[i].0 -= push;
+            pushes[j].0 += push;
+            pushes[i].1 -= contact.arms.0.cross(push) / self.left;
+            pushes[j].1 += contact.arms.1.cross(push) / self.left;
+        }
+        pushes
+    }
+
+    pub(super) fn course(&self, forces: &Forces) -> Result<Course, (usize, Cause)> {
+        let pushes = self.pushes(forces);
+        let mut course = Course {
+            rates: Vec::with_capacity(self.movers.len()),
+            at: Vec::with_capacity(self.movers.len()),
+            turn: Vec::with_capacity(self.movers.len()),
+        };
+        for (mover, (impulse, torque)) in self.movers.iter().zip(pushes) {
+            let mut at = mover.rotations.map(|rotation| At {
+                position: mover.position,
+                rotation,
+            });
+            let times = PARTS.map(|part| part * self.left);
+            let mut turn = DVec3::ZERO;
+            let mut rates = Rates::default();
+            match &mover.turns {
+                None => {
+                    let velocity = mover.velocity + mover.mass * impulse;
+                    rates.velocity = velocity;
+                    for (at, t) in at.iter_mut().zip(times) {
+                        at.position += t * velocity;
+                    }
+                }
+                Some(turns) => {
+                    let acceleration = turns.pull + mover.mass / self.left * impulse;
+                    let Turned { rotation, momentum } = turns.turned;
+                    let torque = turns.torque + torque;
+                    let flight = Flight::new(turns.moments, rotation, momentum, torque, self.left)
+                        .map_err(|error| (mover.body, Cause::Turning(error)))?;
+                    let poses = times.map(|t| flight.at(t));
+                    for ((at, t), pose) in at.iter_mut().zip(times).zip(&poses) {
+                        at.position += t * (mover.velocity + 0.5 * t * acceleration);
+                        at.rotation = (pose.rotation * turns.axes.inverse()).normalize();
+                    }
+                    let [start, end, middle, _] = poses;
+                    rates = Rates {
+                        velocity: mover.velocity,
+                        acceleration,
+                        spin: start.spin,
+                        turning: start.acceleration,
+                    };
+                    // Simpson's rule.
+                    turn = self.left / 6.0 * (start.spin + 4.0 * middle.spin + end.spin);
+                }
+            }
+            course.rates.push(rates);
+            course.at.push(at);
+            course.turn.push(turn);
+        }
+        Ok(course)
+    }
+
+    /// A contact after a part of what is left.
+    pub(super) fn later(&self, k: usize, course: &Course, part: usize) -> Later {
+        let (i, j) = self.contacts[k].bodies;
+        self.anchored[k].later([course.at[i][part], course.at[j][part]])
+    }
+
+    /// Twice what a gap grows by at first over the square of the time, up to the first part of what is left
+    /// at which gaps are looked at: its second derivative, and what it opens by.
+    pub(super) fn growth(&self, k: usize, course: &Course) -> f64 {
+        let contact = &self.contacts[k];
+        let n = contact.normal;
+        let of = [
+            &course.rates[contact.bodies.0],
+            &course.rates[contact.bodies.1],
+        ];
+        let (first, second) = (of[0].at(contact.arms.0), of[1].at(contact.arms.1));
+        let turned = match self.touching[k].edges {
+            None => of[self.touching[k].owner].spin.cross(n),
+            Some([e, f]) => {
+                let across = e.cross(f);
+                let rate = of[0].spin.cross(e).cross(f) + e.cross(of[1].spin.cross(f));
+                let along = (across.dot(n)).recip() * rate;
+                along - along.dot(n) * n
+            }
+        };
+        let opening = second.0 - first.0;
+        let bend = n.dot(second.1 - first.1) + 2.0 * turned.dot(opening);
+        bend + 2.0 * n.dot(opening) / (PARTS[PARTS.len() - 1] * self.left)
+    }
+
+    /// How far the point of a contact gets along a constant direction at constant arms.
+    pub(super) fn gets(&self, contact: &Arms, course: &Course) -> f64 {
+        let of = |body: usize, arm: DVec3| {
+            let at = &course.at[body];
+            at[1].position - at[0].position + course.turn[body].cross(arm)
+        };
+        let (i, j) = contact.bodies;
+        contact
+            .normal
+            .dot(of(j, contact.arms.1) - of(i, contact.arms.0))
+    }
+
+    /// Chooses between arms and normals of the start and of the end those with which contacts do less work,
+    /// unless they do none, and tells whether any has changed.
+    pub(super) fn choose(&self, forces: &mut Forces, course: &Course) -> bool {
+        let mut is_changed = false;
+        for k in 0..self.contacts.len() {
+            let lacking = (self.room[k] - self.touching[k].gap).max(0.0);
+            let least = 0.25 * self.touching[k].room;
+            let is_active = forces.impulse[k] > 0.0;
+            if !is_active || self.gets(&forces.contacts[k], course) <= lacking + least {
+                continue;
+            }
+            let Later { normal, arms, .. } = self.later(k, course, 1);
+            let start = self.contacts[k];
+            let end = Arms {
+                normal,
+                arms,
+                ..start
+            };
+            let (by_start, by_end) = (self.gets(&start, course), self.gets(&end, course));
+            let chosen = if by_end < by_start { end } else { start };
+            is_changed |= chosen != forces.contacts[k];
+            forces.contacts[k] = chosen;
+        }
+        is_changed
+    }
+
+    /// The forces after which no gap is less than it must be.
+    pub(super) fn find(&self) -> Result<Forces, (usize, Cause)> {
+        let count = self.touching.len();
+        let mut forces = Forces {
+            impulse: vec![0.0; count],
+            contacts: self.contacts.to_vec(),
+        };
+        for round in 0..ROUNDS {
+            let course = self.course(&forces)?;
+            if round == 1 {
+                self.choose(&mut forces, &course);
+                continue;
+            }
+            let mut pushed = vec![Twist::default(); self.movers.len()];
+            arms::push(
+                &forces.contacts,
+                &self.yielding,
+                &mut pushed,
+                &forces.impulse,
+            );
+            let mut is_found = true;
+            let mut wanted = Vec::with_capacity(count);
+            for k in 0..count {
+                let (from, room) = (self.touching[k].gap.min(self.room[k]), self.room[k]);
+                let later = PARTS.iter().enumerate().skip(1);
+                let missing = later
+                    .map(|(place, part)| {
+                        let share = part * part;
+                        let least = from + share * (room - from);
+                        (least - self.later(k, &course, place).gap) / share
+                    })
+                    .fold(
+                        -0.5 * self.left * self.left * self.growth(k, &course),
+                        f64::max,
+                    );
+                let slack = 0.25 * self.touching[k].room;
+                is_found &= missing <= slack && (forces.impulse[k] == 0.0 || missing >= -slack);
+                wanted.push(forces.contacts[k].opening(&pushed) + missing / self.left);
+            }
+            if is_found && !self.choose(&mut forces, &course) {
+                break;
+            }
+            forces.impulse = arms::multipliers(&forces.contacts, &self.yielding, &wanted);
+        }
+        Ok(forces)
+    }
+}
