@@ -1,10 +1,13 @@
 //! How deep bodies are in each other, against closed forms.
 
+use std::sync::Arc;
+
 use kit::bodies::{at, immovable};
+use kit::meshes;
 use kit::random::Random;
-use kit::shapes::{ball, cow, cuboid, half_space};
+use kit::shapes::{ball, cow, cuboid, half_space, mesh};
 use kit::worlds::{add_gravity, meet, world};
-use sim_core::{DVec3, World};
+use sim_core::{Body, DQuat, DVec3, Shape, Turn, Vec3, World};
 
 use crate::{WEIGHT, touching};
 
@@ -172,4 +175,56 @@ fn what_touches_by_rounding_is_no_overlap() {
     let flush = world.flush(0, 1);
     assert!((1e-9..1e-6).contains(&flush), "{flush}");
     assert!((only(&world).depth - 1e-6).abs() < 1e-15);
+}
+
+#[test]
+fn many_in_one_place_cost_what_pairs_cost_and_are_as_deep() {
+    let tilt = DQuat::from_rotation_x(0.3) * DQuat::from_rotation_y(0.5);
+    let tilted = meshes::cube(0.5).transformed(tilt, DVec3::ONE);
+    let shapes = [
+        (cuboid([0.5; 3]), 400),
+        (Shape::Mesh(Arc::new(tilted.expect("a mesh"))), 200),
+        (ball(0.5), 400),
+        (cow(), 40),
+    ];
+    for (shape, count) in shapes {
+        let crowd = |count| world(vec![at(&shape, DVec3::ONE); count]);
+        let (mut pair, mut many) = (crowd(2), crowd(count));
+        let expected = only(&pair);
+        assert_eq!(many.overlapping().len(), count * (count - 1) / 2);
+        for world in [&mut pair, &mut many] {
+            world.step().expect("a step");
+        }
+        for bodies in [(0, 1), (0, count - 1), (count / 2, count - 1)] {
+            let overlap = many.overlap(bodies.0, bodies.1).expect("an overlap");
+            assert_eq!(overlap.depth, expected.depth);
+        }
+        assert!((0..count).all(|body| many.position(body) == DVec3::ONE));
+    }
+}
+
+#[test]
+fn turning_bodies_in_one_place_are_told_at_once() {
+    let Shape::Mesh(one) = cow() else {
+        unreachable!()
+    };
+    // Two parts that do not hang together.
+    let beside = one.vertices().iter().map(|&v| v + Vec3::new(3.0, 0.0, 0.0));
+    let vertices = one.vertices().iter().copied().chain(beside);
+    let more = one.vertices().len() as u32;
+    let others = one
+        .triangles()
+        .iter()
+        .map(|t| t.map(|corner| corner + more));
+    let triangles = one.triangles().iter().copied().chain(others);
+    let two = mesh(vertices.collect(), triangles.collect());
+    for (shape, count) in [(cow(), 12), (two, 2)] {
+        let body = Body {
+            turn: Some(Turn::default()),
+            ..at(&shape, DVec3::ZERO)
+        };
+        let mut world = world(vec![body; count]);
+        world.step().expect("a step");
+        assert_eq!(world.overlapping().len(), count * (count - 1) / 2);
+    }
 }

@@ -60,9 +60,25 @@ impl Placement {
         }
     }
 
+    /// A point of the first mesh's frame in the second one's, m, rounded.
+    pub(super) fn back(&self, point: DVec3) -> DVec3 {
+        self.direction_back(point - self.offset)
+    }
+
+    /// A direction of the second mesh's frame in the first one's, rounded.
+    pub(super) fn direction(&self, direction: DVec3) -> DVec3 {
+        self.turn.map_or(direction, |turn| turn * direction)
+    }
+
+    /// A direction of the first mesh's frame in the second one's, rounded.
+    pub(super) fn direction_back(&self, direction: DVec3) -> DVec3 {
+        self.turn
+            .map_or(direction, |turn| turn.transpose() * direction)
+    }
+
     /// Least and greatest corner of a box around every placed vertex of `bounds`.
     #[inline]
-    fn corners(&self, bounds: &Aabb) -> (DVec3, DVec3) {
+    pub(super) fn corners(&self, bounds: &Aabb) -> (DVec3, DVec3) {
         match &self.turn {
             // Rounding is monotone.
             None => (

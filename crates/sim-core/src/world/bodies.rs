@@ -239,6 +239,11 @@ impl Bodies {
         self.shared_shape(body).map(|shared| &shared.shape)
     }
 
+    /// Whether two bodies have one and the same shape.
+    pub(super) fn share_shape(&self, i: usize, j: usize) -> bool {
+        self.shape[i] == self.shape[j]
+    }
+
     /// Every shape once, and the place of each body's among them.
     #[cfg(feature = "serde")]
     pub(super) fn all_shapes(&self) -> impl Iterator<Item = &Shape> {

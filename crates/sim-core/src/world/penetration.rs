@@ -11,7 +11,7 @@ use glam::DVec3;
 use super::{World, layout::Layout};
 use crate::{
     Shape,
-    collide::{Form, ball_meets, first_contact, parting_normals, reach, snap},
+    collide::{Form, ball_meets, first_contact, parting_normals, reach, snap, stay_in_each_other},
 };
 
 /// Halvings of the length at which a direction parts a pair: as good as 12 digits.
@@ -143,6 +143,28 @@ impl Layout<'_> {
             normal,
             depth,
             is_least: is_least(first, second, offset, depth),
+        }
+    }
+
+    /// Whether two bodies that meet surely do at all offsets that are no farther than `by`, m, from this one.
+    pub(super) fn is_surely_deeper(&self, (i, j): (usize, usize), offset: DVec3, by: f64) -> bool {
+        let Some((first, second)) = self.bodies.forms(i, j) else {
+            return false;
+        };
+        let exact = in_closed_form(first, second, offset);
+        if let Some(exact) = exact.or_else(|| self.out_of_box((i, j), offset)) {
+            // Twice as far, for rounding.
+            return exact.depth > 2.0 * by;
+        }
+        match (first, second) {
+            (Form::Mesh(first), Form::Mesh(second)) => {
+                stay_in_each_other(first, second, offset, by)
+            }
+            (Form::Mesh(mesh), Form::Sphere(radius)) => ball_meets(mesh, offset, radius - 2.0 * by),
+            (Form::Sphere(radius), Form::Mesh(mesh)) => {
+                ball_meets(mesh, -offset, radius - 2.0 * by)
+            }
+            _ => false,
         }
     }
 

@@ -220,6 +220,23 @@ impl Bodies {
         }
     }
 
+    /// Whether two meshes surely meet wherever one of them is moved by no more than `by`, m, as a state has them.
+    pub(super) fn stay_in_each_other(
+        &self,
+        state: &State,
+        (i, j): (usize, usize),
+        by: f64,
+    ) -> bool {
+        let (Some(a), Some(b)) = (self.bvh(i), self.bvh(j)) else {
+            return false;
+        };
+        let placed = |body: usize| (state.position[body], self.rotation_in(state, body));
+        let (first, second) = (placed(i), placed(j));
+        let between = self.between((i, first), (j, second));
+        turned_place(first.1, second.1, between)
+            .is_some_and(|place| collide::stay_in_each_other(a, b, place, by))
+    }
+
     /// Whether a mesh meets a ball or a half-space at an offset in the mesh's frame, turned by a rotation.
     fn meets_unturned(&self, mesh: usize, other: &Shape, offset: DVec3, turned: DQuat) -> bool {
         let Some(form) = self.form(mesh) else {

@@ -9,12 +9,14 @@ use glam::DVec3;
 
 use super::{World, bodies::Bodies, state::State};
 use crate::{
-    collide::turning::{Turning, features_within},
+    collide::turning::{Turning, normals_within},
     impulse::{Joined, project},
 };
 
 /// Rounds in which one that is moved off another one may come to meet a third.
 const ROUNDS: usize = 16;
+/// Normals along which a pair may be moved apart, at most.
+const MOST_NORMALS: usize = 32;
 /// Halvings of what bodies may be moved by to the least.
 const HALVINGS: i32 = 24;
 
@@ -88,15 +90,15 @@ impl Bodies {
         let turning = |body: usize| Turning::Still(self.rotation_in(state, body));
         let first = self.moving(i, place(i), turning(i))?;
         let second = self.moving(j, place(j), turning(j))?;
-        let touching = features_within(&first, &second, (0.0, most));
-        let normals = touching
-            .iter()
-            .flat_map(|point| [point.normal, -point.normal]);
+        if self.stay_in_each_other(state, (i, j), most) {
+            return None;
+        }
+        let normals = normals_within(&first, &second, most, MOST_NORMALS);
         let line = self.line_apart(&state.position, (i, j));
         let mut tried: Vec<DVec3> = Vec::new();
         let mut least: Option<(DVec3, f64)> = None;
         let mut moved = state.clone();
-        for normal in normals.chain(line) {
+        for normal in normals.into_iter().chain(line) {
             if tried.iter().any(|known| known.dot(normal) > 1.0 - 1e-9) {
                 continue;
             }

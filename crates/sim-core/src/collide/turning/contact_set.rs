@@ -3,7 +3,8 @@
 //! One pair of nearest points is not enough for what happens at an impact: a cube that lands on its face
 //! touches with four corners, and does not turn.
 
-use alloc::vec::Vec;
+use alloc::{collections::BTreeMap, vec::Vec};
+use core::ops::ControlFlow;
 use glam::{DMat3, DVec3};
 
 use super::{
@@ -30,6 +31,9 @@ const ALONG: f64 = 0.75;
 
 /// Sine of the angle between edges below which no normal comes from them: their ends say it.
 const CROSSING: f64 = 1e-6;
+
+/// So many touches or fewer are compared with each other one by one.
+const FEW: usize = 64;
 
 /// Cosine above which normals are those of one plane.
 const SAME: f64 = 1.0 - 1e-8;
@@ -67,11 +71,35 @@ pub fn features_within(
                 });
             });
         }
-        (Figure::Mesh(_), Figure::Mesh(_)) => between_meshes(a, b, (distance, reach), &mut found),
+        (Figure::Mesh(_), Figure::Mesh(_)) => {
+            let _ = between_meshes(a, b, (distance, reach), |touch| {
+                found.push(touch);
+                ControlFlow::Continue(())
+            });
+        }
         _ => {}
     }
-    once(&mut found, reach);
-    cut_to_hulls(found)
+    cut_to_hulls(once(found, reach))
+}
+
+/// Normals of the features of two meshes that are no farther than `reach`, m, from each other where they are at
+/// their start, both ways: the first ones that are found, and no more than `most`.
+pub fn normals_within(a: &Moving<'_>, b: &Moving<'_>, reach: f64, most: usize) -> Vec<DVec3> {
+    let mut normals: Vec<DVec3> = Vec::new();
+    if let (Figure::Mesh(_), Figure::Mesh(_)) = (a.figure, b.figure) {
+        let _ = between_meshes(a, b, (0.0, reach), |touch| {
+            for normal in [touch.normal, -touch.normal] {
+                if !normals.iter().any(|known| known.dot(normal) >= SAME) {
+                    normals.push(normal);
+                }
+            }
+            match normals.len() < most {
+                true => ControlFlow::Continue(()),
+                false => ControlFlow::Break(()),
+            }
+        });
+    }
+    normals
 }
 
 /// Corners of a mesh that are near a plane, and where they are above it, as seen from the plane's shape.
@@ -111,8 +139,8 @@ fn between_meshes(
     a: &Moving<'_>,
     b: &Moving<'_>,
     (distance, reach): (f64, f64),
-    found: &mut Vec<ContactPoint>,
-) {
+    mut found: impl FnMut(ContactPoint) -> ControlFlow<()>,
+) -> ControlFlow<()> {
     let (of_a, of_b) = (a.rotation_at(0.0), b.rotation_at(0.0));
     let to_a = of_a.inverse();
     let turn = DMat3::from_quat((to_a * of_b).normalize());
@@ -120,6 +148,7 @@ fn between_meshes(
     let offset = to_a * (b.position - a.position);
     let wide = DVec3::splat(reach);
     let mut pairs = alloc::vec![(Boxed::root(a), Boxed::root(b))];
+    let mut touches = Vec::new();
     while let Some((first, second)) = pairs.pop() {
         // Along the axes of both; for a bound on what is near, that is enough.
         let between = turn * second.centre + offset - first.centre;
@@ -137,12 +166,14 @@ fn between_meshes(
             (Item::Piece(..), Item::Piece(..)) => {
                 let (p, q) = (Points::of(a, first.item), Points::of(b, second.item));
                 let q = q.corners().map(|corner| turn * corner + offset);
-                let known = found.len();
-                of_triangles(&p.corners(), &q, (distance, reach), found);
-                for touch in &mut found[known..] {
-                    touch.points = touch.points.map(|point| of_a * point);
-                    touch.normal = of_a * touch.normal;
-                    touch.edges = touch.edges.map(|edges| edges.map(|edge| of_a * edge));
+                of_triangles(&p.corners(), &q, (distance, reach), &mut touches);
+                for touch in touches.drain(..) {
+                    found(ContactPoint {
+                        points: touch.points.map(|point| of_a * point),
+                        normal: of_a * touch.normal,
+                        edges: touch.edges.map(|edges| edges.map(|edge| of_a * edge)),
+                        ..touch
+                    })?;
                 }
             }
             (Item::Node(_), Item::Piece(..)) => {
@@ -159,6 +190,7 @@ fn between_meshes(
             }
         }
     }
+    ControlFlow::Continue(())
 }
 
 /// Corners in faces and crossing edges of two triangles in one frame.
@@ -248,19 +280,49 @@ fn is_within(point: DVec3, face: &[DVec3; 3], normal: DVec3, slack: f64) -> bool
 }
 
 /// Leaves of touches in one place along one normal one.
-fn once(found: &mut Vec<ContactPoint>, reach: f64) {
+fn once(found: Vec<ContactPoint>, reach: f64) -> Vec<ContactPoint> {
     let mut kept: Vec<ContactPoint> = Vec::with_capacity(found.len());
-    for touch in found.drain(..) {
-        let is_known = |known: &ContactPoint| {
-            (known.points[1] - touch.points[1]).length() <= 2.0 * reach
-                && known.normal.dot(touch.normal) >= SAME
-        };
-        if !kept.iter().any(is_known) {
+    let is_same = |known: &ContactPoint, touch: &ContactPoint| {
+        (known.points[1] - touch.points[1]).length() <= 2.0 * reach
+            && known.normal.dot(touch.normal) >= SAME
+    };
+    if found.len() <= FEW {
+        for touch in found {
+            if !kept.iter().any(|known| is_same(known, &touch)) {
+                kept.push(touch);
+            }
+        }
+        return kept;
+    }
+    // By cells as wide as touches in one place may be apart.
+    let mut cells: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
+    for touch in found {
+        let cell = (touch.points[1] / (2.0 * reach)).floor();
+        let cell = cell.to_array().map(|along| along as i64);
+        let is_known = NEIGHBOURS.iter().any(|step| {
+            let near = [0, 1, 2].map(|axis| cell[axis].saturating_add(step[axis]));
+            let known = cells.get(&near).map_or(&[][..], Vec::as_slice);
+            known.iter().any(|&known| is_same(&kept[known], &touch))
+        });
+        if !is_known {
+            cells.entry(cell).or_default().push(kept.len());
             kept.push(touch);
         }
     }
-    *found = kept;
+    kept
 }
+
+/// Steps from a cell to itself and to those about it.
+const NEIGHBOURS: [[i64; 3]; 27] = {
+    let mut steps = [[0; 3]; 27];
+    let mut k = 0;
+    while k < 27 {
+        let of = k as i64;
+        steps[k] = [of % 3 - 1, of / 3 % 3 - 1, of / 9 - 1];
+        k += 1;
+    }
+    steps
+};
 
 /// Of touches along one normal those at the corners of their hull.
 fn cut_to_hulls(mut found: Vec<ContactPoint>) -> Vec<ContactPoint> {
@@ -311,4 +373,45 @@ fn hull(mut touches: Vec<ContactPoint>, normal: DVec3) -> Vec<ContactPoint> {
     chain(&mut touches.iter());
     chain(&mut touches.iter().rev());
     corners
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_many_touches_the_same_are_left_as_of_few() {
+        let reach = 1e-3;
+        let mut state = 7_u64;
+        let mut digit = |most: u64| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1);
+            ((state >> 33) % most) as f64
+        };
+        let touches: Vec<ContactPoint> = (0..2000)
+            .map(|_| {
+                // On both sides of the borders of cells, and of what is one place.
+                let place = DVec3::new(digit(80), digit(12), digit(12)) - DVec3::splat(6.0);
+                let point = 0.45 * reach * place;
+                ContactPoint {
+                    points: [point; 2],
+                    normal: [DVec3::X, DVec3::Y][digit(2) as usize],
+                    owner: 0,
+                    edges: None,
+                }
+            })
+            .collect();
+        let mut one_by_one: Vec<ContactPoint> = Vec::new();
+        for touch in &touches {
+            let is_known = one_by_one.iter().any(|known| {
+                (known.points[1] - touch.points[1]).length() <= 2.0 * reach
+                    && known.normal == touch.normal
+            });
+            if !is_known {
+                one_by_one.push(*touch);
+            }
+        }
+        let kept = once(touches, reach);
+        assert!(kept.len() > FEW && kept.len() < 1000, "{}", kept.len());
+        assert_eq!(kept, one_by_one);
+    }
 }

@@ -29,7 +29,7 @@ use core::cmp::Ordering;
 use glam::{DQuat, DVec3};
 
 use crate::{Bvh, rotation::Flight};
-pub use contact_set::{ContactPoint, features_within};
+pub use contact_set::{ContactPoint, features_within, normals_within};
 use pieces::{Boxed, Item, Points};
 use separation::Gap;
 use view::{Direction, View};

@@ -10,7 +10,9 @@
 use alloc::vec::Vec;
 use glam::DVec3;
 
-use super::super::{Bundled, World, record::Checkpoint, state::State, stepping::Cause};
+use super::super::{
+    Bundled, World, layout::Layout, record::Checkpoint, state::State, stepping::Cause,
+};
 use super::{
     contact_set::{ContactConstraint, ContactSet},
     solver::ContactSolver,
@@ -96,9 +98,16 @@ impl View<'_> {
     pub(super) fn is_held(&self, i: usize, j: usize) -> bool {
         self.held.binary_search(&(i, j)).is_ok()
     }
+}
 
-    fn overlap_contact(&self, (i, j): (usize, usize), normal: DVec3) -> ContactConstraint {
-        let gap = self.layout().hover_gap(i, j);
+impl Layout<'_> {
+    /// What keeps two bodies in overlap from closing along a normal.
+    pub(super) fn overlap_contact(
+        &self,
+        (i, j): (usize, usize),
+        normal: DVec3,
+    ) -> ContactConstraint {
+        let gap = self.hover_gap(i, j);
         ContactConstraint {
             is_overlap: true,
             ..ContactConstraint::new((i, j), normal, gap, DVec3::ZERO)
@@ -119,7 +128,7 @@ impl ContactSolver<'_> {
             {
                 let at = &self.scene.before.position;
                 let out = self.view().layout().penetration(i, j, at[j] - at[i]);
-                let contact = self.view().overlap_contact((i, j), out.normal);
+                let contact = self.view().layout().overlap_contact((i, j), out.normal);
                 self.add_contact(contact);
             }
         }
@@ -135,7 +144,7 @@ impl ContactSolver<'_> {
             for normal in [-known.normal, one, -one, other, -other] {
                 self.add_contact(ContactConstraint {
                     is_hold: true,
-                    ..self.view().overlap_contact((i, j), normal)
+                    ..self.view().layout().overlap_contact((i, j), normal)
                 });
             }
         }

@@ -10,7 +10,7 @@
 use alloc::vec::Vec;
 use glam::DVec3;
 
-use super::super::{World, layout::Layout};
+use super::super::{World, layout::Layout, penetration::Penetration};
 use super::contact_set::ContactConstraint;
 use super::{island::Places, solver::ContactSolver};
 use crate::{
@@ -70,14 +70,33 @@ impl World {
         }
         self.overlaps
             .retain(|&(i, j)| self.bodies.meet_in(&self.previous, i, j));
+        self.note_depths();
+    }
+
+    /// Notes how deep bodies are in each other that have been placed so, and keeps them from closing.
+    fn note_depths(&mut self) {
+        let mut last: Option<((usize, usize), Penetration)> = None;
         for (i, j) in self.overlaps.pairs.clone() {
             // How deep what turns is in another body is not known.
-            if self.bodies.pair_tumbles(i, j) {
+            if self.bodies.pair_tumbles(i, j) || self.overlaps.depth_at_start((i, j)).is_some() {
                 continue;
             }
             let at = &self.previous.position;
-            let out = self.layout().penetration(i, j, at[j] - at[i]);
+            // Copies in one place are all as deep in each other.
+            let is_copy = |body: usize, other: usize| {
+                self.bodies.share_shape(body, other) && at[body] == at[other]
+            };
+            let same = last.filter(|&((k, l), _)| is_copy(i, k) && is_copy(j, l));
+            let out = same.map_or_else(
+                || self.layout().penetration(i, j, at[j] - at[i]),
+                |(_, out)| out,
+            );
+            last = Some(((i, j), out));
             self.overlaps.note_depth((i, j), out.depth);
+            if self.bodies.is_movable(i) || self.bodies.is_movable(j) {
+                let contact = self.layout().overlap_contact((i, j), out.normal);
+                self.contacts.insert(contact, &self.bodies);
+            }
         }
     }
 }
@@ -94,16 +113,24 @@ impl Layout<'_> {
         self.bodies.need_bvh(j);
         let forms = self.bodies.forms(i, j)?;
         let farthest = self.flush(i, j);
+        // A sum of three directions is the longest way that is tried.
+        if self.is_surely_deeper(bodies, offset, 3.0 * farthest) {
+            return None;
+        }
         let is_apart = |to: DVec3| !self.bodies.meet_built(i, j, offset + to);
         let mut directions: Vec<DVec3> = Vec::new();
-        let mut surfaces = parting_normals(forms.0, forms.1, offset);
         // Those of planes with the one body on one side and the other one on the other side first.
-        let depth = |normal: &DVec3| {
-            let (first, second) = (reach(forms.0, -*normal).0, reach(forms.1, *normal).0);
+        let depth = |normal: DVec3| {
+            let (first, second) = (reach(forms.0, -normal).0, reach(forms.1, normal).0);
             first + second - normal.dot(offset)
         };
-        surfaces.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-        let surfaces = surfaces.into_iter().take(MAX_DIRECTIONS);
+        let surfaces = parting_normals(forms.0, forms.1, offset).into_iter();
+        let mut surfaces: Vec<_> = surfaces.map(|normal| (depth(normal), normal)).collect();
+        surfaces.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let surfaces = surfaces
+            .into_iter()
+            .map(|(_, normal)| normal)
+            .take(MAX_DIRECTIONS);
         for normal in surfaces.chain([self.apart_along(i, j)]) {
             // Each counts once in the sums below.
             if !directions.contains(&normal) {
