@@ -81,16 +81,10 @@ impl World {
             if self.bodies.pair_tumbles(i, j) || self.overlaps.depth_at_start((i, j)).is_some() {
                 continue;
             }
+            let layout = self.layout();
+            let same = last.filter(|&(known, _)| layout.are_copies((i, j), known));
             let at = &self.previous.position;
-            // Copies in one place are all as deep in each other.
-            let is_copy = |body: usize, other: usize| {
-                self.bodies.share_shape(body, other) && at[body] == at[other]
-            };
-            let same = last.filter(|&((k, l), _)| is_copy(i, k) && is_copy(j, l));
-            let out = same.map_or_else(
-                || self.layout().penetration(i, j, at[j] - at[i]),
-                |(_, out)| out,
-            );
+            let out = same.map_or_else(|| layout.penetration(i, j, at[j] - at[i]), |(_, out)| out);
             last = Some(((i, j), out));
             self.overlaps.note_depth((i, j), out.depth);
             if self.bodies.is_movable(i) || self.bodies.is_movable(j) {
