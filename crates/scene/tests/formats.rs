@@ -140,6 +140,10 @@ fn bad_stl_is_refused_with_a_reason() {
             "a.stl:3: `1` stands where `vertex` or `endloop`",
         ),
         ("solid\nouter loop\nvertex 0 0 0\n", "cut off"),
+        (
+            "solid\nfacet colour 0 0 1\nouter loop\n",
+            "a.stl:2: `colour` stands where `normal` or `outer loop`",
+        ),
         ("solid\nendsolid\n", "no facets"),
     ] {
         let message = refusal("a.stl", text.as_bytes());
@@ -258,6 +262,99 @@ fn bad_ply_is_refused_with_a_reason() {
     }
     let nothing = "ply\nformat ascii 1.0\nelement nothing 18446744073709551615\nend_header\n";
     assert!(refusal("a.ply", nothing.as_bytes()).contains("no faces"));
+}
+
+/// What a header says must be known: it may mean that all else is to be read in another way.
+#[test]
+fn ply_of_another_version_or_that_says_a_thing_twice_is_refused() {
+    for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
+        for version in ["2.0", "0.9", "1", "1.0.1"] {
+            let header = ply_header(format).replace(" 1.0\n", &format!(" {version}\n"));
+            let message = refusal("a.ply", header.as_bytes());
+            let expected = format!("a.ply:2: the version is `{version}`: only 1.0 is known");
+            assert!(message.contains(&expected), "{message}");
+        }
+    }
+    let good = text_ply();
+    let corners = "property list uchar int vertex_indices\n";
+    for (from, to, reason) in [
+        (
+            "comment of a test\n",
+            "format binary_little_endian 1.0\n",
+            "a.ply:3: the header has a second line `format`",
+        ),
+        (
+            "property uchar red",
+            "property uchar x",
+            "its vertices have more than one property `x`",
+        ),
+        (
+            "element edge 1",
+            "element vertex 1",
+            "a.ply:9: the header has a second element `vertex`",
+        ),
+        (
+            "element edge 1",
+            "element face 1",
+            "a.ply:11: the header has a second element `face`",
+        ),
+        (
+            corners,
+            &format!("{corners}property list uchar int vertex_index\n"),
+            "its faces have more than one list of corners",
+        ),
+    ] {
+        assert!(good.contains(from), "{from}");
+        let message = refusal("a.ply", good.replacen(from, to, 1).as_bytes());
+        assert!(message.contains(reason), "{message}, not {reason}");
+    }
+}
+
+#[test]
+fn collada_of_another_version_is_refused() {
+    let text = dae("", "g", BOX, ONCE);
+    let of = |version: &str| text.replace("<COLLADA>", &format!("<COLLADA version='{version}'>"));
+    for version in ["1.4", "1.4.0", "1.4.1", "1.5.0"] {
+        is_the_box(&read("a.dae", of(version).as_bytes()).expect(version));
+    }
+    for version in ["1.3.1", "2.0", "14", "", "1.4.1 beta"] {
+        let message = refusal("a.dae", of(version).as_bytes());
+        let expected = format!("a.dae:1: <COLLADA>: the version is `{version}`");
+        assert!(message.contains(&expected), "{message}");
+    }
+}
+
+/// A part of a document may have a unit and an up axis of its own.
+#[test]
+fn collada_parts_in_another_unit_than_the_document_are_refused() {
+    let asset = "<unit meter='0.5'/><up_axis>Z_UP</up_axis>";
+    let with = |part: &str, own: &str| {
+        let text = dae(asset, "g", BOX, ONCE);
+        text.replacen(part, &format!("{part}<asset>{own}</asset>"), 1)
+    };
+    for part in [
+        "<geometry id='g'>",
+        "<library_geometries>",
+        "<visual_scene id='s'>",
+        "<node>",
+    ] {
+        for own in [
+            "",
+            "<unit meter='0.50'/>",
+            asset,
+            "<unit/><up_axis> Z_UP </up_axis>",
+        ] {
+            let loaded = read("a.dae", with(part, own).as_bytes());
+            assert_eq!(loaded.expect(own).report().volume, Some(3.0));
+        }
+        for own in ["<unit meter='0.01'/>", "<up_axis>Y_UP</up_axis>"] {
+            let message = refusal("a.dae", with(part, own).as_bytes());
+            assert!(
+                message.contains("another one than the document's"),
+                "{message}"
+            );
+        }
+    }
 }
 
 #[test]

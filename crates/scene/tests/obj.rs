@@ -127,6 +127,11 @@ fn wrong_files_get_a_message_with_the_line() {
             "test.obj: has no faces",
         ),
         (
+            "lines of another file",
+            tetrahedron(&format!("call faces.obj\n{FACES}")).into(),
+            "test.obj:5: `call` puts the lines of another file here",
+        ),
+        (
             "no number",
             "v 0 0 0\nv 0 x 0".into(),
             "test.obj:2: y of the vertex is `x`",

@@ -17,6 +17,7 @@ use crate::failure::Failure;
 use crate::film;
 use crate::gpu::Gpu;
 use crate::preferences::{Preferences, Store};
+use crate::rescue::Rescue;
 use crate::session::{
     Done, Job, Leaving, Outlook, STEP_BUDGET, Session, Shooting, State, Trial, Tried, VariantJob,
     VariantsDone,
@@ -31,6 +32,10 @@ const SHORTEST_FRAME: Duration = Duration::from_millis(4);
 /// While the window takes no pictures, or a single step takes long, frames come at this pace.
 const UNSEEN_FRAME: Duration = Duration::from_millis(100);
 
+/// How often another graphics device is asked for in place of one that was lost, and how far apart.
+const REOPENINGS: u32 = 8;
+const REOPENING: Duration = Duration::from_millis(500);
+
 /// How long the scene's file is left alone once it was touched, so that it is written whole.
 const WRITING: Duration = Duration::from_millis(200);
 
@@ -42,8 +47,17 @@ pub fn run(mut session: Session) -> Result<(), Failure> {
         session.notices().error("preferences", format!("{error:#}"));
         None
     });
-    let preferences =
+    let mut preferences =
         preferences.unwrap_or_else(|| Preferences::first(sys_locale::get_locale().as_deref()));
+    let rescue = Rescue::of_the_system();
+    for file in rescue.left_behind() {
+        let text = format!(
+            "A window has ended before its edits were saved. They are in {}: open that file.",
+            shown::path(&file)
+        );
+        session.notices().error("rescue", text);
+        preferences.recent.insert(0, file);
+    }
     let proxy = event_loop.create_proxy();
     let mut app = App {
         watch: Watch::new(move || {
@@ -51,6 +65,7 @@ pub fn run(mut session: Session) -> Result<(), Failure> {
             let _ = proxy.send_event(Redraw(WRITING));
         }),
         touched: None,
+        rescue,
         store,
         preferences: Some(preferences),
         session,
@@ -67,10 +82,22 @@ pub fn run(mut session: Session) -> Result<(), Failure> {
         last_frame: Duration::ZERO,
         next_frame: None,
     };
-    event_loop
-        .run_app(&mut app)
-        .map_err(|error| no_display(&error.to_string()))?;
-    app.failure.map_or(Ok(()), Err)
+    let ran = event_loop.run_app(&mut app);
+    if app.session.is_closing() {
+        app.rescue.forget();
+    }
+    let ended = match (app.failure.take(), ran) {
+        (Some(failure), _) => failure,
+        (None, Err(error)) => no_display(&error.to_string()),
+        (None, Ok(())) => return Ok(()),
+    };
+    Err(match (ended, app.rescue.file()) {
+        (Failure::NoDisplay(why), Some(file)) => {
+            let file = shown::path(file);
+            Failure::NoDisplay(format!("{why}. Edits that were not saved are in {file}"))
+        }
+        (failure, _) => failure,
+    })
 }
 
 /// Bytes of a file of pictures, if it was not cancelled.
@@ -81,10 +108,12 @@ type Shot = Result<Option<Vec<u8>>, String>;
 struct Redraw(Duration);
 
 struct App {
-    /// Looks at the scene's file.
+    /// Looks at the scene's files.
     watch: Watch,
-    /// When that was touched last, if it is to be read again.
+    /// When those were touched last, if they are to be read again.
     touched: Option<Duration>,
+    /// Keeps edits that no file has.
+    rescue: Rescue,
     /// Where preferences are kept.
     store: Store,
     /// Those of the last time, until the window opens.
@@ -160,6 +189,32 @@ impl App {
     fn fail(&mut self, event_loop: &ActiveEventLoop, failure: Failure) {
         self.failure = Some(failure);
         event_loop.exit();
+    }
+
+    /// Takes another device for the window in place of one that was lost; panels stay as they are. A driver that
+    /// starts again may take a moment.
+    fn reopen(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(open) = self.open.take() else { return };
+        let context = open.egui.egui_ctx().clone();
+        let window = open.window.clone();
+        // Two surfaces would be in each other's way.
+        drop(open);
+        let mut tries = REOPENINGS;
+        loop {
+            match Open::new(event_loop, window.clone(), &self.proxy) {
+                Ok(reopened) => {
+                    self.ui.move_to(&context, reopened.egui.egui_ctx());
+                    reopened.window.request_redraw();
+                    self.open = Some(reopened);
+                    let text = "The graphics device was lost, and another one has taken its place.";
+                    self.session.notices().info("graphics", text.to_owned());
+                    return;
+                }
+                Err(failure) if tries == 0 => return self.fail(event_loop, failure),
+                Err(_) => std::thread::sleep(REOPENING),
+            }
+            tries -= 1;
+        }
     }
 
     /// Lets physics go on. Steps are waited for no longer than a frame can spare.
@@ -292,9 +347,9 @@ impl App {
         }
     }
 
-    /// Reads the scene's file again once it has been left alone for a moment.
+    /// Reads the scene's files again once they have been left alone for a moment.
     fn reread(&mut self, now: Duration) {
-        self.watch.follow(self.session.file());
+        self.watch.follow(self.session.files());
         if self.watch.take() {
             self.touched = Some(now);
         }
@@ -320,6 +375,9 @@ impl App {
         self.reread(now);
         self.session.notices().pass(elapsed);
         self.session.settle(elapsed);
+        if let Err(error) = self.rescue.keep(&self.session) {
+            self.session.notices().error("rescue", format!("{error:#}"));
+        }
         if self.session.is_closing() {
             return event_loop.exit();
         }
@@ -362,11 +420,12 @@ impl App {
         if let Some(error) = open.gpu.take_error() {
             self.session.notices().error("graphics", error);
         }
+        #[cfg(debug_assertions)]
+        if is_fault_wanted() {
+            open.gpu.lose();
+        }
         if open.gpu.is_lost() {
-            match Open::new(event_loop, open.window.clone(), &self.proxy) {
-                Ok(reopened) => self.open = Some(reopened),
-                Err(failure) => return self.fail(event_loop, failure),
-            }
+            self.reopen(event_loop);
         }
         let compare = &self.session.compare;
         let measuring = compare.on && (compare.is_under_way() || self.session.wants_trial());
@@ -457,6 +516,12 @@ impl ApplicationHandler<Redraw> for App {
             },
         });
     }
+}
+
+/// Whether `.ci/window-faults` wants the device to be lost: once for each file that it puts where this variable says.
+#[cfg(debug_assertions)]
+fn is_fault_wanted() -> bool {
+    std::env::var_os("COWBELL_LOSE_DEVICE").is_some_and(|path| std::fs::remove_file(path).is_ok())
 }
 
 /// What stands over the window: the scene, marked when no file has its edits.

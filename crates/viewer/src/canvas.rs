@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use egui_wgpu::wgpu;
 
+use crate::number;
 use crate::picture::Picture;
 use crate::render::{self, Renderer};
 
@@ -87,8 +88,15 @@ impl Canvas {
     }
 
     /// What went wrong since this was last asked.
-    pub fn take_error(&self) -> Option<String> {
-        self.troubles.error.lock().ok()?.take()
+    pub fn take_error(&mut self) -> Option<String> {
+        let cut = self.scene.take_cut();
+        let of_driver = self
+            .troubles
+            .error
+            .lock()
+            .ok()
+            .and_then(|mut slot| slot.take());
+        of_driver.or_else(|| Some(in_part(cut.last()?)))
     }
 
     /// Takes in textures of the control panel. egui sends each once, so that none may be left out even
@@ -169,6 +177,13 @@ impl Canvas {
     }
 }
 
+fn in_part(cut: &render::Cut) -> String {
+    let [drawn, all] = [cut.drawn, cut.triangles].map(|count| number::count(count as f64));
+    format!(
+        "The graphics adapter has room for {drawn} of the {all} triangles of a mesh, and draws no more. All of them collide."
+    )
+}
+
 impl Troubles {
     fn listen(self: &Arc<Self>, device: &wgpu::Device) {
         let troubles = self.clone();
@@ -208,18 +223,28 @@ fn texture(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::Model;
     use crate::render::offscreen;
+    use crate::words::Language;
+    use glam::{DQuat, DVec3};
 
     const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
     /// A canvas without a window, if there is an adapter.
     fn canvas() -> Option<Canvas> {
+        canvas_of(|limits| limits)
+    }
+
+    /// The same on a device of other limits.
+    fn canvas_of(limited: impl Fn(wgpu::Limits) -> wgpu::Limits) -> Option<Canvas> {
         let Some(adapter) = offscreen::adapter() else {
             assert!(std::env::var_os("CI").is_none(), "no graphics adapter");
             println!("skipped: no graphics adapter");
             return None;
         };
-        let made = pollster::block_on(adapter.request_device(&render::device_descriptor(&adapter)));
+        let mut descriptor = render::device_descriptor(&adapter);
+        descriptor.required_limits = limited(descriptor.required_limits);
+        let made = pollster::block_on(adapter.request_device(&descriptor));
         let samples = render::supported_samples(&adapter);
         Some(Canvas::new(made.expect("a device"), FORMAT, samples))
     }
@@ -243,6 +268,44 @@ mod tests {
         for size in [[0, 0], [0, 48], [64, 48], [1, 1], [u32::MAX, 1], [0, 0]] {
             canvas.paint(&view, [64, 48], (&picture, size), &frame());
             assert_eq!(canvas.take_error(), None, "{size:?}");
+        }
+        assert!(!canvas.is_lost());
+    }
+
+    /// A part of it is better than none, as long as it is told.
+    #[test]
+    fn a_mesh_beyond_the_buffers_of_the_device_is_drawn_in_part_and_told_once() {
+        // The vertices of the cow, 24 bytes each, do not fit into this.
+        let limited = |limits| wgpu::Limits {
+            max_buffer_size: 1 << 16,
+            ..limits
+        };
+        let Some(mut canvas) = canvas_of(limited) else {
+            return;
+        };
+        let view = texture(canvas.device(), [64, 48], FORMAT);
+        let mesh = scene::MeshRef::builtin("cow.obj").expect("built in");
+        let model = |selected| Model {
+            mesh: mesh.mesh().clone(),
+            position: DVec3::ZERO,
+            rotation: DQuat::IDENTITY,
+            colour: [0.5; 3],
+            selected,
+        };
+        for (selected, least) in [(false, 1000), (true, 900)] {
+            let picture = Picture {
+                models: vec![model(selected)],
+                ..Picture::default()
+            };
+            canvas.paint(&view, [64, 48], (&picture, [64, 48]), &frame());
+            let told = canvas.take_error().expect("it is told");
+            let drawn = told.split_whitespace().nth(6).expect("a number");
+            let drawn: usize = drawn.replace(',', "").parse().expect("a number");
+            assert!((least..6000).contains(&drawn), "{told}");
+            assert!(told.contains("of the 6,000 triangles"), "{told}");
+            assert!(Language::Chinese.translated(&told).is_some(), "{told}");
+            canvas.paint(&view, [64, 48], (&picture, [64, 48]), &frame());
+            assert_eq!(canvas.take_error(), None, "once");
         }
         assert!(!canvas.is_lost());
     }

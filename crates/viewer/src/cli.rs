@@ -356,6 +356,15 @@ fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
     ) {
         silence_mesa();
     }
+    let opens_window = matches!(
+        cli.command,
+        None | Some(Command::Replay { verify: false, .. })
+    );
+    if !opens_window {
+        interrupt
+            .begin()
+            .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    }
     match cli.command {
         None => {
             let session = match is_run_file(&cli.scene) {
@@ -437,7 +446,7 @@ fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
             scene,
             shot,
             settings,
-        }) => shot::write(load(&scene, &settings)?, &shot),
+        }) => shot::write(load(&scene, &settings)?, &shot, interrupt),
         Some(Command::Gif {
             scene,
             film,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use egui_wgpu::wgpu;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
@@ -54,9 +54,14 @@ impl Gpu {
         let instance = wgpu::Instance::new(
             wgpu::InstanceDescriptor::new_with_display_handle_from_env(display),
         );
-        let surface = instance
-            .create_surface(window.clone())
-            .context("no surface in the window")?;
+        // The error is a list of drivers, and empty where there is none.
+        let surface =
+            instance
+                .create_surface(window.clone())
+                .map_err(|error| match error.to_string() {
+                    text if text.ends_with("{}") => anyhow!("no graphics driver draws in windows"),
+                    _ => anyhow::Error::new(error).context("no surface in the window"),
+                })?;
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             compatible_surface: Some(&surface),
@@ -95,13 +100,22 @@ impl Gpu {
         self.canvas.device().limits().max_texture_dimension_2d as usize
     }
 
+    /// Loses the device on purpose, to see what comes of it.
+    #[cfg(debug_assertions)]
+    pub fn lose(&self) {
+        let device = self.canvas.device();
+        device.destroy();
+        // It tells when all that it had to do is done.
+        let _ = device.poll(wgpu::PollType::wait_indefinitely());
+    }
+
     /// Whether the device is gone, so that everything must be made anew.
     pub fn is_lost(&self) -> bool {
         self.canvas.is_lost()
     }
 
     /// What went wrong since this was last asked.
-    pub fn take_error(&self) -> Option<String> {
+    pub fn take_error(&mut self) -> Option<String> {
         self.canvas.take_error()
     }
 

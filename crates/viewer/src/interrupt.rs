@@ -11,24 +11,46 @@ use signal_hook::flag;
 use crate::cli::INTERRUPTED;
 use crate::stopwatch::Stopwatch;
 
-/// Whether someone wants the run to end.
+/// Whether someone wants the program to end.
 #[derive(Debug, Default)]
-pub struct Interrupt(Arc<AtomicBool>);
+pub struct Interrupt {
+    came: Arc<AtomicBool>,
+    /// The next signal ends the program, and nothing is told.
+    at_once: Arc<AtomicBool>,
+}
 
 impl Interrupt {
-    /// From now on the first signal to end is only noted, and the second ends the program.
-    pub fn listen(&self) -> std::io::Result<()> {
+    /// From now on a signal to end has the exit code of one: at once, until [`Self::listen`].
+    pub fn begin(&self) -> std::io::Result<()> {
+        self.at_once.store(true, Ordering::Relaxed);
         for signal in [SIGINT, SIGTERM] {
             // Asked first, so that it acts on what an earlier signal has noted.
-            flag::register_conditional_shutdown(signal, INTERRUPTED.into(), self.0.clone())?;
-            flag::register(signal, self.0.clone())?;
+            flag::register_conditional_shutdown(signal, INTERRUPTED.into(), self.at_once.clone())?;
+            flag::register(signal, self.came.clone())?;
+            flag::register(signal, self.at_once.clone())?;
         }
         Ok(())
     }
 
+    /// From now on the first signal is only noted, and the second ends the program.
+    pub fn listen(&self) {
+        self.at_once.store(self.came(), Ordering::Relaxed);
+    }
+
     /// Whether a signal came.
     pub fn came(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.came.load(Ordering::Relaxed)
+    }
+
+    /// Tells that a signal has cut something short, if one has.
+    pub fn tell(&self, reached: u64, total: u64, what: &str) {
+        if self.came() {
+            // Nothing is lost if it cannot be told: the result has the count too.
+            let _ = writeln!(
+                stderr(),
+                "cowbell: interrupted after {reached} of {total} {what}"
+            );
+        }
     }
 }
 

@@ -21,6 +21,7 @@ pub mod number;
 pub mod picture;
 pub mod preferences;
 pub mod render;
+pub mod rescue;
 pub mod session;
 pub mod shot;
 pub mod soak;

@@ -6,18 +6,24 @@ use scene::{Scene, file, shown};
 
 use crate::cli::{Depth, ShotArgs};
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::picture;
 use crate::render::offscreen::{self, ShotError};
 use crate::session::Session;
 use crate::stopwatch::Stopwatch;
 
-/// Runs a scene for a number of steps, draws it and writes the file; says what was written.
-pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
+/// Runs a scene for a number of steps, or as many as there are before an interrupt, draws it and writes the
+/// file; says what was written.
+pub fn write(scene: Scene, args: &ShotArgs, interrupt: &Interrupt) -> Result<String, Failure> {
+    interrupt.listen();
     let mut session = Session::new(scene).map_err(Failure::refused)?;
-    session.look_ahead();
+    session.look_ahead(|| interrupt.came());
     look(&mut session, args.select.as_deref(), args.bvh)?;
     let stopwatch = Stopwatch::start();
     for _ in 0..args.step {
+        if interrupt.came() {
+            break;
+        }
         session.step_once();
         if let Some(job) = session.due(Duration::ZERO) {
             session.accept(job.run(|| stopwatch.read()));
@@ -26,6 +32,7 @@ pub fn write(scene: Scene, args: &ShotArgs) -> Result<String, Failure> {
             return Err(Failure::Run(notice.text.clone()));
         }
     }
+    interrupt.tell(session.world().steps(), args.step, "steps");
     let image = offscreen::shot(&session.picture(), args.size).map_err(failure)?;
     let png = picture::png(&image)
         .map_err(|error| Failure::Run(format!("cannot encode the picture: {error}")))?;

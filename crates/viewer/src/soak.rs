@@ -130,9 +130,7 @@ pub fn run(
     minutes: f64,
     interrupt: &Interrupt,
 ) -> Result<String, Failure> {
-    interrupt
-        .listen()
-        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    interrupt.listen();
     let part = Duration::try_from_secs_f64(60.0 * minutes / scenes.len() as f64)
         .map_err(|_| Failure::Refused("--minutes: must be below 1e17".to_owned()))?;
     let mut text = format!(

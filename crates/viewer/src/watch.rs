@@ -1,16 +1,18 @@
-//! Watching the scene's file, so that what an editor writes there is seen at once.
+//! Watching the scene's files, so that what an editor writes there is seen at once, and what goes too.
 
+use std::collections::HashSet;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher};
 
-/// Watches one file. Where the system cannot, nothing is ever seen.
+/// Watches some files. Where the system cannot, nothing is ever seen.
 pub struct Watch {
     wake: Arc<dyn Fn() + Send + Sync>,
     watcher: Option<RecommendedWatcher>,
-    file: Option<PathBuf>,
+    files: Vec<PathBuf>,
     touched: Arc<AtomicBool>,
 }
 
@@ -20,43 +22,55 @@ impl Watch {
         Self {
             wake: Arc::new(wake),
             watcher: None,
-            file: None,
+            files: Vec::new(),
             touched: Arc::default(),
         }
     }
 
-    /// Watches this file from now on, and no other.
-    pub fn follow(&mut self, file: Option<&Path>) {
-        if self.file.as_deref() == file {
+    /// Watches these files from now on, and no others.
+    pub fn follow<'a>(&mut self, files: impl Iterator<Item = &'a Path> + Clone) {
+        let known = self.files.iter().map(|path| path.as_os_str());
+        if known.eq(files.clone().map(Path::as_os_str)) {
             return;
         }
-        self.file = file.map(Path::to_path_buf);
+        self.files = files.map(Path::to_path_buf).collect();
         self.touched = Arc::default();
-        self.watcher = file.and_then(|file| self.watcher(file).ok());
+        self.watcher = match self.files.is_empty() {
+            true => None,
+            false => self.watcher().ok(),
+        };
     }
 
-    /// Whether the file was touched since this was last asked.
+    /// Whether one was touched since this was last asked.
     pub fn take(&self) -> bool {
         self.touched.swap(false, Ordering::Relaxed)
     }
 
-    /// Many editors write another file and rename it, so the folder is watched.
-    fn watcher(&self, file: &Path) -> notify::Result<RecommendedWatcher> {
-        let file = std::path::absolute(file)?;
-        let name = file.file_name().map(ToOwned::to_owned);
+    /// Many editors write another file and rename it, so folders are watched. A file of the same name in one
+    /// of the other folders is taken for touched too: the reader finds that nothing has changed.
+    fn watcher(&self) -> notify::Result<RecommendedWatcher> {
+        let (mut names, mut folders) = (HashSet::<OsString>::new(), HashSet::new());
+        for file in &self.files {
+            let file = std::path::absolute(file)?;
+            names.extend(file.file_name().map(ToOwned::to_owned));
+            folders.insert(file.parent().unwrap_or(Path::new(".")).to_owned());
+        }
         let (touched, wake) = (self.touched.clone(), self.wake.clone());
         let seen = move |event: notify::Result<Event>| {
             let Ok(event) = event else { return };
-            let is_change = event.kind.is_create() || event.kind.is_modify();
-            let mut names = event.paths.iter().map(|path| path.file_name());
-            if is_change && names.any(|other| other == name.as_deref()) {
+            let is_change =
+                event.kind.is_create() || event.kind.is_modify() || event.kind.is_remove();
+            let mut of = event.paths.iter().filter_map(|path| path.file_name());
+            if is_change && of.any(|name| names.contains(name)) {
                 touched.store(true, Ordering::Relaxed);
                 wake();
             }
         };
         let mut watcher = notify::recommended_watcher(seen)?;
-        let folder = file.parent().unwrap_or(Path::new("."));
-        watcher.watch(folder, RecursiveMode::NonRecursive)?;
+        for folder in folders {
+            // One that is not there hides nothing of the others.
+            let _ = watcher.watch(&folder, RecursiveMode::NonRecursive);
+        }
         Ok(watcher)
     }
 }
@@ -68,35 +82,48 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_file_that_is_written_or_replaced_is_seen_and_no_other() {
+    fn files_that_are_written_replaced_or_removed_are_seen_and_no_others() {
         let folder = std::env::temp_dir().join(format!("cowbell-watch-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder");
-        let file = folder.join("scene.toml");
+        let deeper = folder.join("meshes");
+        std::fs::create_dir_all(&deeper).expect("a folder");
+        let (file, mesh) = (folder.join("scene.toml"), deeper.join("mesh.obj"));
         std::fs::write(&file, "a").expect("written");
+        std::fs::write(&mesh, "a").expect("written");
         let (wakes, woken) = mpsc::channel();
         let mut watch = Watch::new(move || {
             // Fails only when the test is over.
             let _ = wakes.send(());
         });
-        watch.follow(Some(&file));
-        let wait = || woken.recv_timeout(Duration::from_secs(20));
-        std::fs::write(&file, "b").expect("written");
-        wait().expect("seen");
-        assert!(watch.take());
-        std::thread::sleep(Duration::from_millis(200));
-        watch.take();
-        while woken.try_recv().is_ok() {}
+        watch.follow([&*file, &*mesh].into_iter());
         let other = folder.join("other.toml");
         std::fs::write(&other, "c").expect("written");
-        std::fs::rename(&other, &file).expect("renamed");
-        wait().expect("seen");
-        assert!(watch.take());
+        let changes: [(&str, &dyn Fn()); 5] = [
+            ("written", &|| std::fs::write(&file, "b").expect("written")),
+            ("renamed", &|| {
+                std::fs::rename(&other, &file).expect("renamed")
+            }),
+            ("mesh written", &|| {
+                std::fs::write(&mesh, "b").expect("written")
+            }),
+            ("mesh removed", &|| {
+                std::fs::remove_file(&mesh).expect("removed")
+            }),
+            ("removed", &|| std::fs::remove_file(&file).expect("removed")),
+        ];
+        for (what, change) in changes {
+            std::thread::sleep(Duration::from_millis(200));
+            watch.take();
+            while woken.try_recv().is_ok() {}
+            change();
+            woken.recv_timeout(Duration::from_secs(20)).expect(what);
+            assert!(watch.take(), "{what}");
+        }
         std::thread::sleep(Duration::from_millis(200));
         watch.take();
         std::fs::write(&other, "d").expect("written");
         std::thread::sleep(Duration::from_millis(300));
         assert!(!watch.take(), "another file");
-        watch.follow(None);
+        watch.follow([].into_iter());
         std::fs::write(&file, "e").expect("written");
         std::thread::sleep(Duration::from_millis(300));
         assert!(!watch.take(), "nothing is watched");

@@ -1,10 +1,8 @@
-//! The program as a process among others: closed pipes, signals, terminals, limits, and no display.
+//! The program as a process among others: closed pipes, terminals, limits, and no display.
 
 use std::fs;
 use std::io::Read;
 use std::process::{Command, Stdio};
-
-use serde_json::Value;
 
 mod kit;
 
@@ -88,34 +86,6 @@ fn names_and_arguments_do_not_act_on_the_terminal() {
             nothing_acts(&answer(arguments));
         }
     }
-}
-
-#[cfg(unix)]
-#[test]
-fn an_interrupted_run_tells_what_it_reached() {
-    let run = [
-        "run",
-        "parabola",
-        "--json",
-        "--steps",
-        "1000000000000000000",
-    ];
-    let mut command = cowbell(&run);
-    let child = command
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
-    std::thread::sleep(std::time::Duration::from_secs(2));
-    let id = child.id().to_string();
-    let killed = Command::new("kill").args(["-INT", &id]).status();
-    assert!(killed.expect("kill").success());
-    let output = child.wait_with_output().expect("it ends");
-    assert_eq!(output.status.code(), Some(130));
-    let state: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert!(state["steps"].as_u64().is_some_and(|steps| steps > 0));
-    let text = String::from_utf8(output.stderr).expect("text");
-    assert!(text.starts_with("cowbell: interrupted after "), "{text}");
 }
 
 /// A file that may not grow is an error, as a full disk is: the program does not die of it.

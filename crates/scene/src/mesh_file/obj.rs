@@ -161,6 +161,11 @@ impl<'a> Sieve<'a> {
             let keyword = line
                 .split(u8::is_ascii_whitespace)
                 .find(|word| !word.is_empty());
+            if keyword == Some(b"call") {
+                let what = "`call` puts the lines of another file here, and no other file is \
+                            opened: write them into this one";
+                return Err(ReadError::at(start, what));
+            }
             if !matches!(keyword, Some(b"v" | b"f")) {
                 self.skip_continuation(line);
                 continue;

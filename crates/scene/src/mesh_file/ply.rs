@@ -19,6 +19,9 @@ pub(super) const FORMAT: Format = Format {
     read,
 };
 
+/// The only one there has been.
+const VERSION: &str = "1.0";
+
 fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
     let bytes = encoding::by_mark(bytes);
     let (header, body) = Header::read(&bytes)?;
@@ -141,19 +144,35 @@ impl Header {
                     return Err(ReadError::at(1, what));
                 }
                 [] | ["comment" | "obj_info", ..] => {}
-                ["format", name, _] => {
-                    kind = Some(match name {
+                ["format", name, version] => {
+                    let encoding = match name {
                         "ascii" => Encoding::Ascii,
                         "binary_little_endian" => Encoding::Little,
                         "binary_big_endian" => Encoding::Big,
                         _ => return Err(wrong()),
+                    };
+                    if version != VERSION {
+                        let version = shown::name(version);
+                        let what = format!("the version is `{version}`: only {VERSION} is known");
+                        return Err(ReadError::at(line, what));
+                    }
+                    if kind.replace(encoding).is_some() {
+                        let what = "the header has a second line `format`";
+                        return Err(ReadError::at(line, what));
+                    }
+                }
+                ["element", name, count] => {
+                    let is_read = matches!(name, "vertex" | "face");
+                    if is_read && elements.iter().any(|element| element.name == name) {
+                        let what = format!("the header has a second element `{name}`");
+                        return Err(ReadError::at(line, what));
+                    }
+                    elements.push(Element {
+                        name: name.to_owned(),
+                        count: count.parse().map_err(|_| wrong())?,
+                        properties: Vec::new(),
                     });
                 }
-                ["element", name, count] => elements.push(Element {
-                    name: name.to_owned(),
-                    count: count.parse().map_err(|_| wrong())?,
-                    properties: Vec::new(),
-                }),
                 ["property", .., name] => {
                     let (list, scalar) = match words[1..] {
                         ["list", length, scalar, _] => {
@@ -311,11 +330,15 @@ impl Values<'_> {
 
 fn vertices(element: &Element, values: &mut Values, soup: &mut Soup) -> Result<(), ReadError> {
     for axis in ["x", "y", "z"] {
-        let mut known = element.properties.iter();
-        if !known.any(|property| property.name == axis && property.list.is_none()) {
-            return Err(ReadError::new(format!(
-                "its vertices have no property `{axis}`"
-            )));
+        let named = element.properties.iter().filter(|p| p.name == axis);
+        let lists: Vec<bool> = named.map(|property| property.list.is_some()).collect();
+        if lists.len() > 1 {
+            let what = format!("its vertices have more than one property `{axis}`");
+            return Err(ReadError::new(what));
+        }
+        if lists != [false] {
+            let what = format!("its vertices have no property `{axis}`");
+            return Err(ReadError::new(what));
         }
     }
     for number in 0..element.count {
@@ -352,8 +375,14 @@ fn read_faces(element: &Element, values: &mut Values, faces: &mut Faces) -> Resu
         property.list.is_some()
             && matches!(property.name.as_str(), "vertex_indices" | "vertex_index")
     };
-    if element.count > 0 && !element.properties.iter().any(is_corners) {
+    let lists = element.properties.iter().filter(|p| is_corners(p)).count();
+    if element.count > 0 && lists == 0 {
         return Err(ReadError::new("its faces have no list `vertex_indices`"));
+    }
+    if lists > 1 {
+        let what =
+            "its faces have more than one list of corners (`vertex_indices`, `vertex_index`)";
+        return Err(ReadError::new(what));
     }
     for _ in 0..element.count {
         let start = faces.corners.len();

@@ -102,8 +102,7 @@ fn text(bytes: &[u8]) -> Result<Soup, ReadError> {
                 is_ended = true;
                 words.skip_name();
             }
-            // Normals are not read, so that they may be no numbers.
-            b"facet" => words.skip_normal(),
+            b"facet" => words.skip_normal()?,
             b"endfacet" => {}
             b"outer" => corners(&mut words, &mut soup)?,
             _ => {
@@ -207,16 +206,23 @@ impl<'a> Words<'a> {
         }
     }
 
-    fn skip_normal(&mut self) {
-        for _ in 0..4 {
-            if self
-                .peek()
-                .is_none_or(|word| word.eq_ignore_ascii_case(b"outer"))
-            {
-                return;
+    /// Normals are not read, so that they may be missing, or no numbers.
+    fn skip_normal(&mut self) -> Result<(), ReadError> {
+        let begins_loop = |word: &[u8]| word.eq_ignore_ascii_case(b"outer");
+        if self.peek().is_none_or(begins_loop) {
+            return Ok(());
+        }
+        let word = self.next().unwrap_or_default();
+        if !word.eq_ignore_ascii_case(b"normal") {
+            return Err(self.unexpected(word, "`normal` or `outer loop`"));
+        }
+        for _ in 0..3 {
+            if self.peek().is_none_or(begins_loop) {
+                break;
             }
             self.next();
         }
+        Ok(())
     }
 
     fn peek(&self) -> Option<&'a [u8]> {

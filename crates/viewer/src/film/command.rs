@@ -30,8 +30,9 @@ pub fn write(scene: Scene, args: &FilmArgs, interrupt: &Interrupt) -> Result<Str
             "{frames} frames are too many, {MOST_FRAMES} the most: shorten --time, or raise --speed"
         )));
     }
+    interrupt.listen();
     let mut session = Session::new(scene).map_err(Failure::refused)?;
-    session.look_ahead();
+    session.look_ahead(|| interrupt.came());
     shot::look(&mut session, args.select.as_deref(), args.bvh)?;
     if args.trails {
         session.show_trails(true);
@@ -39,23 +40,22 @@ pub fn write(scene: Scene, args: &FilmArgs, interrupt: &Interrupt) -> Result<Str
     session.camera.zoom(args.zoom);
     let mut studio = Offscreen::new().map_err(shot::failure)?;
     let mut film = Film::new(delay as u16);
-    interrupt
-        .listen()
-        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
     let mut progress = Progress::of(frames as u64, "frames");
     for n in 0..frames {
-        if interrupt.came() && !film.is_empty() {
-            break;
-        }
-        if let Err(failure) = run_to(&mut session, args.from + n as f64 * apart) {
+        if let Err(failure) = run_to(&mut session, args.from + n as f64 * apart, interrupt) {
             progress.end();
             return Err(failure);
+        }
+        // A film has one picture at least.
+        if interrupt.came() && !film.is_empty() {
+            break;
         }
         let image = studio.shot(&session.picture(), args.size);
         film.push(image.map_err(shot::failure)?);
         progress.at(n as u64 + 1);
     }
     progress.end();
+    interrupt.tell(film.len() as u64, frames as u64, "frames");
     let bytes = film.bytes(form).map_err(Failure::Run)?;
     let path = shown::path(&args.output);
     file::write(&args.output, &bytes)
@@ -68,10 +68,10 @@ pub fn write(scene: Scene, args: &FilmArgs, interrupt: &Interrupt) -> Result<Str
     ))
 }
 
-/// Takes the steps up to a simulated time, s, and shows that instant.
-fn run_to(session: &mut Session, time: f64) -> Result<(), Failure> {
+/// Takes the steps up to a simulated time, s, and shows that instant; after an interrupt, the one it has come to.
+fn run_to(session: &mut Session, time: f64, interrupt: &Interrupt) -> Result<(), Failure> {
     let stopwatch = Stopwatch::start();
-    while session.world().time() < time {
+    while session.world().time() < time && !interrupt.came() {
         session.step_once();
         if let Some(job) = session.due(Duration::ZERO) {
             session.accept(job.run(|| stopwatch.read()));
@@ -84,6 +84,8 @@ fn run_to(session: &mut Session, time: f64) -> Result<(), Failure> {
             return Err(Failure::Run(notice.text.clone()));
         }
     }
-    session.go_to_time(time);
+    if session.world().time() >= time {
+        session.go_to_time(time);
+    }
     Ok(())
 }

@@ -60,9 +60,7 @@ pub fn compare(
         return Err(Failure::Refused(text));
     }
     let world = scene.world().map_err(Failure::refused)?;
-    interrupt
-        .listen()
-        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    interrupt.listen();
     let mut runs = Vec::new();
     for settings in settings {
         let runner = Runner::stepping(&world, *settings).map_err(Failure::refused)?;

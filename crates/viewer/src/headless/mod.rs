@@ -7,7 +7,6 @@ pub use compare::{Form, compare};
 pub use replay::replay;
 
 use std::fmt::Write;
-use std::io::Write as _;
 use std::path::Path;
 
 use scene::{MeshReport, Scene, file, mesh_file, shown};
@@ -183,9 +182,7 @@ pub fn run(
         separated: separated.into_iter().map(name).collect(),
     };
     let (reference, mut exact) = (Reference::of(&world), Exact::of(&world));
-    interrupt
-        .listen()
-        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    interrupt.listen();
     let mut recorded = match record {
         Some(path) => {
             replay::check_recordable(path, steps)?;
@@ -208,14 +205,7 @@ pub fn run(
     }
     let seconds_per_step = stopwatch.read().as_secs_f64() / world.steps().max(1) as f64;
     progress.end();
-    if interrupt.came() {
-        let reached = world.steps();
-        // Nothing is lost if it cannot be told: the result has the count too.
-        let _ = writeln!(
-            std::io::stderr(),
-            "cowbell: interrupted after {reached} of {steps} steps"
-        );
-    }
+    interrupt.tell(world.steps(), steps, "steps");
     if let Some((path, recorded)) = record.zip(recorded) {
         let text = recorded.text_at(path).map_err(Failure::refused)?;
         file::write(path, text.as_bytes()).map_err(|error| {
@@ -238,9 +228,7 @@ pub fn run_csv(scene: &Scene, steps: u64, interrupt: &Interrupt) -> Result<Strin
     let world = scene.world().map_err(Failure::refused)?;
     let runner = Runner::stepping(&world, *world.settings()).map_err(Failure::refused)?;
     let mut runner = runner.profiled();
-    interrupt
-        .listen()
-        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    interrupt.listen();
     let mut text = csv_head(false) + &csv_line(None, &runner.snapshot(None, 0).sample);
     let mut progress = Progress::new(steps);
     let stopwatch = Stopwatch::start();

@@ -29,9 +29,7 @@ pub fn replay(file: &Path, interrupt: &Interrupt) -> Result<String, Failure> {
     let record = Record::read(file).map_err(Failure::refused)?;
     let (scene, recorded) = (record.scene.clone(), record.steps());
     let name = shown::path(file);
-    interrupt
-        .listen()
-        .map_err(|error| Failure::Run(format!("cannot listen for Ctrl-C: {error}")))?;
+    interrupt.listen();
     let mut progress = Progress::new(recorded);
     let verdict = verify(record, |steps| {
         progress.at(steps);
@@ -52,6 +50,7 @@ pub fn replay(file: &Path, interrupt: &Interrupt) -> Result<String, Failure> {
         return Err(Failure::Run(format!("{name}: it {divergence}")));
     }
     let (steps, inputs) = (verdict.steps, verdict.inputs);
+    interrupt.tell(steps, recorded, "steps");
     let hash = verdict.world.state_hash();
     Ok(format!(
         "{name}: {steps} of {recorded} steps and {inputs} inputs, every state the same; state hash {hash:016x}\n"

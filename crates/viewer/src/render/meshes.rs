@@ -100,6 +100,16 @@ pub(super) struct Meshes {
     order: Vec<usize>,
     instances: Vec<Instance>,
     buffer: Growing<Instance>,
+    cut: Vec<Cut>,
+}
+
+/// A mesh that is too large for a buffer of the device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cut {
+    /// How many triangles it has.
+    pub triangles: usize,
+    /// How many of them are drawn.
+    pub drawn: usize,
 }
 
 impl Meshes {
@@ -109,7 +119,13 @@ impl Meshes {
             order: Vec::new(),
             instances: Vec::new(),
             buffer: Growing::new(device, "instances", wgpu::BufferUsages::VERTEX),
+            cut: Vec::new(),
         }
+    }
+
+    /// The meshes that turned out to be too large since this was last asked.
+    pub(super) fn take_cut(&mut self) -> Vec<Cut> {
+        std::mem::take(&mut self.cut)
     }
 
     /// Takes in the models of a picture; forgets the meshes that it does not show.
@@ -141,15 +157,23 @@ impl Meshes {
                 continue;
             }
             let address = Arc::as_ptr(geometry).addr();
-            let mesh = self
-                .known
-                .entry(address)
-                .or_insert_with(|| DeviceMesh::new(device, geometry));
+            let mut note = |drawn: &Triangles| {
+                let (triangles, drawn) = (geometry.triangles().len(), drawn.count());
+                self.cut
+                    .extend((drawn < triangles).then_some(Cut { triangles, drawn }));
+            };
+            let mesh = self.known.entry(address).or_insert_with(|| {
+                let mesh = DeviceMesh::new(device, geometry);
+                note(&mesh.shared);
+                mesh
+            });
             if mesh.places.iter().all(|places| places.instances.is_empty()) {
                 self.order.push(address);
             }
             if look.is_edged() && mesh.apart.is_none() {
-                mesh.apart = Some(Triangles::apart(device, geometry));
+                let apart = Triangles::apart(device, geometry);
+                note(&apart);
+                mesh.apart = Some(apart);
             }
             mesh.places[look as usize].instances.push(Instance {
                 offset: (position - eye).as_vec3().to_array(),

@@ -25,6 +25,7 @@ mod targets;
 mod triangles;
 
 pub use device::{device_descriptor, supported_samples};
+pub use meshes::Cut;
 pub use panels::paint_panels;
 
 use egui_wgpu::wgpu;
@@ -73,6 +74,11 @@ impl Renderer {
             shadow,
             frame,
         }
+    }
+
+    /// The meshes of which this device can draw a part only, each once since it came into the picture.
+    pub fn take_cut(&mut self) -> Vec<Cut> {
+        self.meshes.take_cut()
     }
 
     /// Records the drawing of a picture over all of a target of a size in pixels.

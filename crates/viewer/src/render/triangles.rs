@@ -48,6 +48,11 @@ impl Triangles {
         }
     }
 
+    /// How many are drawn.
+    pub(super) fn count(&self) -> usize {
+        self.corners as usize / 3
+    }
+
     /// Draws instances of a buffer that is bound already.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, instances: Range<u32>) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));

@@ -75,15 +75,19 @@ impl Session {
         self.opening = opening;
     }
 
-    /// Reads the scene's file again if it has become another scene; edits that no file has are kept
-    /// instead. A file that is half written or wrong leaves everything as it is, and says what is wrong.
+    /// Looks at the scene's files again, and reads them if they make another scene; edits that no file has are
+    /// kept instead. A file that is half written, wrong or gone leaves everything as it is, which is told.
     pub fn reread(&mut self) {
         let Some(path) = self.file.clone() else {
             return;
         };
+        self.file_gone = !path.exists();
+        if self.tell_of_gone() {
+            return;
+        }
         match Scene::load(&path) {
-            Ok(scene) if scene == self.scene => {}
-            Ok(_) if self.is_changed() => {
+            Ok(scene) if scene == self.scene => self.notices.dismiss("file"),
+            Ok(_) if self.has_edits() => {
                 let text = "The file has changed. Your edits are kept: open it again to see what is in it.";
                 self.notices.error("file", text.to_owned());
             }
@@ -96,6 +100,35 @@ impl Session {
             }
             Err(error) => self.notices.error("file", error.to_string()),
         }
+    }
+
+    /// Tells of the first of the scene's files that is not there; whether there is one.
+    fn tell_of_gone(&mut self) -> bool {
+        let Some(gone) = self.files().find(|path| !path.exists()) else {
+            return false;
+        };
+        let name = shown::path(gone);
+        let text = match self.file.as_deref() == Some(gone) {
+            true => format!(
+                "{name} is gone. The scene stays here as it is: save it, or put the file back."
+            ),
+            false => format!(
+                "The mesh {name} is gone. The scene stays here as it is, and cannot be opened again before the mesh is back."
+            ),
+        };
+        self.notices.error("file", text);
+        true
+    }
+
+    /// The files that the scene is made of, as far as it has one of its own: that, and those of its meshes.
+    pub fn files(&self) -> impl Iterator<Item = &Path> + Clone {
+        let meshes = self
+            .scene
+            .bodies
+            .iter()
+            .filter_map(|body| body.mesh()?.path());
+        let own = self.file.as_deref();
+        own.into_iter().chain(meshes.filter(move |_| own.is_some()))
     }
 
     /// The file that the scene was read from or last saved to.
@@ -146,6 +179,7 @@ impl Session {
                     .info("save", format!("Saved {}.", shown::path(&path)));
                 self.file = Some(path);
                 self.mark_saved();
+                self.tell_of_gone();
             }
             Err(error) => self.notices.error("save", error.to_string()),
         }

@@ -165,14 +165,26 @@ impl Session {
         }
     }
 
-    /// Whether there are edits that no file has.
+    /// Whether there is something in the set-up that no file has.
     pub fn is_changed(&self) -> bool {
+        self.file_gone || self.has_edits()
+    }
+
+    /// Whether there are edits that no file has had.
+    pub(super) fn has_edits(&self) -> bool {
         let saved = |(number, _): &(u64, Scene)| *number == self.history.saved;
         self.differs() || !self.history.states.get(self.history.now).is_some_and(saved)
     }
 
+    /// The number of the last edit, if no file has it: another one after each.
+    pub fn unsaved(&self) -> Option<u64> {
+        let (number, _) = self.history.states.get(self.history.now)?;
+        self.is_changed().then_some(*number)
+    }
+
     /// The set-up is in a file now.
     pub(super) fn mark_saved(&mut self) {
+        self.file_gone = false;
         self.history.push(&self.scene);
         if let Some((number, _)) = self.history.states.get(self.history.now) {
             self.history.saved = *number;

@@ -156,6 +156,8 @@ pub struct Session {
     edition: u64,
     /// File that the scene was read from or last saved to.
     file: Option<std::path::PathBuf>,
+    /// That file is not there any more.
+    file_gone: bool,
     /// Where the person looks from.
     pub camera: Camera,
     /// What is drawn besides the bodies.
@@ -202,6 +204,7 @@ impl Session {
             passes: instant::Passes::default(),
             edition: 0,
             file: None,
+            file_gone: false,
             camera: Camera::default(),
             display: Display::default(),
             compare: Compare::default(),

@@ -186,10 +186,14 @@ impl Session {
         self.view.home = Some(self.camera);
     }
 
-    /// Looks ahead now, for as long as it takes: for pictures without a window.
-    pub fn look_ahead(&mut self) {
+    /// Looks ahead now, for as long as it takes or until `is_over`: for pictures without a window.
+    pub fn look_ahead(&mut self, is_over: impl Fn() -> bool) {
         if let Some(outlook) = self.outlook() {
-            self.accept_outlook(&outlook.run(|| Duration::ZERO));
+            let time = || match is_over() {
+                true => Duration::MAX,
+                false => Duration::ZERO,
+            };
+            self.accept_outlook(&outlook.run(time));
         }
     }
 }

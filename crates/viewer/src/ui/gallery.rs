@@ -21,6 +21,13 @@ pub(super) struct Gallery {
     pictures: HashMap<&'static str, TextureHandle>,
 }
 
+impl Gallery {
+    /// Another context has none of the textures.
+    pub(super) fn forget_pictures(&mut self) {
+        self.pictures.clear();
+    }
+}
+
 /// The picture of each scene, as a PNG file.
 macro_rules! pictures {
     ($($name:literal),* $(,)?) => {

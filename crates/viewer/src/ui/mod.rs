@@ -110,6 +110,14 @@ impl Ui {
         ctx.set_zoom_factor(wanted.zoom.clamp(0.5, 4.0));
     }
 
+    /// Goes on in another context: as large as before, with what is open still open. Textures stay behind.
+    pub fn move_to(&mut self, from: &egui::Context, to: &egui::Context) {
+        let memory = from.memory(egui::Memory::clone);
+        to.memory_mut(|known| *known = memory);
+        to.set_zoom_factor(from.zoom_factor());
+        self.gallery.forget_pictures();
+    }
+
     /// What is preferred now.
     pub fn preferences(&self, ctx: &egui::Context, session: &Session) -> Preferences {
         Preferences {
@@ -191,4 +199,44 @@ fn section(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui))
         });
     ui.separator();
     shown.body_response.unwrap_or(shown.header_response)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_are_the_same_in_another_context() {
+        let scene = ::scene::Scene::load("two-cubes").expect("in the gallery");
+        let mut session = Session::new(scene).expect("a world");
+        let (from, to) = (egui::Context::default(), egui::Context::default());
+        for context in [&from, &to] {
+            apply_style(context);
+        }
+        let mut ui = Ui::default();
+        let wanted = Preferences {
+            zoom: 1.5,
+            light: true,
+            ..Preferences::default()
+        };
+        ui.prefer(&from, &mut session, &wanted);
+        ui.gallery.open = true;
+        let mut show = |ui: &mut Ui, context: &egui::Context| {
+            let mut textures = 0;
+            for _ in 0..3 {
+                let mut output = context.run_ui(egui::RawInput::default(), |root| {
+                    ui.show(root, &mut session, egui::TextureId::User(0));
+                });
+                textures += output.textures_delta.set.len();
+                output.textures_delta.clear();
+            }
+            // Those of the fonts besides.
+            let whole = textures > ::scene::SCENES.len();
+            (whole, ui.preferences(context, &session))
+        };
+        let before = show(&mut ui, &from);
+        ui.move_to(&from, &to);
+        assert_eq!(show(&mut ui, &to), before);
+        assert_eq!((before.0, before.1.zoom), (true, 1.5));
+    }
 }

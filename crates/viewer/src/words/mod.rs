@@ -70,7 +70,8 @@ static CHINESE: LazyLock<Table> = LazyLock::new(|| Table::new(&chinese::TEXTS));
 /// Texts and what they are in another language.
 struct Table {
     whole: HashMap<&'static str, &'static str>,
-    /// Those with `{}` in them, what is longest first, so that the most special one is found.
+    /// Those with `{}` in them: first those that tell a place and go on in a text of the table, and what is
+    /// longest before others, so that the most special one is found.
     patterns: Vec<(Vec<&'static str>, &'static str)>,
 }
 
@@ -88,10 +89,13 @@ impl Table {
                 table.whole.insert(english, other);
             }
         }
-        let length = |pieces: &Vec<&str>| pieces.iter().map(|piece| piece.len()).sum::<usize>();
-        table
-            .patterns
-            .sort_by_key(|(pieces, _)| std::cmp::Reverse(length(pieces)));
+        let length = |pieces: &[&str]| pieces.iter().map(|piece| piece.len()).sum::<usize>();
+        let is_place = |pieces: &[&str], other: &str| {
+            matches!(pieces, [.., last, ""] if last.ends_with(": ")) && other.ends_with("!}")
+        };
+        table.patterns.sort_by_key(|(pieces, other)| {
+            std::cmp::Reverse((is_place(pieces, other), length(pieces)))
+        });
         table
     }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use egui::{Key, Modifiers};
-use scene::Scene;
+use scene::{Scene, mesh_file};
 use viewer::session::Session;
 use viewer::words::Language;
 
@@ -270,6 +270,7 @@ fn every_refusal_of_the_library_is_in_the_table() {
     let mut missing = Vec::new();
     for file in [
         "world/error.rs",
+        "mesh/error.rs",
         "force.rs",
         "inertia/mod.rs",
         "rotation/flight.rs",
@@ -291,4 +292,144 @@ fn every_refusal_of_the_library_is_in_the_table() {
     }
     assert!(seen > 30, "{seen} refusals");
     assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+/// Parts that messages are put together from, and what only programmers see.
+const UNSEEN_OF_FILES: &[&str] = &[
+    "{}{}: {}{}",
+    "scene `{}`: {}{}",
+    "body `{}`, {}: ",
+    "body `{}`: ",
+    "number {}",
+    "force {}",
+    "force {}, {}",
+    "<{} id=\"{}\">",
+    "<{}> in <{} id=\"{}\">",
+    "> or <",
+    " or ",
+    "; a body that nothing moves is `immovable = true`",
+    "must be from 1e-3 to 1e9 Hz",
+    "must be from 1e-9 to 1e3 s",
+    "{}, is {}",
+    "duplicate key",
+    " `{}`: give it once",
+    "floating-point number overflowed",
+    ": give one within ±1e100",
+    "expected usize",
+    "expected u64",
+    "expected a whole number from 0",
+    "rate = 60",
+    "Wavefront OBJ",
+    "a built-in mesh is valid",
+    "strings, numbers and arrays of them have a TOML form",
+];
+
+/// The source files in a folder and those below it.
+fn sources(folder: &Path) -> Vec<std::path::PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let paths = entries.map(|entry| entry.expect("a file").path());
+    let of = |path: std::path::PathBuf| match path.is_dir() {
+        true => sources(&path),
+        false => vec![path],
+    };
+    paths.flat_map(of).collect()
+}
+
+#[test]
+fn every_refusal_of_a_file_is_in_the_table() {
+    let library = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scene/src");
+    let mut seen = 0;
+    let mut missing = Vec::new();
+    for path in sources(&library) {
+        let source = std::fs::read_to_string(&path).expect("its text");
+        for text in literals(&source) {
+            // The path is a text of its own.
+            let what = text.strip_prefix("{}: ").unwrap_or(&text);
+            let is_seen = text.contains(' ')
+                && !english(&text).is_empty()
+                && !UNSEEN_OF_FILES.contains(&text.as_str());
+            seen += usize::from(is_seen);
+            let forms = [text.as_str(), what];
+            let mut known = forms.iter().map(|text| Language::Chinese.translated(text));
+            if is_seen && known.all(|known| known.is_none()) {
+                missing.push(format!("{}: {text}", path.display()));
+            }
+        }
+    }
+    assert!(seen > 120, "{seen} refusals");
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+#[test]
+fn a_refusal_of_a_file_is_told_with_its_place() {
+    let body = "[[body]]\nname = 'a'\nmesh = 'cube.obj'\n";
+    let scene = |text: &str| {
+        let parsed = Scene::parse(text, Path::new("s/a.toml"));
+        parsed.map_or_else(|error| error.to_string(), |_| text.to_owned())
+    };
+    let mesh = |name: &str, text: &str| {
+        let path = Path::new(name);
+        let format = mesh_file::Format::of(path).expect("a format");
+        let read = mesh_file::read(format, path, text.as_bytes());
+        read.map_or_else(|error| error.to_string(), |_| text.to_owned())
+    };
+    for (refusal, told) in [
+        (
+            scene(""),
+            "s/a.toml：缺少步长：请在物体之前给出 `rate = 60` (Hz) 或 `dt = 0.2` (s)",
+        ),
+        (
+            scene("rate = 0"),
+            "s/a.toml:1：rate：必须在 1e-3 与 1e9 Hz 之间，现在是 0",
+        ),
+        (
+            scene(&format!("rate = 60\n{body}mass = -1")),
+            "s/a.toml:5：物体 `a`，mass：必须是大于 0 的质量，以 kg 计（从 1e-100 到 1e100），现在是 -1",
+        ),
+        (
+            scene(&format!("rate = 60\n{body}mass = inf")),
+            "s/a.toml:5：物体 `a`，mass：必须是大于 0 的质量，以 kg 计（从 1e-100 到 1e100），现在是 inf；不受任何作用的物体是 `immovable = true`",
+        ),
+        (
+            scene(&format!("rate = 60\n{body}mass = 'x'")),
+            "s/a.toml:5：物体 `a`，mass：类型不对：这里是字符串 \"x\"，应为一个数",
+        ),
+        (
+            scene(&format!("rate = 60\n{body}scale = 1e-60")),
+            "s/a.toml:5：物体 `a`，scale：是 [1e-60, 1e-60, 1e-60]：网格会什么也不剩；请给出更接近 1 的数",
+        ),
+        (
+            scene(
+                "rate = 60\n[[force]]\nkind = 'push'\nbody = 'b'\npoint = [0,0,0]\nforce = [0,0,0]",
+            ),
+            "s/a.toml:4：力 1，body：没有物体 `b`",
+        ),
+        (
+            mesh("a.obj", "v 0 0 0\nv 0 x 0"),
+            "a.obj:2：顶点的 y 是 `x`：必须是小于 3.4e38 的有限数",
+        ),
+        (
+            mesh("a.obj", "v 0 0 0\nf 1 2 3"),
+            "a.obj:2：一个面使用顶点 3，但顶点是 1 到 1，或从最后一个往回的 -1 到 -1",
+        ),
+        (
+            mesh("a.obj", "v 0 0 0\nf 1 1 1"),
+            "a.obj：网格没有面积大于零的三角形：至少需要一个",
+        ),
+        (
+            mesh("b.PLY", "ply\nformat ascii 2.0\n"),
+            "b.PLY:2：版本是 `2.0`：只知道 1.0",
+        ),
+        (
+            mesh("c.stl", "solid\nvertex 0 0 0\n"),
+            "c.stl:2：`vertex` 所在之处应为 `facet`、`outer loop`、`endfacet` 或 `endsolid`",
+        ),
+        (
+            mesh("d.dae", "<COLLADA version='3.0'/>"),
+            "d.dae:1：<COLLADA>：版本是 `3.0`：只知道 1.4 和 1.5",
+        ),
+    ] {
+        let said = Language::Chinese.translated(&refusal);
+        assert_eq!(said.as_deref(), Some(told), "{refusal}");
+    }
 }

@@ -12,11 +12,12 @@ mod node;
 mod transform;
 
 use glam::{DMat3, DMat4, DVec3};
+use roxmltree::Node;
 
 use super::soup::{ReadError, Soup};
 use super::{Format, encoding};
 use crate::shown;
-use document::{Document, child};
+use document::{Document, child, tag};
 use node::Assembly;
 
 /// COLLADA.
@@ -37,6 +38,7 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
         ReadError::at(line, format!("is not well-formed XML: {error}"))
     })?;
     let document = Document::new(&xml)?;
+    check_version(&document)?;
     let mut assembly = Assembly::new(&document);
     let (placement, unit, up_axis) = into_metres_y_up(&document)?;
     let scene = child(document.root, "scene")
@@ -63,37 +65,99 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
     Ok(soup)
 }
 
-/// From the document's unit and up axis to metres and y up, and those as far as it tells them. An
-/// empty element or attribute tells nothing.
-fn into_metres_y_up(document: &Document) -> Result<(DMat4, Option<f64>, Option<char>), ReadError> {
-    let asset = child(document.root, "asset");
-    let unit = asset.and_then(|asset| child(asset, "unit"));
-    let mut metres = None;
-    let meter = unit.and_then(|unit| Some((unit, unit.attribute("meter")?.trim())));
-    if let Some((unit, text)) = meter.filter(|(_, text)| !text.is_empty()) {
-        let number = text.parse().ok();
-        let valid = number.filter(|metres: &f64| *metres > 0.0 && metres.is_finite());
-        metres = Some(valid.ok_or_else(|| {
-            let text = shown::name(text);
-            let what = format!("meter is `{text}`: it must be a number above 0");
-            document.error(unit, what)
-        })?);
+/// Version 1.3 writes geometries in another way, and nobody knows what a later one will do. A document that
+/// names none is read as one of these.
+fn check_version(document: &Document) -> Result<(), ReadError> {
+    let Some(version) = document.root.attribute("version") else {
+        return Ok(());
+    };
+    let known = ["1.4", "1.4.0", "1.4.1", "1.5", "1.5.0"];
+    if known.contains(&version.trim()) {
+        return Ok(());
     }
-    let (axes, up_axis) = match asset.and_then(|asset| child(asset, "up_axis")) {
-        None => (DMat3::IDENTITY, None),
-        Some(up_axis) => match document.text(up_axis).trim() {
-            "" => (DMat3::IDENTITY, None),
-            "Y_UP" => (DMat3::IDENTITY, Some('y')),
-            // Columns: where x, y and z of the document point.
-            "X_UP" => (DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z), Some('x')),
-            "Z_UP" => (DMat3::from_cols(DVec3::X, -DVec3::Z, DVec3::Y), Some('z')),
-            other => {
-                let other = shown::name(other);
-                let what = format!("the up axis is `{other}`: it must be X_UP, Y_UP or Z_UP");
-                return Err(document.error(up_axis, what));
-            }
-        },
+    let version = shown::name(version);
+    let what = format!("the version is `{version}`: only 1.4 and 1.5 are known");
+    Err(document.error(document.root, what))
+}
+
+/// From the document's unit and up axis to metres and y up, and those as far as it tells them.
+fn into_metres_y_up(document: &Document) -> Result<(DMat4, Option<f64>, Option<char>), ReadError> {
+    let (metres, up_axis) = match child(document.root, "asset") {
+        Some(asset) => (metres(document, asset)?, up_axis(document, asset)?),
+        None => (None, None),
+    };
+    check_parts(document, metres, up_axis)?;
+    let axes = match up_axis {
+        // Columns: where x, y and z of the document point.
+        Some('x') => DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z),
+        Some('z') => DMat3::from_cols(DVec3::X, -DVec3::Z, DVec3::Y),
+        _ => DMat3::IDENTITY,
     };
     let placement = DMat4::from_mat3(axes * metres.unwrap_or(1.0));
     Ok((placement, metres, up_axis))
+}
+
+/// Metres in the unit of an `<asset>`. An empty element or attribute tells nothing.
+fn metres(document: &Document, asset: Node) -> Result<Option<f64>, ReadError> {
+    let unit = child(asset, "unit");
+    let meter = unit.and_then(|unit| Some((unit, unit.attribute("meter")?.trim())));
+    let Some((unit, text)) = meter.filter(|(_, text)| !text.is_empty()) else {
+        return Ok(None);
+    };
+    let number = text.parse().ok();
+    let valid = number.filter(|metres: &f64| *metres > 0.0 && metres.is_finite());
+    valid.map(Some).ok_or_else(|| {
+        let text = shown::name(text);
+        let what = format!("meter is `{text}`: it must be a number above 0");
+        document.error(unit, what)
+    })
+}
+
+/// The axis that is up in an `<asset>`. An empty element tells nothing.
+fn up_axis(document: &Document, asset: Node) -> Result<Option<char>, ReadError> {
+    let Some(up_axis) = child(asset, "up_axis") else {
+        return Ok(None);
+    };
+    match document.text(up_axis).trim() {
+        "" => Ok(None),
+        "X_UP" => Ok(Some('x')),
+        "Y_UP" => Ok(Some('y')),
+        "Z_UP" => Ok(Some('z')),
+        other => {
+            let other = shown::name(other);
+            let what = format!("the up axis is `{other}`: it must be X_UP, Y_UP or Z_UP");
+            Err(document.error(up_axis, what))
+        }
+    }
+}
+
+/// Refuses a part with geometry that has a unit or an up axis of its own: it would be taken for one in those
+/// of the document.
+fn check_parts(
+    document: &Document,
+    of_all: Option<f64>,
+    up_of_all: Option<char>,
+) -> Result<(), ReadError> {
+    let placed = [
+        "library_geometries",
+        "library_controllers",
+        "library_nodes",
+        "library_visual_scenes",
+    ];
+    let libraries = document.root.children();
+    let libraries = libraries.filter(|library| placed.contains(&tag(*library)));
+    let parts = libraries.flat_map(|library| library.descendants());
+    for asset in parts.filter(|part| tag(*part) == "asset") {
+        let same_unit = |metres| metres == of_all.unwrap_or(1.0);
+        let same_axis = |axis| axis == up_of_all.unwrap_or('y');
+        let what = if !metres(document, asset)?.is_none_or(same_unit) {
+            "its unit is another one than the document's: export the document in one unit"
+        } else if !up_axis(document, asset)?.is_none_or(same_axis) {
+            "its up axis is another one than the document's: export the document with one"
+        } else {
+            continue;
+        };
+        return Err(document.error(asset, what));
+    }
+    Ok(())
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::*;
 use crate::session::Leaving;
+use crate::words::Language;
 
 const LONG: Duration = Duration::from_secs(1);
 
@@ -150,6 +151,97 @@ fn a_file_that_has_changed_is_read_again_but_not_over_edits() {
     session.reread();
     assert_eq!(session.world().mass(0), 2.0, "edits are kept");
     assert!(session.notices().iter().any(|notice| notice.error));
+    std::fs::remove_dir_all(folder).expect("removed");
+}
+
+#[test]
+fn a_scene_outlives_its_files() {
+    let folder = std::env::temp_dir().join(format!("cowbell-gone-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let (path, mesh) = (folder.join("mine.toml"), folder.join("cow.obj"));
+    let cube = |size: f64| {
+        let corners = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+        ];
+        let corners =
+            corners.map(|[x, y, z]| format!("v {} {} {}\n", size * x, size * y, size * z));
+        corners.concat() + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    };
+    std::fs::write(&mesh, cube(1.0)).expect("written");
+    let text = "rate = 60\n[[body]]\nname = 'a'\nmesh = 'cow.obj'\n";
+    std::fs::write(&path, text).expect("written");
+    let mut session = session();
+    session.open(&path);
+    let files: Vec<_> = session.files().map(Path::to_path_buf).collect();
+    assert_eq!(files, [path.clone(), mesh.clone()]);
+    let told = |session: &mut Session, what: &str| {
+        let text = session
+            .notices()
+            .iter()
+            .find(|notice| notice.about == "file");
+        let text = text.map(|notice| notice.text.clone()).unwrap_or_default();
+        assert!(text.contains(what), "{text}, not {what}");
+        assert!(
+            text.is_empty() || Language::Chinese.translated(&text).is_some(),
+            "{text}"
+        );
+    };
+    let triangles = |session: &Session| {
+        let mesh = session.scene().bodies[0].mesh().expect("a mesh").mesh();
+        mesh.triangles().len()
+    };
+
+    // It is in no file now, so it is asked for before it is left.
+    std::fs::remove_file(&path).expect("it was there");
+    session.reread();
+    told(&mut session, "mine.toml is gone.");
+    assert!(session.is_changed());
+    session.leave(Leaving::Close);
+    assert!(!session.is_closing());
+    session.stay();
+    std::fs::write(&path, text).expect("written");
+    session.reread();
+    told(&mut session, "");
+    assert!(!session.is_changed(), "it is back");
+
+    // One that comes back as another one is read again: nothing was edited.
+    std::fs::remove_file(&path).expect("it was there");
+    session.reread();
+    std::fs::write(&path, text.replace("60", "50")).expect("written");
+    session.reread();
+    told(&mut session, "was read again");
+    assert_eq!(session.scene().dt, 1.0 / 50.0);
+
+    // The built-in mesh of that name does not take the place of the one that goes.
+    std::fs::remove_file(&mesh).expect("it was there");
+    session.reread();
+    told(&mut session, "cow.obj is gone.");
+    assert_eq!(triangles(&session), 4);
+    session.save_own();
+    told(&mut session, "cow.obj is gone.");
+    std::fs::write(&mesh, cube(2.0)).expect("written");
+    session.reread();
+    told(&mut session, "was read again");
+    assert_eq!(
+        session.scene().bodies[0]
+            .mesh()
+            .expect("a mesh")
+            .mesh()
+            .bounds()
+            .max
+            .x,
+        2.0
+    );
+
+    // Saved where it was, it is in a file again.
+    std::fs::remove_file(&path).expect("it was there");
+    session.reread();
+    session.save_own();
+    assert!(!session.is_changed());
+    assert!(Scene::load(&path).is_ok());
     std::fs::remove_dir_all(folder).expect("removed");
 }
 

@@ -49,7 +49,7 @@ fn what_a_stop_of_the_tour_sets_going_stays_in_view() {
             attempt,
         });
         advance(&mut session, FRAME, free());
-        session.look_ahead();
+        session.look_ahead(|| false);
         for _ in 0..600 {
             advance(&mut session, FRAME, free());
             let out = session.out_of_view(1.4);
@@ -68,7 +68,7 @@ fn nothing_leaves_the_view_before_its_scene_ends() {
         let scene = Scene::load(entry.name).expect("in the gallery");
         let Some(ends) = scene.ends else { continue };
         let mut session = Session::new(scene).expect("a world");
-        session.look_ahead();
+        session.look_ahead(|| false);
         session.start();
         while session.state() == State::Running {
             advance(&mut session, Duration::from_millis(100), free());
@@ -87,7 +87,7 @@ fn nothing_leaves_the_view_before_its_scene_ends() {
 #[test]
 fn what_a_spring_pulls_down_comes_to_rest_in_view() {
     let mut session = gallery("stiff-spring", Collision::Continuous);
-    session.look_ahead();
+    session.look_ahead(|| false);
     session.start();
     (0..60).for_each(|_| advance(&mut session, FRAME, free()));
     let [middle, below] = [0.0, 0.5].map(|down| session.shown_position(0) - down * DVec3::Y);
@@ -103,7 +103,7 @@ fn a_high_rate_looks_ahead_as_far() {
         let mut scene = Scene::load("kepler").expect("a gallery scene");
         scene.dt = 1.0 / rate;
         let mut session = Session::new(scene).expect("a world");
-        session.look_ahead();
+        session.look_ahead(|| false);
         session.camera.distance
     };
     let (slow, fast) = (view(100.0), view(1000.0));

@@ -3,6 +3,7 @@
 
 mod display;
 mod figures;
+mod files;
 mod gallery;
 mod messages;
 mod physics;
@@ -10,9 +11,10 @@ mod refusals;
 mod tour;
 mod window;
 
-pub(super) const TEXTS: [&[(&str, &str)]; 8] = [
+pub(super) const TEXTS: [&[(&str, &str)]; 9] = [
     display::TEXTS,
     figures::TEXTS,
+    files::TEXTS,
     gallery::TEXTS,
     messages::TEXTS,
     physics::TEXTS,
