@@ -8,11 +8,8 @@ mod crowd;
 mod galperin;
 mod heap;
 mod one;
-mod ours;
 mod overlap;
 mod pair;
-mod rapier;
-mod scene;
 #[path = "../collision/table.rs"]
 mod table;
 mod turning;

@@ -1,10 +1,10 @@
 //! Everything that is measured, in the order in which it is.
 
+use cases::{CASES, Outcome, problems};
+
 use crate::collisions::{self, Collisions};
 use crate::contact;
 use crate::drift::{self, Drift};
-use crate::hard_cases::{self, Measured, Outcome};
-use crate::problems;
 use crate::resting::{self, Resting};
 use crate::runs::{self, Diagram};
 use crate::scope::Scope;
@@ -48,10 +48,10 @@ pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
     progress("stability");
     let stability = stability::measure(scope);
     progress("hard cases");
-    let cases = hard_cases::measure(&Measured {
-        diagrams: &diagrams,
-        drifts: &drifts,
-    });
+    let tried = CASES
+        .iter()
+        .flat_map(|case| case.methods().map(|method| case.attempt(method)));
+    let cases = tried.collect();
     Results {
         diagrams,
         drifts,

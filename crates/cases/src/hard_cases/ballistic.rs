@@ -1,0 +1,32 @@
+//! Case 1: every error of a throw is known.
+
+use sim_core::{Body, DVec3, Method};
+
+use super::{Finding, Tried, worlds};
+
+pub(super) fn test(method: &'static Method) -> Tried {
+    let Some(fall) = method.fall else {
+        let why = "it does not say what it does to a constant force";
+        return Ok(Finding::does_not_apply(why));
+    };
+    let stone = Body {
+        position: DVec3::new(-4.0, 0.0, 0.0),
+        velocity: DVec3::new(2.0, 2.0, 0.0),
+        force: -DVec3::Y,
+        ..Body::default()
+    };
+    let mut worst: f64 = 0.0;
+    for rate in [5.0, 30.0, 60.0, 240.0] {
+        let dt = 1.0 / rate;
+        let mut world = worlds::of_one(method, dt, stone.clone(), &[])?;
+        worlds::step(&mut world, (4.0 * rate) as u64)?;
+        // N steps fall by dt² (N (N - 1)/2 + N f), of which N²/2 is exact.
+        let exact = DVec3::new(4.0, (2.0 - 4.0 * fall) * dt, 0.0);
+        worst = worst.max((world.position(0) - exact).length());
+    }
+    let why = match fall {
+        0.5 => "exact at every dt".into(),
+        _ => format!("lands at y = {:+} dt, as it must", 2.0 - 4.0 * fall),
+    };
+    Ok(Finding::within(worst, 1e-13, why))
+}
