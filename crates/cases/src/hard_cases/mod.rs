@@ -17,7 +17,7 @@ mod worlds;
 
 use sim_core::{METHODS, Method};
 
-pub use impacts::chains;
+pub use impacts::{balls, chains, meshes, symmetry};
 
 /// A case, who is tried on it, and what must come out.
 pub struct Case {
@@ -264,7 +264,7 @@ pub static CASES: [Case; 29] = [
     case(
         9,
         "head-on pair",
-        "cubes and spheres of equal masses, 1e-3 to 1e6 m/s, 16 phases of a step: velocities are exchanged to 4u, positions right to 1e-12 v dt and rounding; figure: the worst error in parts of that",
+        "cubes, spheres and points of equal masses, 1e-3 to 1e6 m/s, 16 phases of a step: velocities are exchanged to 4u, positions right to 1e-12 v dt and rounding; figure: the worst error in parts of that",
         Test::Once(impacts::pairs::head_on),
     ),
     case(
@@ -288,7 +288,7 @@ pub static CASES: [Case; 29] = [
     case(
         13,
         "thin wall",
-        "1,000 m/s upon a plate of 1 mm and a half-space, 16 phases: the velocity is turned round; figure as in the head-on pair",
+        "1e-3 to 1e6 m/s upon a half-space, a plate of 1 mm and a sheet, 16 phases: the velocity is turned round; figure as in the head-on pair",
         Test::Once(impacts::pairs::thin_wall),
     ),
     case(

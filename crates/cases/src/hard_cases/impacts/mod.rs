@@ -1,18 +1,17 @@
 //! Cases 9 to 27 and 29: impacts.
 
-pub(super) mod balls;
+pub mod balls;
 pub mod chains;
 pub(super) mod crowd;
-pub(super) mod meshes;
+pub mod meshes;
 pub(super) mod pairs;
-pub(super) mod symmetry;
+pub mod symmetry;
 
 use std::sync::Arc;
 
-use sim_core::{
-    Body, BodyKind, Collision, DVec3, Impact, Mesh, Method, Settings, Shape, StepError, Vec3,
-    World, WorldError,
-};
+use kit::bodies::body;
+use kit::shapes;
+use sim_core::{Body, Collision, DVec3, Impact, Mesh, Settings, Shape, StepError, World};
 
 use super::{Finding, Tried};
 
@@ -24,18 +23,10 @@ fn settings(dt: f64) -> Settings {
     Settings {
         dt,
         collision: Collision::Continuous,
-        // Exact in flight.
-        method: Method::named("velocity-verlet").unwrap_or(Settings::default().method),
+        tolerance: 1e-13,
+        // Velocity Verlet is exact in flight.
         ..Settings::default()
     }
-}
-
-fn world(settings: Settings, bodies: &[Body]) -> Result<World, WorldError> {
-    let mut world = World::new(settings)?;
-    for body in bodies {
-        world.add(body.clone())?;
-    }
-    Ok(world)
 }
 
 fn run(world: &mut World, steps: u64) -> Result<Vec<Impact>, StepError> {
@@ -46,54 +37,12 @@ fn run(world: &mut World, steps: u64) -> Result<Vec<Impact>, StepError> {
     Ok(impacts)
 }
 
-fn body(shape: Shape, position: DVec3, velocity: DVec3) -> Body {
-    Body {
-        shape: Some(shape),
-        position,
-        velocity,
-        ..Body::default()
-    }
-}
-
 fn ball(radius: f64, position: DVec3, velocity: DVec3) -> Body {
-    body(Shape::Sphere { radius }, position, velocity)
+    body(&shapes::ball(radius), position, velocity)
 }
 
 fn mesh(mesh: &Arc<Mesh>, position: DVec3, velocity: DVec3) -> Body {
-    body(Shape::Mesh(mesh.clone()), position, velocity)
-}
-
-fn immovable(body: Body) -> Body {
-    Body {
-        kind: BodyKind::Kinematic,
-        ..body
-    }
-}
-
-fn wall(normal: DVec3, position: DVec3, velocity: DVec3) -> Body {
-    immovable(body(Shape::HalfSpace { normal }, position, velocity))
-}
-
-fn builtin(name: &str) -> anyhow::Result<Arc<Mesh>> {
-    scene::mesh_file::builtin(name).ok_or_else(|| anyhow::anyhow!("no mesh {name}"))
-}
-
-/// A box about a point, made of the cube.
-fn cuboid(half: Vec3, middle: Vec3) -> anyhow::Result<Mesh> {
-    let cube = builtin("cube.obj")?;
-    let vertices = cube.vertices().iter().map(|&v| middle + 2.0 * v * half);
-    Ok(Mesh::new(vertices.collect(), cube.triangles().to_vec())?)
-}
-
-/// Several meshes as one.
-fn joined(parts: &[Mesh]) -> anyhow::Result<Mesh> {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for part in parts {
-        let first = vertices.len() as u32;
-        vertices.extend_from_slice(part.vertices());
-        triangles.extend(part.triangles().iter().map(|t| t.map(|v| v + first)));
-    }
-    Ok(Mesh::new(vertices, triangles)?)
+    body(&Shape::Mesh(mesh.clone()), position, velocity)
 }
 
 /// The greatest of some figures; a figure that is none is the greatest.
