@@ -6,7 +6,7 @@ use cases::hard_cases::balls::{dropped, floor, on_floor};
 use kit::bodies::{immovable, wall};
 use kit::meshes::{boxes, cube};
 use kit::worlds::{GRAVITY, add_gravity, world_of};
-use sim_core::{Body, DVec3, METHODS, Method, Settings, Vec3, World};
+use sim_core::{Body, DVec3, METHODS, Settings, Vec3};
 
 use crate::worlds::{DT, ball, mesh_body, run, settings};
 

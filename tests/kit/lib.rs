@@ -8,7 +8,6 @@ mod hostile;
 pub mod inputs;
 pub mod meshes;
 pub mod oracle;
-pub mod problems;
 pub mod random;
 pub mod rational;
 pub mod shapes;

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use sim_core::{Body, DVec3, Force, Method, Settings, World, WorldError};
+use sim_core::{Method, Settings, World};
 
-use crate::problems;
+use crate::problems::{kepler, pleiades as stars};
 
 /// Steps of each orbit.
 pub const STEPS: usize = 1000;
@@ -56,22 +56,11 @@ fn settings(method: &'static Method, dt: f64) -> Settings {
 
 /// Follows a planet for some orbits.
 pub fn orbits(method: &'static Method, count: usize) -> Drift {
-    let e = ECCENTRICITY;
-    let planet = Body {
-        position: (1.0 - e) * DVec3::X,
-        velocity: ((1.0 + e) / (1.0 - e)).sqrt() * DVec3::Y,
-        ..Body::default()
-    };
-    let pull = Force::Attraction {
-        body: None,
-        centre: DVec3::ZERO,
-        strength: 1.0,
-    };
     let mut drift = Drift {
         orbits: Vec::new(),
         failure: None,
     };
-    let mut world = match world(settings(method, 2.0 * PI / STEPS as f64), [planet], pull) {
+    let mut world = match kepler::world(settings(method, 2.0 * PI / STEPS as f64), ECCENTRICITY) {
         Ok(world) => world,
         Err(error) => {
             drift.failure = Some(error.to_string());
@@ -100,9 +89,7 @@ pub fn orbits(method: &'static Method, count: usize) -> Drift {
 
 /// Change of the total momentum of the Pleiades in 3 s, relative to the sum of all `m |v|`.
 pub fn pleiades(method: &'static Method) -> Result<f64, String> {
-    let stars = problems::pleiades::stars();
-    let gravitation = Force::Gravitation { constant: 1.0 };
-    let world = world(settings(method, 1e-3), stars, gravitation);
+    let world = stars::world(settings(method, 1e-3));
     let mut world = world.map_err(|error| error.to_string())?;
     let start = world.momentum();
     let sizes = (0..world.len()).map(|i| world.mass(i) * world.velocity(i).length());
@@ -111,17 +98,4 @@ pub fn pleiades(method: &'static Method) -> Result<f64, String> {
         world.step().map_err(|error| error.to_string())?;
     }
     Ok((world.momentum() - start).length() / size)
-}
-
-fn world(
-    settings: Settings,
-    bodies: impl IntoIterator<Item = Body>,
-    force: Force,
-) -> Result<World, WorldError> {
-    let mut world = World::new(settings)?;
-    for body in bodies {
-        world.add(body)?;
-    }
-    world.add_force(force)?;
-    Ok(world)
 }

@@ -9,5 +9,6 @@ pub mod hard_cases;
 pub mod problems;
 pub mod scenes;
 pub mod solvers;
+pub mod worlds;
 
 pub use hard_cases::{CASES, Case, Finding, Outcome, Verdict};

@@ -2,17 +2,25 @@
 
 use std::f64::consts::PI;
 
-use sim_core::{DVec3, Method, Stepper, System};
+use sim_core::{Body, DVec3, Force, Method, Stepper, System};
 
 use super::{Finding, Tried};
+use crate::worlds;
 
 pub(super) fn test(method: &'static Method) -> Tried {
     let claimed = f64::from(method.order);
-    let slopes = [
-        ("oscillator", slope(method, &oscillator())),
-        ("drag", slope(method, &drag())),
-        ("Kepler", slope(method, &kepler())),
+    let mut slopes = vec![
+        (
+            "oscillator",
+            slope(method, |n| error(method, &oscillator(), n)),
+        ),
+        ("drag", slope(method, |n| error(method, &drag(), n))),
+        ("Kepler", slope(method, |n| error(method, &kepler(), n))),
     ];
+    // In a world adaptive methods take as many steps as they need.
+    if !method.adaptive {
+        slopes.push(("drag in a world", slope(method, |n| in_world(method, n))));
+    }
     let mut worst: f64 = 0.0;
     let mut words = Vec::new();
     for (name, slope) in slopes {
@@ -123,6 +131,26 @@ fn error(method: &'static Method, motion: &Motion, steps: u32) -> Option<f64> {
     off.is_finite().then_some(off)
 }
 
+/// The same of drag, in a world.
+fn in_world(method: &'static Method, steps: u32) -> Option<f64> {
+    let Motion {
+        start, end, time, ..
+    } = drag();
+    let body = Body {
+        position: start[0],
+        velocity: start[1],
+        ..Body::default()
+    };
+    let force = Force::QuadraticDrag {
+        body: None,
+        coefficient: 1.0,
+    };
+    let settings = worlds::settings(method, time / f64::from(steps));
+    let mut world = worlds::under(settings, [body], &[force]).ok()?;
+    worlds::step(&mut world, u64::from(steps)).ok()?;
+    Some((world.position(0) - end[0]).length() + (world.velocity(0) - end[1]).length())
+}
+
 /// What rounding comes to in so many steps if it adds up at random.
 fn rounding(steps: u32) -> f64 {
     f64::EPSILON * f64::from(steps).sqrt()
@@ -140,12 +168,12 @@ fn margin(method: &Method) -> f64 {
 const MOST_STEPS: u32 = 1 << 15;
 
 /// `log2` of the ratio of errors at the shortest two steps that are far from rounding.
-fn slope(method: &'static Method, motion: &Motion) -> Option<f64> {
+fn slope(method: &'static Method, error: impl Fn(u32) -> Option<f64>) -> Option<f64> {
     let mut last: Option<f64> = None;
     let mut slope = None;
     let mut steps = 4;
     while steps <= MOST_STEPS {
-        let now = error(method, motion, steps);
+        let now = error(steps);
         if now.is_some_and(|now| now < margin(method) * rounding(steps)) {
             break;
         }
@@ -173,7 +201,7 @@ mod tests {
     #[test]
     fn a_wrong_claim_is_found_out() {
         let rk4 = Method::named("rk4").expect("it is in the table");
-        let found = slope(rk4, &oscillator()).expect("a slope");
+        let found = slope(rk4, |n| error(rk4, &oscillator(), n)).expect("a slope");
         assert!((found - 4.0).abs() < 0.05 && (found - 3.0).abs() > 0.5);
     }
 }

@@ -7,7 +7,8 @@ use std::f64::consts::PI;
 
 use sim_core::{Body, DVec3, Method, World, WorldError};
 
-use super::{Finding, Tried, worlds};
+use super::{Finding, Tried};
+use crate::worlds;
 
 pub(super) fn test(method: &'static Method) -> Tried {
     // At 60 Hz RK4 and its like lose too little to tell their formulas from none.
@@ -17,7 +18,7 @@ pub(super) fn test(method: &'static Method) -> Tried {
     };
     let steps = (2000.0 * PI / dt).round();
     if method.adaptive {
-        let mut world = started(method, dt, DVec3::X, DVec3::ZERO)?;
+        let mut world = world(method, dt, DVec3::X, DVec3::ZERO)?;
         worlds::step(&mut world, steps as u64)?;
         let (x, v, t) = (world.position(0).x, world.velocity(0).x, world.time());
         let error = (x - t.cos()).abs().max((v + t.sin()).abs());
@@ -25,7 +26,7 @@ pub(super) fn test(method: &'static Method) -> Tried {
         return Ok(Finding::within(error, 1e-8, why));
     }
     let column = |x: f64, v: f64| -> anyhow::Result<[f64; 2]> {
-        let mut world = started(method, dt, x * DVec3::X, v * DVec3::X)?;
+        let mut world = world(method, dt, x * DVec3::X, v * DVec3::X)?;
         world.step()?;
         Ok([world.position(0).x, world.velocity(0).x])
     };
@@ -42,7 +43,7 @@ pub(super) fn test(method: &'static Method) -> Tried {
         _ if method.symplectic => (0.0, "kept, without drift"),
         _ => ((a * d - b * c - 1.0).ln_1p(), "that of its own first step"),
     };
-    let mut world = started(method, dt, DVec3::X, DVec3::ZERO)?;
+    let mut world = world(method, dt, DVec3::X, DVec3::ZERO)?;
     worlds::step(&mut world, steps as u64)?;
     let (x, v) = (world.position(0).x, world.velocity(0).x);
     let amplitude = (form(x, v) / form(1.0, 0.0)).abs().sqrt();
@@ -59,11 +60,16 @@ pub(super) fn test(method: &'static Method) -> Tried {
     ))
 }
 
-fn started(method: &'static Method, dt: f64, x: DVec3, v: DVec3) -> Result<World, WorldError> {
+/// A body of 1 kg on a spring of 1 N/m, in a world.
+pub fn world(method: &'static Method, dt: f64, x: DVec3, v: DVec3) -> Result<World, WorldError> {
     let body = Body {
         position: x,
         velocity: v,
         ..Body::default()
     };
-    worlds::of_one(method, dt, body, &[worlds::spring(1.0, 0.0)])
+    worlds::under(
+        worlds::settings(method, dt),
+        [body],
+        &[worlds::spring_to_origin(1.0, 0.0)],
+    )
 }

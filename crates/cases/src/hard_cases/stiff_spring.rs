@@ -2,7 +2,8 @@
 
 use sim_core::{Body, DVec3, Force, Method, StepError, World, WorldError};
 
-use super::{Finding, Tried, worlds};
+use super::{Finding, Tried};
+use crate::worlds;
 
 /// Stiffness, N/m, and damping, kg/s, of 1 kg.
 const SPRING: [f64; 2] = [1e6, 1e3];
@@ -25,7 +26,8 @@ pub(super) fn test(method: &'static Method) -> Tried {
     }
 }
 
-fn started(method: &'static Method, dt: f64) -> Result<World, WorldError> {
+/// The spring at its start, in a world.
+pub fn world(method: &'static Method, dt: f64) -> Result<World, WorldError> {
     let [k, c] = SPRING;
     let body = Body {
         position: DVec3::X,
@@ -34,12 +36,16 @@ fn started(method: &'static Method, dt: f64) -> Result<World, WorldError> {
     let weight = Force::Gravity {
         acceleration: -9.81 * DVec3::X,
     };
-    worlds::of_one(method, dt, body, &[worlds::spring(k, c), weight])
+    worlds::under(
+        worlds::settings(method, dt),
+        [body],
+        &[worlds::spring_to_origin(k, c), weight],
+    )
 }
 
 /// A method that is stable at every step, at 60 Hz for 10 s.
 fn unlimited(method: &'static Method) -> Tried {
-    let mut world = started(method, 1.0 / 60.0)?;
+    let mut world = world(method, 1.0 / 60.0)?;
     worlds::step(&mut world, 600)?;
     let error = (world.position(0).x / REST - 1.0).abs();
     if method.adaptive {
@@ -61,7 +67,7 @@ const MOST_STEPS: u64 = 50_000;
 
 /// A method with a limit, on both sides of it.
 fn limited(method: &'static Method, limit: f64) -> Tried {
-    let mut below = started(method, 0.99 * limit)?;
+    let mut below = world(method, 0.99 * limit)?;
     if let Err(error) = worlds::step(&mut below, 20_000) {
         anyhow::bail!("at 0.99 of its limit {limit:.4e} s: {error}");
     }
@@ -88,7 +94,7 @@ fn reported(
     limit: f64,
 ) -> Result<Option<(f64, u64, StepError)>, WorldError> {
     for factor in [1.01, 1.003] {
-        let mut world = started(method, factor * limit)?;
+        let mut world = world(method, factor * limit)?;
         if let Err(error) = worlds::step(&mut world, MOST_STEPS) {
             return Ok(Some((factor, world.steps() + 1, error)));
         }

@@ -2,18 +2,40 @@
 
 use std::f64::consts::PI;
 
-use sim_core::{DMat3, DVec3, Jacobians, System};
+use sim_core::{Body, DMat3, DVec3, Force, Jacobians, Settings, System, World, WorldError};
 
 use super::{Card, FirstOrder, Problem};
+use crate::worlds;
 
 /// `x'' = -x / |x|³`, state `(x, y, x', y')`.
 #[derive(Clone, Debug)]
 pub(super) struct Kepler;
 
+fn perihelion(e: f64) -> (DVec3, DVec3) {
+    let velocity = ((1.0 + e) / (1.0 - e)).sqrt() * DVec3::Y;
+    ((1.0 - e) * DVec3::X, velocity)
+}
+
+/// The same in a world, under a force of attraction.
+pub fn world(settings: Settings, eccentricity: f64) -> Result<World, WorldError> {
+    let (position, velocity) = perihelion(eccentricity);
+    let planet = Body {
+        position,
+        velocity,
+        ..Body::default()
+    };
+    let pull = Force::Attraction {
+        body: None,
+        centre: DVec3::ZERO,
+        strength: 1.0,
+    };
+    worlds::under(settings, [planet], &[pull])
+}
+
 /// A hundred orbits from the perihelion: half axis 1, `G M = 1`, so that one takes 2π.
 pub(super) fn problem(eccentricity: f64) -> Problem<Kepler, 4> {
-    let e = eccentricity;
-    let (name, title) = match e {
+    let (position, velocity) = perihelion(eccentricity);
+    let (name, title) = match eccentricity {
         0.9 => ("kepler-0.9", "Kepler, e = 0.9, 100 orbits"),
         _ => ("kepler-0.6", "Kepler, e = 0.6, 100 orbits"),
     };
@@ -31,9 +53,9 @@ pub(super) fn problem(eccentricity: f64) -> Problem<Kepler, 4> {
             is_stiff: false,
         },
         equations: Kepler,
-        position: vec![DVec3::new(1.0 - e, 0.0, 0.0)],
-        velocity: vec![DVec3::new(0.0, ((1.0 + e) / (1.0 - e)).sqrt(), 0.0)],
-        exact: vec![1.0 - e, 0.0, 0.0, ((1.0 + e) / (1.0 - e)).sqrt()],
+        position: vec![position],
+        velocity: vec![velocity],
+        exact: vec![position.x, 0.0, 0.0, velocity.y],
         scale: 1.0,
     }
 }

@@ -6,9 +6,9 @@
 mod ballistic;
 mod counted;
 mod drag;
-mod kepler;
+pub mod kepler;
 mod oscillator;
-pub(crate) mod pleiades;
+pub mod pleiades;
 mod stiff_linear;
 mod stiff_spring;
 

@@ -1,8 +1,9 @@
 //! Seven stars in a plane.
 
-use sim_core::{Body, DMat3, DVec3, Jacobians, System};
+use sim_core::{Body, DMat3, DVec3, Force, Jacobians, Settings, System, World, WorldError};
 
 use super::{Card, FirstOrder, Problem};
+use crate::worlds;
 
 /// Masses 1 to 7 under their own gravitation with `G = 1`; state: all x, all y, all x', all y'.
 #[derive(Clone, Debug)]
@@ -23,7 +24,7 @@ const START: [[f64; 4]; STARS] = [
 ];
 
 /// All x, then all y, at t = 3 to the digits that the book's test set has.
-const END: [f64; 2 * STARS] = [
+pub const END: [f64; 2 * STARS] = [
     0.3706139143970502,
     3.237284092057233,
     -3.222559032418324,
@@ -62,14 +63,15 @@ pub(crate) fn problem() -> Problem<Pleiades, N> {
     }
 }
 
-/// The stars at the start, as bodies of a world.
-pub(crate) fn stars() -> impl Iterator<Item = Body> {
-    START.into_iter().enumerate().map(|(i, [x, y, u, v])| Body {
+/// The same in a world, under gravitation.
+pub fn world(settings: Settings) -> Result<World, WorldError> {
+    let stars = START.into_iter().enumerate().map(|(i, [x, y, u, v])| Body {
         position: DVec3::new(x, y, 0.0),
         velocity: DVec3::new(u, v, 0.0),
         mass: mass(i),
         ..Body::default()
-    })
+    });
+    worlds::under(settings, stars, &[Force::Gravitation { constant: 1.0 }])
 }
 
 fn mass(star: usize) -> f64 {
