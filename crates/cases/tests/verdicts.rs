@@ -1,47 +1,29 @@
 //! Every verdict is the one that is expected: of methods on hard cases, of engines on scenes.
 
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Instant;
-
+use cases::hard_cases::attempt_all;
 use cases::scenes::{COLLISIONS, Family, RESTING, Who};
-use cases::{CASES, Case};
-use sim_core::Method;
 
-/// All cases by all methods, two at once; each is judged, and takes some seconds.
 #[test]
 fn hard_cases_end_as_their_rows_say() {
-    let tasks: Vec<(&'static Case, Option<&'static Method>)> = CASES
-        .iter()
-        .flat_map(|case| case.methods().map(move |method| (case, method)))
-        .collect();
-    let (next, wrong) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-    let work = || {
-        while let Some(&(case, method)) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let clock = Instant::now();
-            let outcome = case.attempt(method);
-            let (finding, name) = (&outcome.finding, method.map_or("any", |m| m.name));
-            let text = format!(
-                "case {}, {}, {name}: {}, expected {}: {:?} of {:?}, {}",
-                case.number,
-                case.title,
-                finding.verdict.name(),
-                case.expected(method).name(),
-                finding.figure,
-                finding.tolerance,
-                finding.why
-            );
-            println!("{:6.2} s  {text}", clock.elapsed().as_secs_f64());
-            if !outcome.is_expected() {
-                wrong.lock().expect("no panic").push(text);
-            }
+    let mut wrong = Vec::new();
+    for outcome in attempt_all() {
+        let (case, finding) = (outcome.case, &outcome.finding);
+        let text = format!(
+            "case {}, {}, {}: {}, expected {}: {:?} of {:?}, {}",
+            case.number,
+            case.title,
+            outcome.method.map_or("any", |method| method.name),
+            finding.verdict.name(),
+            case.expected(outcome.method).name(),
+            finding.figure,
+            finding.tolerance,
+            finding.why
+        );
+        println!("{text}");
+        if !outcome.is_expected() {
+            wrong.push(text);
         }
-    };
-    std::thread::scope(|scope| {
-        scope.spawn(work);
-        work();
-    });
-    let wrong = wrong.into_inner().expect("no panic");
+    }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

@@ -1,6 +1,7 @@
 //! Everything that is measured, in the order in which it is.
 
-use cases::{CASES, Outcome, problems};
+use cases::hard_cases::attempt_all;
+use cases::{Outcome, problems};
 
 use crate::collisions::{self, Collisions};
 use crate::contact;
@@ -48,10 +49,7 @@ pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
     progress("stability");
     let stability = stability::measure(scope);
     progress("hard cases");
-    let tried = CASES
-        .iter()
-        .flat_map(|case| case.methods().map(|method| case.attempt(method)));
-    let cases = tried.collect();
+    let cases = attempt_all();
     Results {
         diagrams,
         drifts,

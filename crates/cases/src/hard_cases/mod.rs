@@ -14,6 +14,11 @@ mod pleiades;
 mod stiff_linear;
 pub mod stiff_spring;
 
+use std::num::NonZero;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
 use sim_core::{METHODS, Method};
 
 pub use impacts::{balls, chains, meshes, symmetry};
@@ -158,6 +163,35 @@ impl Case {
             _ => Verdict::Pass,
         }
     }
+}
+
+/// Tries all cases by all methods, on all processors; told in order.
+pub fn attempt_all() -> Vec<Outcome> {
+    let tasks: Vec<(&'static Case, Option<&'static Method>)> = CASES
+        .iter()
+        .flat_map(|case| case.methods().map(move |method| (case, method)))
+        .collect();
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut done = Vec::new();
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(&(case, method)) = tasks.get(index) else {
+                return done;
+            };
+            done.push((index, case.attempt(method)));
+        }
+    };
+    let threads = thread::available_parallelism().map_or(1, NonZero::get);
+    let mut outcomes: Vec<(usize, Outcome)> = thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let outcomes = workers.into_iter().map(|worker| worker.join());
+        outcomes
+            .flat_map(|outcomes| outcomes.unwrap_or_else(|panic| resume_unwind(panic)))
+            .collect()
+    });
+    outcomes.sort_by_key(|&(index, _)| index);
+    outcomes.into_iter().map(|(_, outcome)| outcome).collect()
 }
 
 const fn case(number: u8, title: &'static str, outcome: &'static str, test: Test) -> Case {

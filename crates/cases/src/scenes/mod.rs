@@ -26,7 +26,7 @@ pub use ours::{continuous, world};
 pub use pair::Pair;
 #[cfg(feature = "rapier3d-f64")]
 pub use rapier::Rapier;
-pub use resting::RESTING;
+pub use resting::{RESTING, landing_way, sliding_way};
 
 /// The acceleration of what falls, m/s².
 pub const GRAVITY: f64 = kit::worlds::GRAVITY;

@@ -113,17 +113,27 @@ fn on_a_slope(friction: f64, duration: f64, end: (f64, f64)) -> Known {
     known
 }
 
+/// How far something slides on a floor, m.
+pub fn sliding_way(speed: f64, friction: f64) -> f64 {
+    speed * speed / (2.0 * friction * GRAVITY)
+}
+
+/// How far something comes that lands on a floor from a height and slides: the impact takes mu times
+/// what it gives upwards.
+pub fn landing_way(height: f64, speed: f64, friction: f64) -> f64 {
+    let falling = (2.0 * height / GRAVITY).sqrt();
+    let left = speed - friction * GRAVITY * falling;
+    speed * falling + sliding_way(left, friction)
+}
+
 fn slide() -> Known {
-    let way = 9.0 / (2.0 * FRICTION * GRAVITY);
+    let way = sliding_way(3.0, FRICTION);
     on_a_floor(HOVER, 3.0, FRICTION, 1.5, (way, way))
 }
 
 fn landing() -> Known {
     let height = 0.1;
-    let falling = (2.0_f64 * height / GRAVITY).sqrt();
-    // The impact takes mu times what it gives upwards.
-    let after = 3.0 - FRICTION * GRAVITY * falling;
-    let way = 3.0 * falling + after * after / (2.0 * FRICTION * GRAVITY);
+    let way = landing_way(height, 3.0, FRICTION);
     on_a_floor(height, 3.0, FRICTION, 1.5, (way, way))
 }
 
