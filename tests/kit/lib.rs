@@ -1,4 +1,4 @@
-//! What the tests of this package share: numbers, shapes, bodies, worlds, and oracles.
+//! What tests, cases and benchmarks share: numbers, shapes, bodies, worlds, and oracles.
 
 pub mod agree;
 pub mod bodies;
