@@ -1,128 +1,43 @@
 //! The solvers that control their error, beside `ode_solvers`.
 
-use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use kit::problems::{kepler, pleiades};
-use ode_solvers::SVector;
+use cases::problems::{self, End, Solve};
+use cases::solvers::SOLVERS;
 use sim_core::ode::{Dop853Stages, Dopri5Stages, Pair, Solver};
 use sim_core::{Dop853, Dopri5, SolveError, Tolerance};
 
-/// What a solve has cost and reached.
-#[derive(Clone, Copy, Debug)]
-struct Outcome {
-    error: f64,
-    evaluations: u64,
-    time: Duration,
-}
-
-/// A problem `y' = f(y)` with the first `M` components of its solution at the end.
-struct Problem<const N: usize> {
-    name: &'static str,
-    slope: fn(&[f64; N], &mut [f64; N]),
-    start: [f64; N],
-    time: f64,
-    end: Vec<f64>,
-}
-
-impl<const N: usize> Problem<N> {
-    fn error(&self, y: &[f64]) -> f64 {
-        let pairs = self.end.iter().zip(y);
-        pairs.map(|(end, y)| (end - y).abs()).fold(0.0, f64::max)
-    }
-}
-
-#[derive(Clone, Copy)]
-struct Peer<const N: usize>(fn(&[f64; N], &mut [f64; N]));
-
-impl<const N: usize> ode_solvers::System<f64, SVector<f64, N>> for Peer<N> {
-    fn system(&self, _: f64, y: &SVector<f64, N>, dy: &mut SVector<f64, N>) {
-        (self.0)(&y.data.0[0], &mut dy.data.0[0]);
-    }
-}
-
-/// The best of some runs, as other processes disturb the rest.
-fn best(runs: u32, mut run: impl FnMut() -> Outcome) -> Outcome {
-    let first = run();
-    (1..runs).fold(first, |best, _| {
-        let again = run();
-        if again.time < best.time { again } else { best }
-    })
-}
-
-fn ours<P: Pair<[f64; N]>, const N: usize>(problem: &Problem<N>, tolerance: f64) -> Outcome {
-    let clock = Instant::now();
-    let slope = problem.slope;
-    let f = |_: f64, y: &_, dy: &mut _| slope(y, dy);
-    let start = black_box(problem.start);
-    let mut solver = Solver::<P, _, _>::new(f, 0.0, start, Tolerance::of(tolerance));
-    solver.advance(problem.time).expect("a solution");
-    Outcome {
-        time: clock.elapsed(),
-        error: problem.error(solver.state()),
-        evaluations: solver.evaluations(),
-    }
-}
-
-/// The same with a solver of `ode_solvers`, its settings being Hairer's as ours are.
-macro_rules! theirs {
-    ($solver:ident, $beta:expr, $least:expr, $greatest:expr, $problem:expr, $tolerance:expr) => {{
+/// The end, and the time of the best of some runs, s, as other processes disturb the rest.
+fn solve(problem: &dyn Solve, solver: &str, tolerance: f64) -> (End, f64) {
+    let solver = SOLVERS.iter().find(|known| known.name == solver);
+    let solver = solver.expect("a solver of that name");
+    let run = || {
         let clock = Instant::now();
-        let (problem, tolerance) = ($problem, $tolerance);
-        let start = SVector::from(black_box(problem.start));
-        let mut solver = ode_solvers::$solver::from_param(
-            Peer(problem.slope),
-            0.0,
-            problem.time,
-            0.0,
-            start,
-            tolerance,
-            tolerance,
-            0.9,
-            $beta,
-            $least,
-            $greatest,
-            problem.time,
-            0.0,
-            100_000_000,
-            u32::MAX,
-            ode_solvers::dop_shared::OutputType::Sparse,
-        );
-        let stats = solver.integrate().expect("a solution");
-        Outcome {
-            time: clock.elapsed(),
-            error: problem.error(solver.y_out().last().expect("an end").as_slice()),
-            evaluations: u64::from(stats.num_eval),
-        }
-    }};
+        let end = problem.by_solver(solver, tolerance).expect("a solution");
+        (end, clock.elapsed().as_secs_f64())
+    };
+    let first = run();
+    (1..9).map(|_| run()).fold(
+        first,
+        |best, again| if again.1 < best.1 { again } else { best },
+    )
 }
 
-fn compare<const N: usize>(problem: &Problem<N>, tolerance: f64) {
-    let runs = 9;
-    let dopri5 = (
-        best(runs, || ours::<Dopri5Stages<_>, N>(problem, tolerance)),
-        best(runs, || {
-            theirs!(Dopri5, 0.04, 0.2, 10.0, problem, tolerance)
-        }),
-    );
-    let dop853 = (
-        best(runs, || ours::<Dop853Stages<_>, N>(problem, tolerance)),
-        best(runs, || {
-            theirs!(Dop853, 0.0, 0.333, 6.0, problem, tolerance)
-        }),
-    );
-    for (name, (ours, theirs)) in [("Dopri5", dopri5), ("Dop853", dop853)] {
+fn compare(problem: &dyn Solve, tolerance: f64) {
+    for name in ["Dopri5", "Dop853"] {
+        let (ours, our_time) = solve(problem, &format!("sim_core::{name}"), tolerance);
+        let (theirs, time) = solve(problem, &format!("ode_solvers::{name}"), tolerance);
         println!(
             "{:<10} {name} {tolerance:.0e}  error {:.2e} / {:.2e}  evaluations {} / {}  \
-             time {:.1?} / {:.1?} = {:.2}",
-            problem.name,
+             time {:.1e} s / {:.1e} s = {:.2}",
+            problem.card().name,
             ours.error,
             theirs.error,
             ours.evaluations,
             theirs.evaluations,
-            ours.time,
-            theirs.time,
-            ours.time.as_secs_f64() / theirs.time.as_secs_f64()
+            our_time,
+            time,
+            our_time / time
         );
         // The same method with the same control takes the same steps, but for rounding.
         let ratio = ours.evaluations as f64 / theirs.evaluations as f64;
@@ -134,46 +49,23 @@ fn compare<const N: usize>(problem: &Problem<N>, tolerance: f64) {
     }
 }
 
-fn kepler(eccentricity: f64) -> Problem<4> {
-    let start = kepler::start(eccentricity);
-    Problem {
-        name: if eccentricity == 0.6 {
-            "kepler 0.6"
-        } else {
-            "kepler 0.9"
-        },
-        slope: kepler_slope,
-        start,
-        time: 200.0 * std::f64::consts::PI,
-        end: start.to_vec(),
-    }
-}
-
-fn kepler_slope(y: &[f64; 4], dy: &mut [f64; 4]) {
-    let squared = y[0] * y[0] + y[1] * y[1];
-    let inverse = 1.0 / (squared * squared.sqrt());
-    *dy = [y[2], y[3], -y[0] * inverse, -y[1] * inverse];
-}
-
-fn pleiades() -> Problem<{ pleiades::N }> {
-    Problem {
-        name: "pleiades",
-        slope: pleiades::slope,
-        start: pleiades::START,
-        time: 3.0,
-        end: pleiades::END.to_vec(),
-    }
-}
-
 /// Ours before theirs. The times are for a release build:
 /// `cargo test --release -p tests --test solvers -- --nocapture`.
 #[test]
 fn the_same_evaluations_and_error_as_ode_solvers() {
-    for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
-        compare(&kepler(0.6), tolerance);
-        compare(&kepler(0.9), tolerance);
-        compare(&pleiades(), tolerance);
+    let mut compared = 0;
+    for problem in problems::all() {
+        if matches!(
+            problem.card().name,
+            "kepler-0.6" | "kepler-0.9" | "pleiades"
+        ) {
+            compared += 1;
+            for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
+                compare(problem.as_ref(), tolerance);
+            }
+        }
     }
+    assert_eq!(compared, 3);
 }
 
 #[test]

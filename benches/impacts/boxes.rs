@@ -1,5 +1,6 @@
 //! Our broad phase beside the tree that Rapier's is made of: pairs of swept boxes, step by step.
 
+use cases::scenes::{Form, HALF, crowd};
 use criterion::Criterion;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
@@ -7,9 +8,8 @@ use parry3d::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use sim_core::DVec3;
 
 use crate::row;
-use crate::scene::{Form, HALF, crowd};
 use crate::table::{Table, three_digits, time};
-use crate::watch::{self, Engine};
+use crate::watch;
 
 // The very code of the library, where it is private, with its tests, which nothing runs here.
 #[allow(
@@ -58,7 +58,7 @@ impl<'a, T> Run<'a, T> {
     }
 }
 
-impl Engine for Run<'_, (Broad, Vec<usize>)> {
+impl Run<'_, (Broad, Vec<usize>)> {
     fn step(&mut self) {
         let boxes = self.next();
         let (broad, bodies) = &mut self.tree;
@@ -67,7 +67,7 @@ impl Engine for Run<'_, (Broad, Vec<usize>)> {
     }
 }
 
-impl Engine for Run<'_, Parry> {
+impl Run<'_, Parry> {
     fn step(&mut self) {
         let boxes = self.next();
         let Parry {
@@ -146,7 +146,9 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
         steps.iter().for_each(|_| known.step());
         let mut times = vec![(
             "ours".to_string(),
-            watch::time(&mut group, &format!("{count}/ours"), timed, ours),
+            watch::time_by(&mut group, &format!("{count}/ours"), timed, ours, |run| {
+                run.step()
+            }),
         )];
         for margin in MARGINS {
             let mut run = theirs(margin);
@@ -156,7 +158,10 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
             assert!(lost as f64 <= 1e-5 * known.met as f64, "{margin}: {lost}");
             let name = format!("parry, margin {margin} m");
             let id = format!("{count}/parry-{margin}");
-            times.push((name, watch::time(&mut group, &id, timed, || theirs(margin))));
+            times.push((
+                name,
+                watch::time_by(&mut group, &id, timed, || theirs(margin), |run| run.step()),
+            ));
         }
         let Some(first) = times[0].1 else { continue };
         for (name, seconds) in times {

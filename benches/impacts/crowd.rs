@@ -1,13 +1,12 @@
 //! Many bodies in a closed box.
 
+use cases::scenes::{Engine, Form, HALF, Rapier, continuous, crowd};
 use criterion::Criterion;
 use sim_core::DVec3;
 
-use crate::rapier::Rapier;
-use crate::scene::{Form, HALF, crowd};
 use crate::table::{Table, three_digits, time};
-use crate::watch::{self, Engine};
-use crate::{ours, row, short};
+use crate::watch;
+use crate::{row, short};
 
 /// Relative error of the energy after some steps, how far out of the box the worst body is, and
 /// how many impacts there were, where that is known.
@@ -54,7 +53,7 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
         for (name, form) in [("cubes", Form::Cube(HALF)), ("balls", Form::Ball(HALF))] {
             let (scene, half_box) = crowd(count, &form);
             let name = format!("{count} {name}");
-            let start = ours::continuous(&scene);
+            let start = continuous(&scene);
             let ours = watch::time(&mut group, &format!("{name}/ours"), timed, || start.clone());
             let theirs = watch::time(&mut group, &format!("{name}/rapier"), timed, || {
                 Rapier::new(&scene)
@@ -63,7 +62,7 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
             let walls = 6;
             let mut world = start.clone();
             let before = world.kinetic_energy();
-            (0..steps).for_each(|_| Engine::step(&mut world));
+            (0..steps).for_each(|_| watch::step(&mut world));
             let positions = (walls..world.len()).map(|i| world.position(i));
             let end = End::new(half_box, before, world.kinetic_energy(), positions);
             let impacts = world.impacts();
@@ -79,8 +78,8 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
             if let Some(theirs) = theirs {
                 let mut rapier = Rapier::new(&scene);
                 let before = rapier.kinetic_energy();
-                (0..steps).for_each(|_| rapier.step());
-                let positions = (walls..rapier.handles.len()).map(|i| rapier.position(i));
+                (0..steps).for_each(|_| watch::step(&mut rapier));
+                let positions = (walls..scene.items.len()).map(|i| rapier.position(i));
                 let end = End::new(half_box, before, rapier.kinetic_energy(), positions);
                 ends.push(("rapier 0.36", theirs, end));
             }

@@ -1,34 +1,14 @@
 //! A heavy block drives a light one against a wall: floor(π 10^k) impacts. Engines that step have
 //! nothing to say here.
 
+use cases::hard_cases::chains::galperin;
 use criterion::Criterion;
-use sim_core::{Body, BodyKind, DVec3, Settings, Shape, World};
 
 use crate::table::{Table, time};
-use crate::watch::{self, Engine};
+use crate::watch;
 use crate::{row, short};
 
 const STEPS: u32 = 1200;
-
-fn world(k: i32) -> World {
-    let mut world = World::new(Settings::default()).expect("settings");
-    let ball = |mass, x, v| Body {
-        shape: Some(Shape::Sphere { radius: 0.25 }),
-        position: DVec3::X * x,
-        velocity: DVec3::X * v,
-        mass,
-        ..Body::default()
-    };
-    let wall = Body {
-        shape: Some(Shape::HalfSpace { normal: DVec3::X }),
-        kind: BodyKind::Static,
-        ..Body::default()
-    };
-    for body in [wall, ball(1.0, 1.0, 0.0), ball(100f64.powi(k), 2.0, -1.0)] {
-        world.add(body).expect("a body");
-    }
-    world
-}
 
 pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
     let mut table = Table::new(
@@ -37,12 +17,12 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
     );
     let mut group = criterion.benchmark_group("impacts/galperin");
     for k in 0..=5 {
-        let start = world(k);
+        let start = galperin(k, 0.25);
         let step = watch::time(&mut group, &format!("100^{k}"), STEPS, || start.clone());
         let Some(step) = step else { continue };
         let mut world = start;
         let before = world.kinetic_energy();
-        (0..STEPS).for_each(|_| Engine::step(&mut world));
+        (0..STEPS).for_each(|_| watch::step(&mut world));
         let exact = (std::f64::consts::PI * 10f64.powi(k)).floor() as u64;
         assert_eq!(world.impacts(), exact, "mass ratio 100^{k}");
         let error = (world.kinetic_energy() / before - 1.0).abs();

@@ -2,61 +2,24 @@
 
 use std::sync::Arc;
 
-use kit::random::Random;
+use cases::scenes::{Engine, Form, GRAVITY, HALF, Item, Rapier, Scene, continuous, heap};
 use sim_core::{DVec3, Mesh, Vec3};
 
-use crate::ours;
 use crate::overlap::Depths;
-use crate::rapier::Rapier;
-use crate::scene::{Form, HALF, Item, Scene, item};
 use crate::table::{Table, three_digits, time};
-use crate::watch::{self, Engine};
+use crate::watch;
 use crate::{row, short};
 
 /// Two seconds, in which they fall and come together, and two in which what can settles.
 const MOVING: usize = 120;
 const SETTLED: usize = 120;
 const WALLS: usize = 5;
-const G: f64 = 9.81;
 
 /// Time after which no more steps of a run are begun, s.
 const BUDGET: f64 = 12.0;
 
-/// Layers of so many by so many, a fifth of a body apart, above a floor.
-fn heap(form: &Form, count: usize, side: usize, restitution: f64, friction: f64) -> Scene {
-    let pitch = 2.4 * half_of(form);
-    let half = 0.5 * pitch * side as f64;
-    let mut random = Random::splitmix(5);
-    let mut items = vec![resting(Form::Wall(DVec3::Y), DVec3::ZERO)];
-    for normal in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z] {
-        items.push(resting(Form::Wall(normal), -half * normal));
-    }
-    for i in 0..count {
-        let cell = [i % side, i / side / side, i / side % side].map(|c| c as f64 + 0.5);
-        let shake = random.vector();
-        let shake = 0.08 * half_of(form) * shake;
-        let at = DVec3::from_array(cell) * pitch - DVec3::new(half.x, 0.0, half.z) + shake;
-        items.push(resting(form.clone(), at));
-    }
-    Scene {
-        gravity: -G * DVec3::Y,
-        restitution,
-        friction,
-        may_sleep: true,
-        ..Scene::new(items)
-    }
-}
-
 fn half_of(form: &Form) -> DVec3 {
-    resting(form.clone(), DVec3::ZERO).half()
-}
-
-/// Slow enough for no engine to need its continuous detection.
-fn resting(form: Form, at: DVec3) -> Item {
-    Item {
-        is_bullet: false,
-        ..item(form, at, DVec3::ZERO)
-    }
+    Item::resting(form.clone(), DVec3::ZERO).half()
 }
 
 /// A cow of a thousand triangles, as long as two cubes.
@@ -82,15 +45,10 @@ struct Run {
     depth: f64,
 }
 
-fn run<E: Engine>(
-    scene: &Scene,
-    mut engine: E,
-    kinetic: impl Fn(&E) -> f64,
-    position: impl Fn(&E, usize) -> DVec3,
-) -> Run {
-    let energy = |engine: &E| {
-        let heights = (WALLS..scene.items.len()).map(|i| position(engine, i).y);
-        kinetic(engine) + G * heights.sum::<f64>()
+fn run(scene: &Scene, mut engine: impl Engine) -> Run {
+    let energy = |engine: &dyn Engine| {
+        let heights = scene.movable().map(|i| engine.position(i).y);
+        engine.kinetic_energy() + GRAVITY * heights.sum::<f64>()
     };
     let depths = Depths::new(scene, WALLS);
     let mut run = Run {
@@ -103,7 +61,7 @@ fn run<E: Engine>(
     let mut spent = 0.0;
     while times.len() < MOVING + SETTLED && spent < BUDGET {
         let clock = watch::now();
-        engine.step();
+        watch::step(&mut engine);
         let seconds = watch::now() - clock;
         times.push(seconds);
         spent += seconds;
@@ -111,7 +69,7 @@ fn run<E: Engine>(
         let after = energy(&engine);
         run.rise = run.rise.max(after - before);
         before = after;
-        run.depth = run.depth.max(depths.deepest(|i| position(&engine, i)));
+        run.depth = run.depth.max(depths.deepest(|i| engine.position(i)));
     }
     run.steps = times.len();
     let mean = |times: &[f64]| times.iter().sum::<f64>() / times.len() as f64;
@@ -171,12 +129,7 @@ fn heaps(wrong: &mut Vec<String>) -> Table {
     ] {
         let name = format!("{count} {name}");
         let scene = heap(form, count, side, restitution, friction);
-        let ours = run(
-            &scene,
-            ours::continuous(&scene),
-            |world| world.kinetic_energy(),
-            |world, body| world.position(body),
-        );
+        let ours = run(&scene, continuous(&scene));
         let what = format!("{name}, restitution {restitution}, friction {friction}");
         if ours.rise > 1e-12 * ours.start {
             wrong.push(format!("{what}: energy up by {:e} J", ours.rise));
@@ -184,12 +137,7 @@ fn heaps(wrong: &mut Vec<String>) -> Table {
         if ours.depth > 1e-15 {
             wrong.push(format!("{what}: {:e} m in each other", ours.depth));
         }
-        let theirs = run(
-            &scene,
-            Rapier::with_internal_edges_fixed(&scene),
-            Rapier::kinetic_energy,
-            Rapier::position,
-        );
+        let theirs = run(&scene, Rapier::with_internal_edges_fixed(&scene));
         let first = ours.moving;
         for (engine, run) in [("ours", ours), ("rapier 0.36", theirs)] {
             let cells = [
@@ -264,16 +212,16 @@ fn on_a_mesh() -> Table {
         let above = half_of(&form).y + 0.31;
         let body = Item {
             velocity: velocity * DVec3::new(0.8, 0.0, 0.6),
-            ..resting(form, DVec3::new(0.13, above, 0.07))
+            ..Item::resting(form, DVec3::new(0.13, above, 0.07))
         };
+        let ground = Item::resting(Form::Ground(mesh.clone()), DVec3::ZERO);
         let scene = Scene {
-            gravity: -G * DVec3::Y,
             restitution: 0.0,
             friction,
             may_sleep: true,
-            ..Scene::new(vec![resting(Form::Ground(mesh.clone()), DVec3::ZERO), body])
+            ..Scene::falling(vec![ground, body])
         };
-        let ours = lying(ours::continuous(&scene));
+        let ours = lying(continuous(&scene));
         let theirs = lying(Rapier::with_internal_edges_fixed(&scene));
         let cells = [
             name,
@@ -287,9 +235,9 @@ fn on_a_mesh() -> Table {
 }
 
 /// Mean time of a step of what has landed, s.
-fn lying<E: Engine>(mut engine: E) -> f64 {
-    (0..LANDING).for_each(|_| engine.step());
+fn lying(mut engine: impl Engine) -> f64 {
+    (0..LANDING).for_each(|_| watch::step(&mut engine));
     let clock = watch::now();
-    (0..LYING).for_each(|_| engine.step());
+    (0..LYING).for_each(|_| watch::step(&mut engine));
     (watch::now() - clock) / LYING as f64
 }

@@ -1,18 +1,17 @@
 //! Continuous collisions beside Rapier: time, impacts found, errors.
 //!
 //! `cargo bench -- impacts` runs all, prints tables and leaves them in `target/impacts.md`;
-//! `cargo bench -- impacts/crowd` runs a part, `cargo bench -- impacts/heap` the heaps alone. It fails if an answer of ours is wrong.
+//! `cargo bench -- impacts/crowd` runs a part, `cargo bench -- impacts/heap` the heaps alone,
+//! `cargo bench -- impacts/cases` the hard cases. It fails if an answer of ours is wrong.
 
 mod boxes;
 mod crowd;
 mod galperin;
+mod hard_cases;
 mod heap;
 mod one;
-mod ours;
 mod overlap;
 mod pair;
-mod rapier;
-mod scene;
 #[path = "../collision/table.rs"]
 mod table;
 mod turning;
@@ -35,8 +34,10 @@ fn main() {
         turning::bench(&mut criterion),
     ];
     criterion.final_summary();
-    let (heaps, wrong) = heap::bench();
-    let tables = tables.iter().flatten().chain(&heaps);
+    let (heaps, mut wrong) = heap::bench();
+    let (cases, others) = hard_cases::bench();
+    wrong.extend(others);
+    let tables = tables.iter().flatten().chain(&heaps).chain(&cases);
     let text: String = tables.map(|table| table.markdown() + "\n").collect();
     // Without `--bench` all runs once, as a test.
     if !text.is_empty() && watch::is_timed() {

@@ -1,9 +1,8 @@
 //! How deep bodies are in each other, measured alike for every engine, from where it has put them.
 
+use cases::scenes::{Form, Item, Scene};
 use sim_core::collide::tree::intersect;
 use sim_core::{Bvh, DVec3};
-
-use crate::scene::{Form, Item, Scene};
 
 /// Bodies of a scene as they are measured: each kind of mesh has its tree.
 pub(crate) struct Depths<'a> {

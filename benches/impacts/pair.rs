@@ -1,17 +1,14 @@
 //! Two bodies head on, at rest and coming: impacts found over sub-step phases, and the time of a
 //! step averaged over flight and contact.
 
-use std::sync::Arc;
-
+use cases::scenes::{Engine, Form, Pair, Rapier, Scene, continuous, world};
 use criterion::Criterion;
-use sim_core::collide::touch::first_touch;
-use sim_core::{Bvh, Collision, DVec3, Mesh, World};
+use kit::meshes::builtin;
+use sim_core::{Collision, DVec3, World};
 
-use crate::rapier::Rapier;
-use crate::scene::{Form, Item, Scene, builtin, item};
 use crate::table::{Table, three_digits, time};
-use crate::watch::{self, Engine};
-use crate::{ours, row, short};
+use crate::watch;
+use crate::{row, short};
 
 const PHASES: u32 = 16;
 const SPEEDS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
@@ -19,53 +16,22 @@ const SPEEDS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 const BEFORE: u32 = 30;
 const STEPS: u32 = 60;
 
-/// The second one comes along `way` and touches at `touching`.
-struct Pair {
-    name: &'static str,
-    forms: [Form; 2],
-    way: DVec3,
-    touching: DVec3,
-}
-
-impl Pair {
-    fn new(name: &'static str, [first, second]: [&Arc<Mesh>; 2], forms: [Form; 2]) -> Pair {
-        let way = DVec3::new(1.0, 0.05, 0.1).normalize();
-        let (from, motion) = (-16.0 * way, 32.0 * way);
-        let touch = first_touch(&Bvh::build(first), &Bvh::build(second), from, motion);
-        let touching = from + touch.expect("they meet").time * motion;
-        Pair {
-            name,
-            forms,
-            way,
-            touching,
-        }
-    }
-
-    fn scene(&self, speed: f64, phase: f64) -> Scene {
-        let [first, second] = self.forms.clone();
-        let dt = 1.0 / 60.0;
-        let velocity = speed * self.way;
-        let gap = velocity * dt * (f64::from(BEFORE) + phase);
-        let still = Item {
-            is_bullet: false,
-            ..item(first, DVec3::ZERO, DVec3::ZERO)
-        };
-        Scene::new(vec![still, item(second, self.touching - gap, velocity)])
-    }
-}
-
-fn pairs() -> [Pair; 3] {
-    let (cube, cow) = (builtin("cube.obj"), builtin("cow.obj"));
-    let (a_cube, a_cow) = (Form::Cube(0.5), Form::Mesh(cow.clone()));
+fn pairs() -> [(&'static str, Pair); 3] {
+    let (cube, cow) = (Form::Cube(0.5), Form::Mesh(builtin("cow.obj")));
+    let pair = |first: &Form, second: &Form| {
+        let forms = [first.clone(), second.clone()];
+        Pair::new(forms, DVec3::new(1.0, 0.05, 0.1))
+    };
     [
-        Pair::new(
-            "cube, cube",
-            [&cube, &cube],
-            [a_cube.clone(), a_cube.clone()],
-        ),
-        Pair::new("cow, cube", [&cow, &cube], [a_cow.clone(), a_cube]),
-        Pair::new("cow, cow", [&cow, &cow], [a_cow.clone(), a_cow]),
+        ("cube, cube", pair(&cube, &cube)),
+        ("cow, cube", pair(&cow, &cube)),
+        ("cow, cow", pair(&cow, &cow)),
     ]
+}
+
+/// They touch at a phase of a step.
+fn scene(pair: &Pair, speed: f64, phase: f64) -> Scene {
+    pair.scene(speed, (f64::from(BEFORE) + phase) / 60.0)
 }
 
 /// What came out over all phases at a speed.
@@ -92,28 +58,26 @@ impl Found {
 fn found(pair: &Pair, speed: f64, of: impl Fn(&Scene) -> (DVec3, f64)) -> Found {
     let mut found = Found::default();
     for phase in 0..PHASES {
-        let scene = pair.scene(speed, f64::from(phase) / f64::from(PHASES));
+        let scene = scene(pair, speed, f64::from(phase) / f64::from(PHASES));
         let (at_rest, energy) = of(&scene);
         found.add(speed, at_rest, energy);
     }
     found
 }
 
-fn end_of_ours(scene: &Scene, collision: Collision) -> (DVec3, f64) {
-    let mut world = ours::world(scene, collision, "velocity-verlet");
-    (0..STEPS).for_each(|_| Engine::step(&mut world));
-    (world.velocity(0), world.kinetic_energy())
+fn discrete(scene: &Scene) -> World {
+    world(scene, Collision::Bvh, "velocity-verlet")
 }
 
-fn end_of_rapier(mut rapier: Rapier) -> (DVec3, f64) {
-    (0..STEPS).for_each(|_| rapier.step());
-    (rapier.velocity(0), rapier.kinetic_energy())
+fn end(mut engine: impl Engine) -> (DVec3, f64) {
+    (0..STEPS).for_each(|_| watch::step(&mut engine));
+    (engine.velocity(0), engine.kinetic_energy())
 }
 
 /// Ours finds every impact and keeps the energy to 1e-14.
-fn assert_right(pair: &Pair, speed: f64, found: Found) {
+fn assert_right(pair: &str, speed: f64, found: Found) {
     let is_right = found.impacts == PHASES && found.energy <= 1e-14;
-    assert!(is_right, "{} at {speed}: {}", pair.name, found.cell());
+    assert!(is_right, "{pair} at {speed}: {}", found.cell());
 }
 
 type Of = fn(&Scene) -> (DVec3, f64);
@@ -127,27 +91,24 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
         ],
     );
     let mut group = criterion.benchmark_group("impacts/pair");
-    for pair in &pairs() {
-        let scene = pair.scene(10.0, 0.37);
-        let world = |collision| -> World { ours::world(&scene, collision, "velocity-verlet") };
-        let (continuous, discrete) = (world(Collision::Continuous), world(Collision::Bvh));
-        let id = |engine: &str| format!("{}/{engine}", pair.name);
+    for (name_of_pair, pair) in &pairs() {
+        let scene = scene(pair, 10.0, 0.37);
+        let worlds = [continuous(&scene), discrete(&scene)];
+        let id = |engine: &str| format!("{name_of_pair}/{engine}");
         let times = [
-            watch::time(&mut group, &id("continuous"), STEPS, || continuous.clone()),
-            watch::time(&mut group, &id("discrete"), STEPS, || discrete.clone()),
+            watch::time(&mut group, &id("continuous"), STEPS, || worlds[0].clone()),
+            watch::time(&mut group, &id("discrete"), STEPS, || worlds[1].clone()),
             watch::time(&mut group, &id("rapier"), STEPS, || Rapier::new(&scene)),
             watch::time(&mut group, &id("rapier, edges fixed"), STEPS, || {
                 Rapier::with_internal_edges_fixed(&scene)
             }),
         ];
         let engines: [(&str, Of); 4] = [
-            ("continuous", |scene| {
-                end_of_ours(scene, Collision::Continuous)
-            }),
-            ("discrete", |scene| end_of_ours(scene, Collision::Bvh)),
-            ("rapier 0.36", |scene| end_of_rapier(Rapier::new(scene))),
+            ("continuous", |scene| end(continuous(scene))),
+            ("discrete", |scene| end(discrete(scene))),
+            ("rapier 0.36", |scene| end(Rapier::new(scene))),
             ("rapier, edges fixed", |scene| {
-                end_of_rapier(Rapier::with_internal_edges_fixed(scene))
+                end(Rapier::with_internal_edges_fixed(scene))
             }),
         ];
         for ((name, of), seconds) in engines.into_iter().zip(times) {
@@ -157,12 +118,17 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
             let results = SPEEDS.map(|speed| found(pair, speed, of));
             if name == "continuous" {
                 for (speed, found) in SPEEDS.into_iter().zip(results) {
-                    assert_right(pair, speed, found);
+                    assert_right(name_of_pair, speed, found);
                 }
             }
             let cells = results.map(Found::cell);
             let ratio = three_digits(seconds / ours);
-            let mut line = vec![pair.name.to_owned(), name.into(), time(seconds), ratio];
+            let mut line = vec![
+                (*name_of_pair).to_owned(),
+                name.into(),
+                time(seconds),
+                ratio,
+            ];
             line.extend(cells);
             row(
                 &mut table,

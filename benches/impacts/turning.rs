@@ -1,15 +1,13 @@
 //! Bodies that turn: time of a step, and what becomes of the energy.
 
-use std::sync::Arc;
-
+use cases::scenes::{Engine, Form, HALF, Item, Rapier, Scene, continuous, crowd};
 use criterion::Criterion;
-use sim_core::{DVec3, Mesh, Vec3};
+use kit::meshes::{builtin, cuboid};
+use sim_core::{DVec3, Vec3};
 
-use crate::rapier::Rapier;
-use crate::scene::{Form, HALF, Item, Scene, builtin, crowd, item};
 use crate::table::{Table, three_digits, time};
-use crate::watch::{self, Engine};
-use crate::{ours, row, short};
+use crate::watch;
+use crate::{row, short};
 
 struct Case {
     name: &'static str,
@@ -25,14 +23,11 @@ struct Case {
 fn hit(forms: [Form; 2], from: f64) -> Scene {
     let way = DVec3::new(1.0, 0.05, 0.1).normalize();
     let [first, second] = forms;
-    let still = Item {
-        is_bullet: false,
-        ..item(first, DVec3::ZERO, DVec3::ZERO)
-    };
+    let still = Item::resting(first, DVec3::ZERO);
     let spin = DVec3::new(3.0, 4.0, 0.0);
     let coming = Item {
         spin,
-        ..item(second, -from * way, 10.0 * way)
+        ..Item::new(second, -from * way, 10.0 * way)
     };
     turning(Scene::new(vec![still, coming]))
 }
@@ -44,14 +39,6 @@ fn turning(scene: Scene) -> Scene {
     }
 }
 
-/// A box of twice these halves.
-fn cuboid(half: [f32; 3]) -> Arc<Mesh> {
-    let cube = builtin("cube.obj");
-    let vertices = cube.vertices().iter();
-    let vertices: Vec<Vec3> = vertices.map(|&v| v * 2.0 * Vec3::from(half)).collect();
-    Arc::new(Mesh::new(vertices, cube.triangles().to_vec()).expect("a box"))
-}
-
 /// Eight cubes above each other in pairs of pairs, that fall into a bin.
 fn bin() -> Scene {
     let walls = [DVec3::X, -DVec3::X, DVec3::Z, -DVec3::Z, DVec3::Y];
@@ -59,7 +46,7 @@ fn bin() -> Scene {
         .into_iter()
         .map(|normal| {
             let away = if normal.y > 0.0 { 0.0 } else { 0.8 };
-            item(Form::Wall(normal), -away * normal, DVec3::ZERO)
+            Item::new(Form::Wall(normal), -away * normal, DVec3::ZERO)
         })
         .collect();
     for k in 0..8_u32 {
@@ -68,28 +55,25 @@ fn bin() -> Scene {
         let spin = DVec3::new(0.5 * side(2), 0.7 * side(1), 0.9 * side(0));
         items.push(Item {
             spin,
-            is_bullet: false,
-            ..item(Form::Cube(0.25), place, DVec3::ZERO)
+            ..Item::resting(Form::Cube(0.25), place)
         });
     }
     Scene {
-        gravity: -9.81 * DVec3::Y,
         restitution: 0.2,
-        ..turning(Scene::new(items))
+        ..turning(Scene::falling(items))
     }
 }
 
 /// A cow that falls on her feet, spinning.
 fn spinning_cow() -> Scene {
-    let floor = item(Form::Wall(DVec3::Y), DVec3::ZERO, DVec3::ZERO);
+    let floor = Item::new(Form::Wall(DVec3::Y), DVec3::ZERO, DVec3::ZERO);
     let cow = Item {
         spin: DVec3::new(3.0, 4.0, 0.0),
-        ..item(Form::Mesh(builtin("cow.obj")), 5.0 * DVec3::Y, DVec3::ZERO)
+        ..Item::new(Form::Mesh(builtin("cow.obj")), 5.0 * DVec3::Y, DVec3::ZERO)
     };
     Scene {
-        gravity: -9.81 * DVec3::Y,
         restitution: 0.3,
-        ..turning(Scene::new(vec![floor, cow]))
+        ..turning(Scene::falling(vec![floor, cow]))
     }
 }
 
@@ -97,7 +81,11 @@ fn cases() -> [Case; 6] {
     let cow = || Form::Mesh(builtin("cow.obj"));
     let brick = Item {
         spin: DVec3::new(1.0, 2.0, 3.0),
-        ..item(Form::Mesh(cuboid([0.5, 0.25, 1.0])), DVec3::ZERO, DVec3::X)
+        ..Item::new(
+            Form::Mesh(cuboid(Vec3::new(0.5, 0.25, 1.0))),
+            DVec3::ZERO,
+            DVec3::X,
+        )
     };
     let case = |name, scene, timed, steps, most| Case {
         name,
@@ -147,34 +135,20 @@ fn cases() -> [Case; 6] {
 }
 
 /// Kinetic and potential energy.
-trait Energy {
-    fn energy(&self, gravity: DVec3) -> f64;
-}
-
-impl Energy for sim_core::World {
-    fn energy(&self, gravity: DVec3) -> f64 {
-        let movable = (0..self.len()).filter(|&body| self.kind(body).is_movable());
-        let potential: f64 = movable.map(|body| -gravity.dot(self.position(body))).sum();
-        self.kinetic_energy() + potential
-    }
-}
-
-impl Energy for Rapier {
-    fn energy(&self, gravity: DVec3) -> f64 {
-        let bodies = (0..self.handles.len()).filter(|&body| self.is_movable(body));
-        bodies
-            .map(|body| self.energy_of(body) - gravity.dot(self.position(body)))
-            .sum()
-    }
+fn energy(engine: &dyn Engine, scene: &Scene) -> f64 {
+    let heights = scene
+        .movable()
+        .map(|i| scene.gravity.dot(engine.position(i)));
+    engine.kinetic_energy() - heights.sum::<f64>()
 }
 
 /// Error of the energy at the end, and the most that a step has brought, relative to the start.
-fn errors<E: Engine + Energy>(mut engine: E, case: &Case) -> (f64, f64) {
-    let start = engine.energy(case.scene.gravity);
+fn errors(mut engine: impl Engine, case: &Case) -> (f64, f64) {
+    let start = energy(&engine, &case.scene);
     let (mut before, mut gained) = (start, 0.0_f64);
     for _ in 0..case.steps {
-        engine.step();
-        let after = engine.energy(case.scene.gravity);
+        watch::step(&mut engine);
+        let after = energy(&engine, &case.scene);
         gained = gained.max(after - before);
         before = after;
     }
@@ -189,7 +163,7 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
     );
     let mut group = criterion.benchmark_group("impacts/turning");
     for case in &cases() {
-        let start = ours::continuous(&case.scene);
+        let start = continuous(&case.scene);
         let ours = watch::time(
             &mut group,
             &format!("{}/ours", case.name),

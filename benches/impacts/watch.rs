@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use cases::scenes::Engine;
 use criterion::{BenchmarkGroup, Criterion, measurement::WallTime};
 
 pub(crate) fn criterion() -> Criterion {
@@ -41,9 +42,9 @@ pub(crate) fn now() -> f64 {
     FIRST.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// Something that steps.
-pub(crate) trait Engine {
-    fn step(&mut self);
+/// A step of an engine, which none refuses.
+pub(crate) fn step(engine: &mut impl Engine) {
+    engine.step().expect("a step");
 }
 
 /// Median time of a step over runs of `steps`, s, each from a fresh start and after a step to warm
@@ -54,16 +55,27 @@ pub(crate) fn time<E: Engine>(
     steps: u32,
     start: impl Fn() -> E,
 ) -> Option<f64> {
+    time_by(group, id, steps, start, step)
+}
+
+/// The same of something else that steps.
+pub(crate) fn time_by<E>(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    id: &str,
+    steps: u32,
+    start: impl Fn() -> E,
+    step: impl Fn(&mut E),
+) -> Option<f64> {
     let mut times = Vec::new();
     group.bench_function(id, |bencher| {
         bencher.iter_custom(|runs| {
             let mut total = Duration::ZERO;
             for _ in 0..runs {
                 let mut engine = start();
-                engine.step();
+                step(&mut engine);
                 let clock = Instant::now();
                 for _ in 1..steps {
-                    engine.step();
+                    step(&mut engine);
                 }
                 let time = clock.elapsed();
                 times.push(time.as_secs_f64() / f64::from(steps - 1));

@@ -1,98 +1,14 @@
-//! Balls and cubes on floors under gravity: cases 18, 19, 27.
+//! Balls and cubes on floors under gravity, beside the cases of `cases::hard_cases::balls`.
 
 use std::sync::Arc;
 
+use cases::hard_cases::balls::{dropped, floor, on_floor};
 use kit::bodies::{immovable, wall};
 use kit::meshes::{boxes, cube};
 use kit::worlds::{GRAVITY, add_gravity, world_of};
-use sim_core::{Body, DVec3, METHODS, Method, Settings, Vec3, World};
+use sim_core::{Body, DVec3, METHODS, Settings, Vec3};
 
 use crate::worlds::{DT, ball, mesh_body, run, settings};
-
-/// A body above a floor, under gravity.
-fn on_floor(method: &'static Method, dt: f64, body: Body, floor: Body) -> World {
-    let settings = Settings {
-        method,
-        ..settings(dt)
-    };
-    let mut world = world_of(settings, &[floor, body]);
-    add_gravity(&mut world, -GRAVITY * DVec3::Y);
-    world
-}
-
-fn floor() -> Body {
-    wall(DVec3::Y, DVec3::ZERO, DVec3::ZERO)
-}
-
-/// Dropped from 1 m.
-fn dropped(method: &'static Method, dt: f64, restitution: f64) -> World {
-    let point = Body {
-        restitution,
-        ..ball(0.0, DVec3::Y, DVec3::ZERO)
-    };
-    on_floor(method, dt, point, floor())
-}
-
-/// Methods that are exact for a parabola.
-fn exact_in_flight() -> impl Iterator<Item = &'static Method> {
-    METHODS.into_iter().filter(|method| method.order >= 2)
-}
-
-/// Time, from 0, of bounce `n` (from 1), and the speed after it.
-fn bounce(n: i32, restitution: f64) -> (f64, f64) {
-    let fall = (2.0 / GRAVITY).sqrt();
-    let flights: f64 = (1..n).map(|i| 2.0 * fall * restitution.powi(i)).sum();
-    (fall + flights, GRAVITY * fall * restitution.powi(n))
-}
-
-#[test]
-fn a_ball_that_loses_a_fifth_of_its_speed_bounces_and_comes_to_rest() {
-    for method in exact_in_flight() {
-        for dt in [DT, 1.0 / 240.0] {
-            let mut world = dropped(method, dt, 0.8);
-            let impacts = run(&mut world, (3.0 / dt).round() as u64);
-            let what = format!("{} at dt {dt}", method.name);
-            assert_eq!(impacts.len(), 6, "{what}");
-            for (n, impact) in (1..).zip(&impacts) {
-                let (time, speed) = bounce(n, 0.8);
-                assert!((impact.time - time).abs() < 1e-12, "{what}: bounce {n}");
-                assert!(
-                    (impact.speeds.1 - speed).abs() < 1e-12,
-                    "{what}: bounce {n}"
-                );
-            }
-            let height = world.position(1).y;
-            assert!(
-                (height - 0.06870746096576577).abs() < 1e-12,
-                "{what}: {height}"
-            );
-            // There are infinitely many bounces in 4.0637 s.
-            let impacts = run(&mut world, (7.0 / dt).round() as u64);
-            assert!(impacts.len() < 10_000, "{what}: {}", impacts.len());
-            let (height, speed) = (world.position(1).y, world.velocity(1).length());
-            assert!(
-                height.abs() < 1e-9 && speed < 1e-9,
-                "{what}: {height} {speed}"
-            );
-        }
-    }
-}
-
-#[test]
-fn an_elastic_ball_bounces_a_hundred_and_eleven_times() {
-    for method in exact_in_flight() {
-        let mut world = dropped(method, DT, 1.0);
-        let impacts = run(&mut world, 6000);
-        assert_eq!(impacts.len(), 111, "{}", method.name);
-        let height = world.position(1).y;
-        let error = (height - 0.7215811544474912).abs();
-        assert!(error < 1e-11, "{}: off by {error:e}", method.name);
-        let energy = world.kinetic_energy() + GRAVITY * height;
-        let error = (energy / GRAVITY - 1.0).abs();
-        // Flights under other methods than those for free fall round at each step.
-        assert!(error < 1e-13, "{}: energy off by {error:e}", method.name);
-    }
-}
 
 /// A constant force and a weight are the same fall.
 #[test]

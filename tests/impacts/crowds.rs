@@ -1,33 +1,26 @@
-//! A hundred bodies in a closed box: case 26; and heaps.
+//! A hundred bodies in a closed box, beside the case of cubes for long; and heaps.
 
-use kit::bodies::{immovable, wall};
-use kit::meshes::{cube, cuboid};
-use kit::random::Random;
-use kit::worlds::GRAVITY;
+use cases::scenes::{Form, GRAVITY, HALF, continuous, crowd, heap};
+use kit::bodies::immovable;
+use kit::meshes::cuboid;
 use sim_core::{Body, DVec3, Vec3, World};
 
-use crate::worlds::{DT, Kept, ball, bits, mesh_body, run, world};
+use crate::worlds::{DT, ball, bits, mesh_body, run, world};
 
 const HALF_BOX: f64 = 2.5;
-const HALF_CUBE: f64 = 0.25;
 
-/// Places in a grid of 5 by 5 by 4, shaken, that leave cubes and balls apart; velocities of up to
-/// 2 m/s along each axis.
-fn motions() -> impl Iterator<Item = (DVec3, DVec3)> {
-    let mut random = Random::splitmix(26);
-    (0..100).map(move |i| {
-        let cell = DVec3::new(f64::from(i % 5), f64::from(i / 5 % 5), f64::from(i / 25));
-        let place = cell - DVec3::new(2.0, 2.0, 1.5) + 0.2 * random.vector();
-        (place, 2.0 * random.vector())
-    })
+/// Six walls.
+fn half_spaces() -> Vec<Body> {
+    let (scene, _) = crowd(100, &Form::Cube(HALF));
+    let world = continuous(&scene);
+    (0..6).map(|i| world.body(i).to_body()).collect()
 }
 
-fn half_spaces() -> Vec<Body> {
-    [DVec3::X, DVec3::Y, DVec3::Z]
-        .into_iter()
-        .flat_map(|axis| [axis, -axis])
-        .map(|normal| wall(normal, -HALF_BOX * normal, DVec3::ZERO))
-        .collect()
+/// A hundred bodies that move.
+fn movers(form: &Form) -> Vec<Body> {
+    let (scene, _) = crowd(100, form);
+    let world = continuous(&scene);
+    scene.movable().map(|i| world.body(i).to_body()).collect()
 }
 
 /// A closed box as one mesh, around all.
@@ -41,18 +34,18 @@ fn mesh_box() -> Vec<Body> {
 }
 
 /// Runs for 10 s and returns what came out.
-fn assert_kept(name: &str, mut bodies: Vec<Body>, movers: impl Iterator<Item = Body>) -> World {
+fn assert_kept(name: &str, mut bodies: Vec<Body>, movers: Vec<Body>) -> World {
     let walls = bodies.len();
     bodies.extend(movers);
     let mut world = world(DT, &bodies);
     assert!(world.overlapping().is_empty(), "{name}");
-    let kept = Kept::of(&world);
+    let energy = world.kinetic_energy();
     for _ in 0..600 {
         world.step().expect("a step");
     }
     let impacts = world.impacts();
     assert!(impacts > 1000, "{name}: {impacts}");
-    let error = kept.energy_error(&world);
+    let error = (world.kinetic_energy() / energy - 1.0).abs();
     let tolerance = 4e-15 * (impacts as f64).sqrt();
     assert!(
         error <= tolerance,
@@ -61,20 +54,19 @@ fn assert_kept(name: &str, mut bodies: Vec<Body>, movers: impl Iterator<Item = B
     for i in walls..world.len() {
         let farthest = world.position(i).abs().max_element();
         assert!(
-            farthest <= HALF_BOX - HALF_CUBE + 1e-12,
+            farthest <= HALF_BOX - HALF + 1e-12,
             "{name}: {i} is outside"
         );
     }
     world
 }
 
-fn cubes() -> impl Iterator<Item = Body> {
-    let mesh = cube(HALF_CUBE as f32);
-    motions().map(move |(x, v)| mesh_body(&mesh, x, v))
+fn cubes() -> Vec<Body> {
+    movers(&Form::Cube(HALF))
 }
 
-fn balls() -> impl Iterator<Item = Body> {
-    motions().map(|(x, v)| ball(HALF_CUBE, x, v))
+fn balls() -> Vec<Body> {
+    movers(&Form::Ball(HALF))
 }
 
 #[test]
@@ -85,10 +77,7 @@ fn a_hundred_cubes_keep_their_energy_in_their_box() {
         for j in first + 1..world.len() {
             for i in first..j {
                 let apart = (world.position(j) - world.position(i)).abs().max_element();
-                assert!(
-                    apart > 2.0 * HALF_CUBE - 1e-12,
-                    "{name}: {i} and {j} overlap"
-                );
+                assert!(apart > 2.0 * HALF - 1e-12, "{name}: {i} and {j} overlap");
             }
         }
     }
@@ -102,10 +91,7 @@ fn a_hundred_balls_keep_their_energy_in_their_box() {
         for j in first + 1..world.len() {
             for i in first..j {
                 let apart = (world.position(j) - world.position(i)).length();
-                assert!(
-                    apart > 2.0 * HALF_CUBE - 1e-12,
-                    "{name}: {i} and {j} overlap"
-                );
+                assert!(apart > 2.0 * HALF - 1e-12, "{name}: {i} and {j} overlap");
             }
         }
     }
@@ -114,44 +100,17 @@ fn a_hundred_balls_keep_their_energy_in_their_box() {
 #[test]
 fn a_crowd_has_the_same_bits_twice() {
     let [first, second] = [0, 1].map(|_| {
-        let mut world = world(
-            DT,
-            &half_spaces().into_iter().chain(cubes()).collect::<Vec<_>>(),
-        );
+        let mut world = world(DT, &[half_spaces(), cubes()].concat());
         let impacts = run(&mut world, 300);
         (bits(&world), impacts)
     });
     assert_eq!(first, second);
 }
 
-/// Balls of 1 kg that fall in a column of square layers, between walls.
-fn heap(count: usize, restitution: f64) -> World {
-    const RADIUS: f64 = 0.25;
-    let mut random = Random::splitmix(5);
-    let side = 2;
-    let half = 0.3 * side as f64;
-    let mut bodies = vec![wall(DVec3::Y, DVec3::ZERO, DVec3::ZERO)];
-    for normal in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z] {
-        bodies.push(wall(normal, -half * normal, DVec3::ZERO));
-    }
-    for i in 0..count {
-        let cell = [i % side, i / side / side, i / side % side].map(|c| 0.6 * c as f64 + 0.3);
-        let at = DVec3::from_array(cell) - DVec3::new(half, 0.0, half);
-        bodies.push(Body {
-            force: -GRAVITY * DVec3::Y,
-            ..ball(RADIUS, at + 0.02 * random.vector(), DVec3::ZERO)
-        });
-    }
-    for body in &mut bodies {
-        body.restitution = restitution;
-    }
-    world(DT, &bodies)
-}
-
 #[test]
 fn heaps_settle_without_gain() {
     for restitution in [0.0, 0.3, 0.7] {
-        let mut world = heap(12, restitution);
+        let mut world = continuous(&heap(&Form::Ball(HALF), 12, 2, restitution, 0.0));
         let energy = |world: &World| {
             let heights = (5..world.len()).map(|ball| world.position(ball).y);
             world.kinetic_energy() + GRAVITY * heights.sum::<f64>()

@@ -1,4 +1,5 @@
-//! Continuous collisions against exact outcomes: hard cases of impacts.
+//! Continuous collisions against exact outcomes: what is beside the hard cases of `cases`, to whose
+//! verdicts `crates/cases/tests/verdicts.rs` holds them.
 //!
 //! Tolerances are those that doubles allow, written as formulas: `ULP` is the distance from 1 to
 //! the next double, 2u. Positions are sums over steps, so that a rounding a step is granted where
@@ -8,7 +9,6 @@ mod balls;
 mod centres;
 mod chains;
 mod crowds;
-mod discrete;
 mod extents;
 mod forces;
 mod grazing;
@@ -16,6 +16,5 @@ mod meshes;
 mod overlap;
 mod pairs;
 mod random;
-mod shapes;
 mod symmetry;
 mod worlds;

@@ -1,86 +1,20 @@
-//! Meshes on meshes, and through them: cases 11, 12.
+//! Meshes on meshes, and through them, beside the cases of `cases::hard_cases::meshes`.
 
 use std::sync::Arc;
 
-use kit::meshes::{boxes, builtin, cuboid};
+use cases::Verdict;
+use cases::hard_cases::meshes::Encountered;
+use kit::meshes::{builtin, cuboid, sheet, star, torus};
 use sim_core::collide::touch::first_touch;
 use sim_core::{Bvh, DVec3, Mesh, Vec3};
 
-use crate::shapes::{sheet, star, torus};
-use crate::worlds::{DT, Kept, mesh_body, run, run_apart, world};
+use crate::worlds::{DT, mesh_body, run, world};
 
-/// Two meshes that touch when the second one, coming along `way`, is at `touching`.
-struct Encounter {
-    meshes: [Arc<Mesh>; 2],
-    way: DVec3,
-    touching: DVec3,
-}
-
-impl Encounter {
-    fn new(first: &Arc<Mesh>, second: &Arc<Mesh>, way: DVec3) -> Encounter {
-        let way = way.normalize();
-        let (from, motion) = (-16.0 * way, 32.0 * way);
-        let touch = first_touch(&Bvh::build(first), &Bvh::build(second), from, motion);
-        Encounter {
-            meshes: [first.clone(), second.clone()],
-            way,
-            touching: from + touch.expect("they meet").time * motion,
-        }
-    }
-
-    /// Both move, and touch at a phase of the fourth step.
-    fn assert_elastic(&self, speed: f64, phase: u32) {
-        let hit = (3.0 + f64::from(phase) / 16.0) * DT;
-        let velocities = [-0.25, 0.75].map(|part| part * speed * self.way);
-        let bodies = [
-            mesh_body(&self.meshes[0], -velocities[0] * hit, velocities[0]),
-            mesh_body(
-                &self.meshes[1],
-                self.touching - velocities[1] * hit,
-                velocities[1],
-            ),
-        ];
-        let mut world = world(DT, &bodies);
-        let kept = Kept::of(&world);
-        let impacts = run_apart(&mut world, 8);
-        let sizes = self.meshes.each_ref().map(|mesh| mesh.triangles().len());
-        let what = format!(
-            "{sizes:?} along {} at {speed}, phase {phase}, touching {}",
-            self.way, self.touching
-        );
-        let first = impacts
-            .first()
-            .unwrap_or_else(|| panic!("{what}: no impact"));
-        let error = (first.time / hit - 1.0).abs();
-        assert!(error <= 1e-12, "{what}: {} off by {error:e}", first.time);
-        kept.assert(&world, 1e-14, &what);
-    }
-}
-
+#[track_caller]
 fn assert_elastic_at_all_speeds_and_phases(first: &Arc<Mesh>, second: &Arc<Mesh>) {
-    for way in [
-        DVec3::X,
-        DVec3::new(-0.1, 1.0, 0.3),
-        DVec3::new(1.0, -0.7, 2.0),
-    ] {
-        let encounter = Encounter::new(first, second, way);
-        for speed in [1.0, 10.0, 100.0, 1000.0] {
-            for phase in 0..16 {
-                encounter.assert_elastic(speed, phase);
-            }
-        }
-    }
-}
-
-#[test]
-fn cube_and_cow_at_every_speed_and_phase() {
-    assert_elastic_at_all_speeds_and_phases(&builtin("cow.obj"), &builtin("cube.obj"));
-}
-
-#[test]
-fn cow_and_cow_at_every_speed_and_phase() {
-    let cow = builtin("cow.obj");
-    assert_elastic_at_all_speeds_and_phases(&cow, &cow);
+    let all = Encountered::of(first, second).expect("steps");
+    let finding = all.finding();
+    assert_eq!(finding.verdict, Verdict::Pass, "{finding:?}");
 }
 
 #[test]
@@ -165,38 +99,6 @@ fn the_impact_is_when_the_earliest_features_touch() {
         let time = impacts.first().expect("an impact").time;
         let error = (time / exact - 1.0).abs();
         assert!(error <= 1e-12, "{offset}: {time} and not {exact}");
-    }
-}
-
-/// A channel 1 m wide, open above and at its ends, along z.
-fn channel() -> Arc<Mesh> {
-    boxes(&[
-        [Vec3::new(-0.5, -1.0, -4.0), Vec3::new(0.5, -0.5, 4.0)],
-        [Vec3::new(-1.0, -1.0, -4.0), Vec3::new(-0.5, 0.5, 4.0)],
-        [Vec3::new(0.5, -1.0, -4.0), Vec3::new(1.0, 0.5, 4.0)],
-    ])
-}
-
-#[test]
-fn a_peg_passes_its_channel_untouched_and_a_wider_one_does_not() {
-    let channel = channel();
-    for speed in [1.0, 30.0, 1000.0] {
-        for (clearance, passes) in [(1e-6, true), (-1e-6, false)] {
-            let peg = cuboid(Vec3::new(0.5 - clearance, 0.4, 0.5));
-            let velocity = DVec3::new(0.0, 0.0, speed);
-            let bodies = [
-                mesh_body(&channel, DVec3::ZERO, DVec3::ZERO),
-                mesh_body(&peg, DVec3::new(0.0, 0.0, -6.0), velocity),
-            ];
-            let mut world = world(DT, &bodies);
-            let steps = (12.0 / speed / DT).ceil() as u64;
-            let impacts = run_apart(&mut world, steps);
-            assert_eq!(impacts.is_empty(), passes, "at {speed}: {impacts:?}");
-            if passes {
-                assert_eq!(world.velocity(1), velocity);
-                assert!(world.position(1).z > 5.0);
-            }
-        }
     }
 }
 

@@ -6,7 +6,7 @@ use kit::worlds::meeting;
 use proptest::prelude::*;
 use sim_core::{Body, DVec3, Mesh, Shape, Vec3, World};
 
-use crate::worlds::{DT, Kept, run_apart, world};
+use crate::worlds::{DT, run_apart, world};
 
 /// Triangles between random points of a coarse grid, where much is degenerate and touches exactly,
 /// or of a fine one, where nothing does. `None` if they make no mesh.
@@ -60,6 +60,37 @@ fn apart(bodies: &[Option<Body>]) -> Option<World> {
     let bodies: Option<Vec<Body>> = bodies.iter().cloned().collect();
     let world = world(DT, &bodies?);
     world.overlapping().is_empty().then_some(world)
+}
+
+/// What a force-free elastic world must keep.
+struct Kept {
+    energy: f64,
+    momentum: DVec3,
+    /// Sum of all momenta's lengths.
+    scale: f64,
+}
+
+impl Kept {
+    fn of(world: &World) -> Kept {
+        let movable = (0..world.len()).filter(|&i| world.kind(i).is_movable());
+        Kept {
+            energy: world.kinetic_energy(),
+            momentum: world.momentum(),
+            scale: movable
+                .map(|i| world.mass(i) * world.velocity(i).length())
+                .sum(),
+        }
+    }
+
+    /// Relative change of the energy.
+    fn energy_error(&self, world: &World) -> f64 {
+        (world.kinetic_energy() / self.energy - 1.0).abs()
+    }
+
+    /// Change of the momentum, of the sum of momenta.
+    fn momentum_error(&self, world: &World) -> f64 {
+        (world.momentum() - self.momentum).length() / self.scale
+    }
 }
 
 proptest! {

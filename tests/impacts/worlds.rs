@@ -69,47 +69,6 @@ fn assert_apart(world: &World, trees: &[Option<Bvh>]) {
     }
 }
 
-/// What a force-free elastic world must keep.
-pub(crate) struct Kept {
-    energy: f64,
-    momentum: DVec3,
-    /// Sum of all momenta's lengths.
-    scale: f64,
-}
-
-impl Kept {
-    pub(crate) fn of(world: &World) -> Kept {
-        let movable = (0..world.len()).filter(|&i| world.kind(i).is_movable());
-        Kept {
-            energy: world.kinetic_energy(),
-            momentum: world.momentum(),
-            scale: movable
-                .map(|i| world.mass(i) * world.velocity(i).length())
-                .sum(),
-        }
-    }
-
-    /// Relative change of the energy.
-    pub(crate) fn energy_error(&self, world: &World) -> f64 {
-        (world.kinetic_energy() / self.energy - 1.0).abs()
-    }
-
-    /// Change of the momentum, of the sum of momenta.
-    pub(crate) fn momentum_error(&self, world: &World) -> f64 {
-        (world.momentum() - self.momentum).length() / self.scale
-    }
-
-    #[track_caller]
-    pub(crate) fn assert(&self, world: &World, tolerance: f64, what: &str) {
-        let (energy, momentum) = (self.energy_error(world), self.momentum_error(world));
-        assert!(energy <= tolerance, "{what}: energy off by {energy:e}");
-        assert!(
-            momentum <= tolerance,
-            "{what}: momentum off by {momentum:e}"
-        );
-    }
-}
-
 /// Positions and velocities, bit by bit.
 pub(crate) fn bits(world: &World) -> Vec<[u64; 6]> {
     (0..world.len())

@@ -1,4 +1,4 @@
-//! What the tests of this package share: numbers, shapes, bodies, worlds, and oracles.
+//! What tests, cases and benchmarks share: numbers, shapes, bodies, worlds, and oracles.
 
 pub mod agree;
 pub mod bodies;
@@ -8,7 +8,6 @@ mod hostile;
 pub mod inputs;
 pub mod meshes;
 pub mod oracle;
-pub mod problems;
 pub mod random;
 pub mod rational;
 pub mod shapes;

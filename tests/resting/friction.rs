@@ -1,5 +1,6 @@
 //! Coulomb friction of bodies that translate.
 
+use cases::scenes::{landing_way, sliding_way};
 use kit::shapes::{ball, cube};
 use kit::worlds::{GRAVITY, set_rate, step};
 use sim_core::{Body, BodyKind, DVec3, METHODS, Method, World};
@@ -21,7 +22,7 @@ fn on_floor(method: &'static Method, friction: f64, body: Body) -> World {
 #[test]
 fn what_slides_comes_to_rest_where_it_must() {
     let (friction, speed) = (0.4, 5.0);
-    let way = speed * speed / (2.0 * friction * GRAVITY);
+    let way = sliding_way(speed, friction);
     let mut slides = 0;
     for method in METHODS {
         for shape in [ball(0.5), cube()] {
@@ -383,9 +384,7 @@ fn what_lands_slides_to_its_exact_end() {
                 step(&mut world, 1);
                 assert_eq!(world.bundled().bodies, 0, "dropped by {height} m");
             }
-            let falling = (2.0 * height / GRAVITY).sqrt();
-            let left = speed - friction * GRAVITY * falling;
-            let way = speed * falling + left * left / (2.0 * friction * GRAVITY);
+            let way = landing_way(height, speed, friction);
             let off = world.position(1).x - way;
             assert!(off.abs() < 1e-9, "dropped by {height} m: off by {off:e} m");
             assert_eq!(world.velocity(1), DVec3::ZERO);

@@ -1,134 +1,24 @@
-//! Energy and momentum over a long time, in worlds as a program steps them.
+//! Energy and momentum over a long time, by every method.
 
-use std::f64::consts::PI;
+use cases::drift;
+use sim_core::{METHODS, Method};
 
-use sim_core::{Body, DVec3, Force, METHODS, Method, Settings, World};
-
-use crate::problems;
 use crate::scope::Scope;
 
-/// Steps of each orbit.
-pub(crate) const STEPS: usize = 1000;
-
-/// Eccentricity of the orbit.
-pub(crate) const ECCENTRICITY: f64 = 0.6;
-
-/// What a method does to the invariants of a planet's motion.
+/// What a method does to the invariants of a planet's motion, and to the momentum of seven stars.
 #[derive(Debug)]
 pub(crate) struct Drift {
     pub(crate) method: &'static Method,
-    /// One for each orbit done.
-    pub(crate) orbits: Vec<Orbit>,
-    /// Why there are not more.
-    pub(crate) failure: Option<String>,
-    /// Change of the total momentum of the Pleiades in 3 s, relative to the sum of all `m |v|`.
+    pub(crate) planet: drift::Drift,
     pub(crate) pleiades: Result<f64, String>,
-}
-
-/// The greatest relative errors within an orbit.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Orbit {
-    pub(crate) energy: f64,
-    pub(crate) angular_momentum: f64,
-}
-
-impl Drift {
-    /// Growth of the energy error per orbit: the slope of a straight line through all orbits.
-    pub(crate) fn energy_slope(&self) -> f64 {
-        let n = self.orbits.len() as f64;
-        let middle = 0.5 * (n - 1.0);
-        let deviations = || (0..self.orbits.len()).map(|i| i as f64 - middle);
-        let weighed = deviations().zip(&self.orbits).map(|(d, o)| d * o.energy);
-        weighed.sum::<f64>() / deviations().map(|d| d * d).sum::<f64>()
-    }
-
-    /// The greatest energy error of all.
-    pub(crate) fn energy(&self) -> f64 {
-        self.orbits.iter().map(|o| o.energy).fold(0.0, f64::max)
-    }
 }
 
 /// Watches every method.
 pub(crate) fn measure(scope: Scope) -> Vec<Drift> {
-    let drifts = METHODS.into_iter().map(|method| {
-        let (orbits, failure) = orbits(method, scope.orbits());
-        Drift {
-            method,
-            orbits,
-            failure,
-            pleiades: pleiades(method),
-        }
+    let drifts = METHODS.into_iter().map(|method| Drift {
+        method,
+        planet: drift::orbits(method, scope.orbits()),
+        pleiades: drift::pleiades(method),
     });
     drifts.collect()
-}
-
-fn settings(method: &'static Method, dt: f64) -> Settings {
-    Settings {
-        dt,
-        method,
-        ..Settings::default()
-    }
-}
-
-fn orbits(method: &'static Method, count: usize) -> (Vec<Orbit>, Option<String>) {
-    let e = ECCENTRICITY;
-    let planet = Body {
-        position: (1.0 - e) * DVec3::X,
-        velocity: ((1.0 + e) / (1.0 - e)).sqrt() * DVec3::Y,
-        ..Body::default()
-    };
-    let pull = Force::Attraction {
-        body: None,
-        centre: DVec3::ZERO,
-        strength: 1.0,
-    };
-    let world = world(settings(method, 2.0 * PI / STEPS as f64), [planet], pull);
-    let Ok(mut world) = world else {
-        return (Vec::new(), Some("the world was refused".into()));
-    };
-    let energy = |world: &World| world.kinetic_energy() + world.potential_energy();
-    let spin = |world: &World| world.position(0).cross(world.velocity(0)).z;
-    let (energy_at_start, spin_at_start) = (energy(&world), spin(&world));
-    let off = |now: f64, start: f64| (now / start - 1.0).abs();
-    let mut orbits = Vec::new();
-    for _ in 0..count {
-        let mut orbit = Orbit::default();
-        for _ in 0..STEPS {
-            if let Err(error) = world.step() {
-                return (orbits, Some(error.to_string()));
-            }
-            orbit.energy = orbit.energy.max(off(energy(&world), energy_at_start));
-            let change = off(spin(&world), spin_at_start);
-            orbit.angular_momentum = orbit.angular_momentum.max(change);
-        }
-        orbits.push(orbit);
-    }
-    (orbits, None)
-}
-
-fn pleiades(method: &'static Method) -> Result<f64, String> {
-    let stars = problems::pleiades::stars();
-    let gravitation = Force::Gravitation { constant: 1.0 };
-    let world = world(settings(method, 1e-3), stars, gravitation);
-    let mut world = world.map_err(|error| error.to_string())?;
-    let start = world.momentum();
-    let sizes = (0..world.len()).map(|i| world.mass(i) * world.velocity(i).length());
-    let size: f64 = sizes.sum();
-    for _ in 0..3000 {
-        world.step().map_err(|error| error.to_string())?;
-    }
-    Ok((world.momentum() - start).length() / size)
-}
-
-fn world(
-    settings: Settings,
-    bodies: impl IntoIterator<Item = Body>,
-    force: Force,
-) -> Result<World, sim_core::WorldError> {
-    let mut world = World::new(settings)?;
-    for body in bodies {
-        world.add(body)?;
-    }
-    world.add_force(force)?;
-    Ok(world)
 }

@@ -30,7 +30,7 @@ pub(crate) fn facts() -> Vec<(&'static str, String)> {
         (
             "Flags",
             format!(
-                "profile {}, opt-level {}, codegen-units 1 for sim-core, the peers and the report \
+                "profile {}, opt-level {}, codegen-units 1 for sim-core, the peers, the cases and the report \
                  alike, {flags}, target features {}",
                 env!("REPORT_PROFILE"),
                 env!("REPORT_OPT_LEVEL"),

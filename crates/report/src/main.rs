@@ -9,16 +9,13 @@
 mod collisions;
 mod contact;
 mod drift;
-mod hard_cases;
 mod machine;
 mod page;
 mod plots;
-mod problems;
 mod resting;
 mod results;
 mod runs;
 mod scope;
-mod solvers;
 mod stability;
 mod stopwatch;
 mod table;
@@ -110,7 +107,7 @@ mod tests {
         let page = read("index.html");
         let methods = sim_core::METHODS.iter().map(|m| m.title);
         let problems = results.diagrams.iter().map(|diagram| diagram.card.title);
-        let cases = hard_cases::CASES.iter().map(|case| case.title);
+        let cases = cases::CASES.iter().map(|case| case.title);
         for name in methods.chain(problems).chain(cases) {
             let escaped = name.replace('&', "&amp;");
             assert!(page.contains(&escaped), "{name}");

@@ -1,8 +1,8 @@
 //! The page: one HTML file that needs nothing else.
 
+use cases::CASES;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::hard_cases::CASES;
 use crate::plots::{Figure, Plot};
 use crate::results::Results;
 use crate::scope::Scope;
@@ -126,7 +126,8 @@ fn hard_cases(results: &Results) -> Markup {
         p {
             "Cases with a known outcome. A cell is the verdict and the figure that decides it; the \
              tolerances and the reasons are in the table after it. A method that fails a case it was \
-             not made for is shown as failing it."
+             not made for is shown as failing it; the table also has the verdict that each case's row \
+             expects, to which the tests hold it."
         }
         div.wide { (tables::matrix(results).html()) }
         dl {

@@ -1,10 +1,11 @@
 //! Everything that is measured, in the order in which it is.
 
+use cases::hard_cases::attempt_all;
+use cases::{Outcome, problems};
+
 use crate::collisions::{self, Collisions};
 use crate::contact;
 use crate::drift::{self, Drift};
-use crate::hard_cases::{self, Measured, Outcome};
-use crate::problems;
 use crate::resting::{self, Resting};
 use crate::runs::{self, Diagram};
 use crate::scope::Scope;
@@ -48,10 +49,7 @@ pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
     progress("stability");
     let stability = stability::measure(scope);
     progress("hard cases");
-    let cases = hard_cases::measure(&Measured {
-        diagrams: &diagrams,
-        drifts: &drifts,
-    });
+    let cases = attempt_all();
     Results {
         diagrams,
         drifts,

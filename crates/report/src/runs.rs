@@ -1,10 +1,10 @@
 //! Sweeps of step length and tolerance: what each run has cost and reached.
 
+use cases::problems::{Card, Effort, End, Solve};
+use cases::solvers::{SOLVERS, Solver};
 use sim_core::{METHODS, Method};
 
-use crate::problems::{Card, Effort, End, Solve};
 use crate::scope::Scope;
-use crate::solvers::{SOLVERS, Solver};
 use crate::stopwatch;
 
 /// Who has solved a problem.

@@ -1,9 +1,9 @@
 //! The tables of the page.
 
+use cases::problems::Effort;
+use cases::{CASES, Outcome, Verdict};
 use sim_core::METHODS;
 
-use crate::hard_cases::{CASES, Outcome, Verdict};
-use crate::problems::Effort;
 use crate::results::Results;
 use crate::runs::{Diagram, Point, Series, Who};
 use crate::table::{Table, seconds, short};
@@ -228,16 +228,17 @@ pub(crate) fn drift(results: &Results) -> Table {
     let title = "Relative drift: Kepler e = 0.6 at 1,000 steps an orbit, Pleiades at dt = 1 ms";
     let mut table = Table::new("drift", title, &head);
     for drift in &results.drifts {
-        let spins = drift.orbits.iter().map(|orbit| orbit.angular_momentum);
+        let planet = &drift.planet;
+        let spins = planet.orbits.iter().map(|orbit| orbit.angular_momentum);
         let spin = spins.fold(0.0, f64::max);
         table.rows.push(vec![
             drift.method.title.into(),
-            match &drift.failure {
-                Some(_) => format!("{}, then it fails", drift.orbits.len()),
-                None => drift.orbits.len().to_string(),
+            match &planet.failure {
+                Some(_) => format!("{}, then it fails", planet.orbits.len()),
+                None => planet.orbits.len().to_string(),
             },
-            short(drift.energy()),
-            short(drift.energy_slope()),
+            short(planet.energy()),
+            short(planet.energy_slope()),
             short(spin),
             drift.pleiades.clone().map_or_else(|error| error, short),
         ]);
@@ -320,6 +321,7 @@ pub(crate) fn hard_cases(results: &Results) -> Table {
         "figure",
         "tolerance",
         "verdict",
+        "expected",
         "why",
     ];
     let mut table = Table::new("hard-cases", "Hard cases, one by one", &head);
@@ -332,6 +334,7 @@ pub(crate) fn hard_cases(results: &Results) -> Table {
             finding.figure.map(short).unwrap_or_default(),
             finding.tolerance.map(short).unwrap_or_default(),
             finding.verdict.name().into(),
+            outcome.case.expected(outcome.method).name().into(),
             finding.why.clone(),
         ]);
     }
@@ -376,10 +379,10 @@ pub(crate) fn collisions(results: &Results) -> Table {
                 scene.name.into(),
                 run.speed.to_string(),
                 run.rate.to_string(),
-                run.engine.name().into(),
-                run.time.map_or("no impact".into(), short),
-                short(run.position),
-                short(run.energy),
+                run.who.name().into(),
+                run.found.time.map_or("no impact".into(), short),
+                short(run.found.error),
+                short(run.found.energy),
                 seconds(run.seconds),
             ]);
         }
@@ -422,11 +425,11 @@ pub(crate) fn resting(results: &Results) -> Table {
             table.rows.push(vec![
                 scene.name.into(),
                 run.rate.to_string(),
-                run.engine.name().into(),
-                short(run.error),
-                short(run.overlap),
-                short(run.rise),
-                run.bundled.map_or("–".into(), short),
+                run.who.name().into(),
+                short(run.found.error),
+                short(run.found.overlap),
+                short(run.found.rise),
+                run.found.bundled.map_or("–".into(), short),
                 seconds(run.seconds),
             ]);
         }

@@ -1,58 +1,22 @@
 //! Collisions: error against the time of a step, over the length of a step and over speed.
 
 mod bounce;
-mod ours;
-mod rapier;
-mod scenes;
 
 pub(crate) use bounce::Bounce;
-use scenes::{End, Scene};
+use cases::scenes::{self, COLLISIONS, Known, Who};
 
 use crate::scope::Scope;
 use crate::stopwatch;
 
-/// Who steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Engine {
-    Continuous,
-    Discrete,
-    Rapier,
-}
-
-impl Engine {
-    pub(crate) const ALL: [Engine; 3] = [Engine::Continuous, Engine::Discrete, Engine::Rapier];
-
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Engine::Continuous => "continuous",
-            Engine::Discrete => "discrete",
-            Engine::Rapier => "Rapier f64",
-        }
-    }
-
-    fn run(self, scene: &Scene, rate: u32) -> (End, f64) {
-        match self {
-            Engine::Continuous => ours::run(scene, rate, sim_core::Collision::Continuous),
-            Engine::Discrete => ours::run(scene, rate, sim_core::Collision::Bvh),
-            Engine::Rapier => rapier::run(scene, rate),
-        }
-    }
-}
-
 /// A run and what it got wrong.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
-    pub(crate) engine: Engine,
+    pub(crate) who: Who,
     /// Steps a second.
     pub(crate) rate: u32,
     /// m/s.
     pub(crate) speed: f64,
-    /// Of the first impact, s; `None` if there was none.
-    pub(crate) time: Option<f64>,
-    /// Of the ends, parts of the way.
-    pub(crate) position: f64,
-    /// Of the kinetic energy, or of the whole under gravity, relative.
-    pub(crate) energy: f64,
+    pub(crate) found: scenes::Run,
     /// Of one step, s.
     pub(crate) seconds: f64,
 }
@@ -75,17 +39,15 @@ pub(crate) struct Collisions {
 pub(crate) const SPEED: f64 = 10.0;
 pub(crate) const RATE: u32 = 60;
 const RATES: [u32; 6] = [30, 60, 120, 240, 480, 960];
-const SPEEDS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 
 pub(crate) fn measure(scope: Scope) -> Collisions {
-    let scenes = scenes::FAMILIES.iter().map(|family| {
+    let scenes = COLLISIONS.iter().map(|family| {
         let mut runs = Vec::new();
-        for &speed in &SPEEDS[..family.speeds] {
-            let scene = (family.make)(speed);
+        for &speed in family.speeds {
             for rate in RATES {
-                for engine in Engine::ALL {
-                    runs.push(run(engine, &scene, rate, speed, scope));
-                }
+                let known = (family.make)(speed).at_rate(rate);
+                let run = |&who| run(who, &known, rate, speed, scope);
+                runs.extend(Who::ALL.iter().map(run));
             }
         }
         Scenes {
@@ -101,19 +63,28 @@ pub(crate) fn measure(scope: Scope) -> Collisions {
     }
 }
 
-/// The error, from one run, and the median time of several.
-fn run(engine: Engine, scene: &Scene, rate: u32, speed: f64, scope: Scope) -> Run {
-    let (end, seconds) = engine.run(scene, rate);
-    let more = (1..scope.repeats()).map(|_| engine.run(scene, rate).1);
-    let mut samples: Vec<f64> = more.chain([seconds]).collect();
-    let steps = f64::from(scene.steps(rate));
+/// The error, from one run, and the median time of others.
+fn run(who: Who, known: &Known, rate: u32, speed: f64, scope: Scope) -> Run {
+    let times = (0..scope.repeats()).map(|_| seconds(who, known));
+    let mut samples: Vec<f64> = times.collect();
     Run {
-        engine,
+        who,
         rate,
         speed,
-        time: end.time.map(|time| (time - scene.impact).abs()),
-        position: scene.position_error(&end),
-        energy: scene.energy_error(&end),
-        seconds: stopwatch::middle(&mut samples) / steps,
+        found: known.run(who),
+        seconds: stopwatch::middle(&mut samples),
     }
+}
+
+/// Mean time of a step, s, of a run at which nothing looks.
+pub(crate) fn seconds(who: Who, known: &Known) -> f64 {
+    let mut engine = who.start(&known.scene);
+    let steps = known.steps();
+    let ((), seconds) = stopwatch::timed(|| {
+        for _ in 0..steps {
+            // What fails is told by where it leaves the bodies.
+            let _ = engine.step();
+        }
+    });
+    seconds / f64::from(steps)
 }

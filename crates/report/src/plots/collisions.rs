@@ -1,12 +1,13 @@
 //! Collisions: error against the time of a step and against speed; bounces by method.
 
+use cases::scenes::Who;
 use kuva::plot::LineStyle;
 use kuva::plot::scatter::MarkerShape;
 
 use super::panel::{self, Axis, Line, Panel};
 use super::style::Style;
 use super::{Figure, Plot};
-use crate::collisions::{Engine, RATE, Run, SPEED, Scenes};
+use crate::collisions::{RATE, Run, SPEED, Scenes};
 use crate::results::Results;
 
 pub(super) static PLOT: Plot = Plot {
@@ -28,14 +29,14 @@ fn draw(results: &Results) -> Vec<Figure> {
     scenes.chain([of_methods(results)]).collect()
 }
 
-pub(super) fn style(engine: Engine) -> Style {
-    let (color, marker, line) = match engine {
-        Engine::Continuous => ("#0072b2", MarkerShape::Circle, LineStyle::Solid),
-        Engine::Discrete => ("#009e73", MarkerShape::Square, LineStyle::DashDot),
-        Engine::Rapier => ("#d55e00", MarkerShape::Triangle, LineStyle::Dashed),
+pub(super) fn style(who: Who) -> Style {
+    let (color, marker, line) = match who {
+        Who::Continuous => ("#0072b2", MarkerShape::Circle, LineStyle::Solid),
+        Who::Discrete => ("#009e73", MarkerShape::Square, LineStyle::DashDot),
+        Who::Rapier => ("#d55e00", MarkerShape::Triangle, LineStyle::Dashed),
     };
     Style {
-        label: engine.name(),
+        label: who.name(),
         color,
         marker,
         line,
@@ -43,16 +44,16 @@ pub(super) fn style(engine: Engine) -> Style {
 }
 
 fn of_scene(scene: &Scenes) -> Figure {
-    let error = |run: &Run| run.position.max(LEAST_ERROR);
+    let error = |run: &Run| run.found.error.max(LEAST_ERROR);
     let fastest = scene.runs.iter().map(|run| run.speed).fold(0.0, f64::max);
     let speed = SPEED.min(fastest);
     let lines = |is_drawn: &dyn Fn(&Run) -> bool, x: &dyn Fn(&Run) -> f64| -> Vec<Line> {
-        let lines = Engine::ALL.into_iter().map(|engine| {
-            let runs = scene.runs.iter().filter(|run| run.engine == engine);
+        let lines = Who::ALL.iter().map(|&who| {
+            let runs = scene.runs.iter().filter(|run| run.who == who);
             let points = runs
                 .filter(|run| is_drawn(run))
                 .map(|run| (x(run), error(run)));
-            (style(engine), points.collect())
+            (style(who), points.collect())
         });
         lines.collect()
     };
@@ -79,11 +80,12 @@ fn of_scene(scene: &Scenes) -> Figure {
             few_markers: false,
         },
     };
+    let styles: Vec<Style> = Who::ALL.iter().map(|&who| style(who)).collect();
     Figure {
         name: format!("collisions-{}", scene.name),
         heading: Some(scene.title),
         caption: scene.about.into(),
-        svg: panel::draw([left, right], &y, &Engine::ALL.map(style)),
+        svg: panel::draw([left, right], &y, &styles),
     }
 }
 

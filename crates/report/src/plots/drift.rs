@@ -1,9 +1,10 @@
 //! Energy and angular momentum of a planet, orbit after orbit.
 
+use cases::drift::Orbit;
+
 use super::panel::{self, Axis, Line, Panel};
 use super::style::Style;
 use super::{Figure, Plot};
-use crate::drift::Orbit;
 use crate::results::Results;
 
 pub(super) static PLOT: Plot = Plot {
@@ -22,7 +23,7 @@ const LEAST_ERROR: f64 = 1e-17;
 fn draw(results: &Results) -> Vec<Figure> {
     let lines = |error: &dyn Fn(&Orbit) -> f64| -> Vec<Line> {
         let lines = results.drifts.iter().map(|drift| {
-            let orbits = drift.orbits.iter().enumerate();
+            let orbits = drift.planet.orbits.iter().enumerate();
             let points = orbits.map(|(i, orbit)| (1.0 + i as f64, error(orbit).max(LEAST_ERROR)));
             (Style::of_method(drift.method), points.collect())
         });
@@ -34,7 +35,7 @@ fn draw(results: &Results) -> Vec<Figure> {
     let values = all.flat_map(|(_, points)| points.iter().map(|p| p.1));
     // An energy error of a thousand is as good as one of one.
     let y = Axis::log("relative error", values.map(|error| error.min(1e3)));
-    let orbits = results.drifts.iter().map(|d| d.orbits.len()).max();
+    let orbits = results.drifts.iter().map(|d| d.planet.orbits.len()).max();
     let x = Axis {
         label: "orbits".into(),
         range: [0.0, orbits.unwrap_or(1) as f64],
@@ -48,11 +49,11 @@ fn draw(results: &Results) -> Vec<Figure> {
         few_markers: true,
     });
     let failures = results.drifts.iter().filter_map(|drift| {
-        let failure = drift.failure.as_ref()?;
+        let failure = drift.planet.failure.as_ref()?;
         Some(format!(
             "{} ends in orbit {}: {failure}.",
             drift.method.title,
-            drift.orbits.len() + 1
+            drift.planet.orbits.len() + 1
         ))
     });
     vec![Figure {

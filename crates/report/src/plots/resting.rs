@@ -24,14 +24,11 @@ fn draw(results: &Results) -> Vec<Figure> {
 }
 
 fn of_scene(scene: &Resting) -> Figure {
-    let error = |run: &Run| run.error.max(LEAST_ERROR);
+    let error = |run: &Run| run.found.error.max(LEAST_ERROR);
     let lines = |x: &dyn Fn(&Run) -> f64| -> Vec<Line> {
-        let lines = ENGINES.into_iter().map(|engine| {
-            let runs = scene.runs.iter().filter(|run| run.engine == engine);
-            (
-                style(engine),
-                runs.map(|run| (x(run), error(run))).collect(),
-            )
+        let lines = ENGINES.into_iter().map(|who| {
+            let runs = scene.runs.iter().filter(|run| run.who == who);
+            (style(who), runs.map(|run| (x(run), error(run))).collect())
         });
         lines.collect()
     };

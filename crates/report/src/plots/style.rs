@@ -1,10 +1,9 @@
 //! How a method or solver is drawn: told apart by marker and dashes where there is no colour.
 
+use cases::solvers::{Kind, Solver};
 use kuva::plot::scatter::MarkerShape;
 use kuva::plot::{LegendEntry, LegendShape, LineStyle};
 use sim_core::{METHODS, Method};
-
-use crate::solvers::{Kind, Solver};
 
 #[derive(Clone, Debug)]
 pub(super) struct Style {

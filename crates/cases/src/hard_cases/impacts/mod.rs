@@ -1,0 +1,78 @@
+//! Cases 9 to 27 and 29: impacts.
+
+pub mod balls;
+pub mod chains;
+pub(super) mod crowd;
+pub mod meshes;
+pub(super) mod pairs;
+pub mod symmetry;
+
+use std::sync::Arc;
+
+use kit::bodies::body;
+use kit::shapes;
+use sim_core::{Body, Collision, DVec3, Impact, Mesh, Settings, Shape, StepError, World};
+
+use super::{Finding, Tried};
+
+const ULP: f64 = f64::EPSILON;
+const DT: f64 = 1.0 / 60.0;
+const PHASES: u32 = 16;
+
+fn settings(dt: f64) -> Settings {
+    Settings {
+        dt,
+        collision: Collision::Continuous,
+        tolerance: 1e-13,
+        // Velocity Verlet is exact in flight.
+        ..Settings::default()
+    }
+}
+
+fn run(world: &mut World, steps: u64) -> Result<Vec<Impact>, StepError> {
+    let mut impacts = Vec::new();
+    for _ in 0..steps {
+        world.step_reporting(&mut impacts)?;
+    }
+    Ok(impacts)
+}
+
+fn ball(radius: f64, position: DVec3, velocity: DVec3) -> Body {
+    body(&shapes::ball(radius), position, velocity)
+}
+
+fn mesh(mesh: &Arc<Mesh>, position: DVec3, velocity: DVec3) -> Body {
+    body(&Shape::Mesh(mesh.clone()), position, velocity)
+}
+
+/// The greatest of some figures; a figure that is none is the greatest.
+fn worst(figures: impl IntoIterator<Item = f64>) -> f64 {
+    figures
+        .into_iter()
+        .fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
+}
+
+/// Relative change of the kinetic energy, and change of the momentum, of the sum of momenta.
+fn lost(world: &World, start: &World) -> f64 {
+    let energy = world.kinetic_energy() / start.kinetic_energy() - 1.0;
+    let all = (0..start.len()).filter(|&i| start.kind(i).is_movable());
+    let momenta: f64 = all
+        .map(|i| start.mass(i) * start.velocity(i).length())
+        .sum();
+    let momentum = (world.momentum() - start.momentum()).length() / momenta;
+    energy.abs().max(momentum)
+}
+
+fn motions(world: &World) -> Vec<(DVec3, DVec3)> {
+    (0..world.len())
+        .map(|i| (world.position(i), world.velocity(i)))
+        .collect()
+}
+
+/// Greatest difference of positions and velocities, by component.
+fn apart(first: &[(DVec3, DVec3)], second: &[(DVec3, DVec3)]) -> f64 {
+    worst(first.iter().zip(second).map(|(a, b)| {
+        let (x, v) = ((a.0 - b.0).abs(), (a.1 - b.1).abs());
+        x.max_element().max(v.max_element())
+    }))
+}

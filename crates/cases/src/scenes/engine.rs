@@ -1,0 +1,75 @@
+//! Who steps scenes: one trait for ours and for peers.
+
+use sim_core::{Bundled, Collision, DVec3, StepError};
+
+use super::{Scene, ours};
+
+/// A scene that is stepped.
+pub trait Engine {
+    /// Makes a step.
+    fn step(&mut self) -> Result<(), StepError>;
+
+    /// Makes a step, and tells when the first impact in it was, s.
+    fn step_noting(&mut self) -> Result<Option<f64>, StepError>;
+
+    /// Of a body, m.
+    fn position(&self, body: usize) -> DVec3;
+
+    /// Of a body, m/s.
+    fn velocity(&self, body: usize) -> DVec3;
+
+    /// Of all bodies, J.
+    fn kinetic_energy(&self) -> f64;
+
+    /// What solving contacts at once has cost in the last step, where that is known.
+    fn bundled(&self) -> Option<Bundled> {
+        None
+    }
+}
+
+/// An engine by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Who {
+    /// Ours, by times of impact.
+    Continuous,
+    /// Ours, by what meets at the end of a step.
+    Discrete,
+    /// `rapier3d-f64`.
+    #[cfg(feature = "rapier3d-f64")]
+    Rapier,
+}
+
+impl Who {
+    /// All that are compiled in.
+    pub const ALL: &[Who] = &[
+        Who::Continuous,
+        Who::Discrete,
+        #[cfg(feature = "rapier3d-f64")]
+        Who::Rapier,
+    ];
+
+    /// Whether contacts last: the discrete mode has none.
+    pub fn has_contacts(self) -> bool {
+        self != Who::Discrete
+    }
+
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Who::Continuous => "continuous",
+            Who::Discrete => "discrete",
+            #[cfg(feature = "rapier3d-f64")]
+            Who::Rapier => "Rapier f64",
+        }
+    }
+
+    /// A scene at its start.
+    pub fn start(self, scene: &Scene) -> Box<dyn Engine> {
+        match self {
+            Who::Continuous => Box::new(ours::continuous(scene)),
+            Who::Discrete => Box::new(ours::world(scene, Collision::Bvh, "velocity-verlet")),
+            #[cfg(feature = "rapier3d-f64")]
+            Who::Rapier => Box::new(super::Rapier::new(scene)),
+        }
+    }
+}
