@@ -6,7 +6,7 @@ use kit::shapes::cow;
 use kit::worlds::add_gravity;
 use sim_core::{Body, DVec3, Shape, collide::Place, collide::locate};
 
-use crate::scenes::{judge, world};
+use crate::scenes::{judge, judge_from, world};
 use crate::shapes::{cube, globe, tetrahedron};
 
 /// Points that share a room, each of which meets its walls only.
@@ -91,4 +91,10 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
 #[test]
 fn points_stay_in_their_rooms() {
     judge(25, case);
+}
+
+/// One slid over two triangles that are in one plane but for f32, and past the seam of a wall.
+#[test]
+fn points_that_slip_through_a_seam_are_put_back() {
+    judge_from(288, 1, case);
 }

@@ -4,6 +4,8 @@
 //! slide along each other, or that have been placed exactly face to face; they are moved apart
 //! along a normal of where they touch, by units in the last place; those that have just been placed, by
 //! as much as the f32 of their vertices is rounded. An overlap is deeper than that and stays one.
+//!
+//! A point that has come to the other side of a closed mesh counts as one that meets it, so none gets out.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -12,7 +14,8 @@ use glam::DVec3;
 use super::super::{layout::Layout, record::Record, scene::Scene, state::State, stepping::Cause};
 use super::{contact_set::ContactSet, solver::ContactSolver};
 use crate::{
-    collide::{first_contact, parting_normals, snap},
+    Shape,
+    collide::{first_contact, locate, parting_normals, segment_meets, snap},
     rotation::spin,
 };
 
@@ -172,7 +175,29 @@ impl Correction<'_> {
     }
 
     fn meet_now(&mut self, i: usize, j: usize) -> bool {
-        self.scene.may_collide(i, j) && self.scene.bodies.meet_in(self.end, i, j)
+        self.scene.may_collide(i, j)
+            && (self.scene.bodies.meet_in(self.end, i, j) || self.has_changed_sides(i, j))
+    }
+
+    /// Whether a sphere that is no larger than what rounding hides has gone through the surface of a closed mesh.
+    /// Larger ones would have to meet it on the way.
+    fn has_changed_sides(&self, i: usize, j: usize) -> bool {
+        let bodies = self.scene.bodies;
+        let (mesh, sphere, radius) = match (bodies.shape(i), bodies.shape(j)) {
+            (Some(Shape::Mesh(_)), Some(&Shape::Sphere { radius })) => (i, j, radius),
+            (Some(&Shape::Sphere { radius }), Some(Shape::Mesh(_))) => (j, i, radius),
+            _ => return false,
+        };
+        if radius > self.layout().flush(i, j) || bodies.pair_tumbles(i, j) {
+            return false;
+        }
+        let Some(tree) = bodies.bvh(mesh) else {
+            return false;
+        };
+        let seen = |state: &State| state.position[sphere] - state.position[mesh];
+        let (before, after) = (seen(self.scene.before), seen(self.end));
+        segment_meets(tree, before, after) == Some(true)
+            && locate(tree, before) != locate(tree, after)
     }
 
     /// Moves two bodies apart by the least that does it, but for a factor of two, if that is no more
