@@ -170,12 +170,13 @@ impl Layout<'_> {
         meeting: &mut Vec<Meeting>,
         at: &[DVec3],
     ) -> Option<(Vec<DVec3>, Vec<Plane>)> {
-        let near = self.bodies.near_pairs(at, |body| {
-            16.0 * self.hover_gap(body, body) + 1e-6 * self.bodies.extent(body).farthest
-        });
         let mut place = at.to_vec();
         let mut planes: Vec<Plane> = Vec::new();
         for round in 0..MAX_ROUNDS {
+            // Where bodies are moved by more than they are wide, they come to others.
+            let near = self.bodies.near_pairs(&place, |body| {
+                16.0 * self.hover_gap(body, body) + 1e-6 * self.bodies.extent(body).farthest
+            });
             for &(i, j) in &near {
                 let is_known = meeting.iter().any(|known| known.bodies == (i, j));
                 let (before, now) = (at[j] - at[i], place[j] - place[i]);
