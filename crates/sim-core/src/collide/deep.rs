@@ -128,6 +128,8 @@ fn longest_in_both(first: &[f64], second: &[f64]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use glam::DQuat;
+
     use super::*;
     use crate::{
         collide::tree::intersect,
@@ -173,6 +175,28 @@ mod tests {
         for mesh in &meshes {
             assert!(stay_in_each_other(mesh, mesh, DVec3::ZERO, 0.1));
         }
+    }
+
+    #[test]
+    fn what_is_turned_in_each_other_meets_wherever_it_is_moved() {
+        let meshes = [cube(), sphere(9)].map(|mesh| Bvh::build(&mesh));
+        let mut number = numbers();
+        let mut next = || DVec3::new(number(), number(), number());
+        let mut told = [0; 2];
+        for (first, second) in [(0, 0), (0, 1), (1, 1)].map(|(i, j)| (&meshes[i], &meshes[j])) {
+            for _ in 0..200 {
+                let rotation = DQuat::from_scaled_axis(3.0 * next());
+                let placed = |offset| Placement::turned(rotation, offset).expect("a rotation");
+                let (offset, by) = (next(), 0.1 * next().x.abs());
+                let stays = stay_in_each_other(first, second, placed(offset), by);
+                told[usize::from(stays)] += 1;
+                for _ in 0..20 {
+                    let moved = placed(offset + by * next().normalize_or_zero());
+                    assert!(!stays || intersect(first, second, moved), "{offset} {by}");
+                }
+            }
+        }
+        assert!(told[0] > 100 && told[1] > 100, "{told:?}");
     }
 
     #[test]
