@@ -178,7 +178,7 @@ fn what_touches_by_rounding_is_no_overlap() {
 }
 
 #[test]
-fn many_in_one_place_cost_what_pairs_cost_and_are_as_deep() {
+fn many_in_one_place_are_as_deep_as_two() {
     let tilt = DQuat::from_rotation_x(0.3) * DQuat::from_rotation_y(0.5);
     let tilted = meshes::cube(0.5).transformed(tilt, DVec3::ONE);
     let shapes = [
@@ -204,7 +204,7 @@ fn many_in_one_place_cost_what_pairs_cost_and_are_as_deep() {
 }
 
 #[test]
-fn turning_bodies_in_one_place_are_told_at_once() {
+fn turning_bodies_in_one_place_are_told() {
     let Shape::Mesh(one) = cow() else {
         unreachable!()
     };

@@ -173,15 +173,17 @@ impl Layout<'_> {
         let mut place = at.to_vec();
         let mut planes: Vec<Plane> = Vec::new();
         for round in 0..MAX_ROUNDS {
-            // Where bodies are moved by more than they are wide, they come to others.
-            let near = self.bodies.near_pairs(&place, |body| {
-                16.0 * self.hover_gap(body, body) + 1e-6 * self.bodies.extent(body).farthest
-            });
+            // Nobody has been moved before the first round; after it bodies may have come to others.
+            let near = match round {
+                0 => Vec::new(),
+                _ => self.bodies.near_pairs(&place, |body| {
+                    16.0 * self.hover_gap(body, body) + 1e-6 * self.bodies.extent(body).farthest
+                }),
+            };
             for &(i, j) in &near {
                 let is_known = meeting.iter().any(|known| known.bodies == (i, j));
                 let (before, now) = (at[j] - at[i], place[j] - place[i]);
-                if round > 0
-                    && !is_known
+                if !is_known
                     && before != now
                     && self.bodies.meet_built(i, j, now)
                     && !self.bodies.meet_built(i, j, before)

@@ -5,7 +5,7 @@
 //! along a normal of where they touch, by units in the last place; those that have just been placed, by
 //! as much as the f32 of their vertices is rounded. An overlap is deeper than that and stays one.
 //!
-//! A point that has come to the other side of a closed mesh counts as one that meets it, so none gets out.
+//! A point that has come to the other side of a closed mesh counts as one that meets it.
 
 use alloc::vec::Vec;
 use core::mem;
