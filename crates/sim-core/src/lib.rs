@@ -127,6 +127,8 @@ mod shape;
 #[cfg(test)]
 mod test_meshes;
 #[cfg(test)]
+mod test_numbers;
+#[cfg(test)]
 mod test_random;
 mod world;
 

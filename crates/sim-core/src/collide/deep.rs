@@ -134,23 +134,14 @@ mod tests {
     use crate::{
         collide::tree::intersect,
         test_meshes::{cube, sphere},
+        test_numbers::signed,
     };
-
-    /// Numbers from -1 to 1, the same in each run.
-    fn numbers() -> impl FnMut() -> f64 {
-        let mut state = 1_u64;
-        move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
-    }
 
     #[test]
     fn what_stays_in_each_other_meets_wherever_it_is_moved() {
         let meshes = [cube(), sphere(8), sphere(13)].map(|mesh| Bvh::build(&mesh));
-        let mut number = numbers();
+        let mut state = 1;
+        let mut number = || signed(&mut state);
         let mut next = || DVec3::new(number(), number(), number());
         let mut told = [0; 2];
         for (i, first) in meshes.iter().enumerate() {
@@ -180,7 +171,8 @@ mod tests {
     #[test]
     fn what_is_turned_in_each_other_meets_wherever_it_is_moved() {
         let meshes = [cube(), sphere(9)].map(|mesh| Bvh::build(&mesh));
-        let mut number = numbers();
+        let mut state = 1;
+        let mut number = || signed(&mut state);
         let mut next = || DVec3::new(number(), number(), number());
         let mut told = [0; 2];
         for (first, second) in [(0, 0), (0, 1), (1, 1)].map(|(i, j)| (&meshes[i], &meshes[j])) {

@@ -278,12 +278,7 @@ mod tests {
     #[test]
     fn roots_are_those_of_small_steps() {
         let mut state = 9_u64;
-        let mut random = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
+        let mut random = || crate::test_numbers::signed(&mut state);
         let mut vector = move || DVec3::new(random(), random(), random());
         let (mut hits, mut misses) = (0, 0);
         for _ in 0..2000 {

@@ -235,13 +235,7 @@ fn two(wanted: &[f64], [a, b]: [f64; 2], shared: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn random(state: &mut u64) -> f64 {
-        *state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
+    use crate::test_numbers::signed as random;
 
     /// Random bodies, most of them near the first few, so that contacts share bodies.
     fn scene(seed: u64, bodies: usize, count: usize) -> (Vec<Joined>, Vec<f64>, Vec<DVec3>) {
