@@ -62,6 +62,8 @@ impl Session {
     /// The part of the last step that bodies are drawn at; 1 is the state itself.
     pub(super) fn shown_part(&self) -> f64 {
         match self.state {
+            // Before the first state there is none to come from.
+            _ if self.world.steps() == 0 => 1.0,
             State::Running if self.display.between => self.clock.fraction(),
             State::Paused => self.instant.unwrap_or(1.0),
             State::Running | State::Layout => 1.0,

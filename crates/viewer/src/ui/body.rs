@@ -1,6 +1,6 @@
 //! The selected body: its place in the set-up and its physics.
 
-use egui::{RichText, Slider};
+use egui::RichText;
 use scene::{SceneShape, shown};
 use sim_core::DVec3;
 
@@ -201,8 +201,10 @@ fn mass_and_restitution(
                        the normal; of the two bodies' the lesser one counts";
         field::label(ui, "Restitution", meaning);
         let mut value = restitution;
-        let slider = Slider::new(&mut value, 0.0..=1.0).max_decimals(3);
-        if ui.add(slider).on_hover_text(say(meaning)).changed() {
+        let slider = field::slider(ui, &mut value, 0.0..=1.0, "", |slider| {
+            slider.max_decimals(3)
+        });
+        if slider.on_hover_text(say(meaning)).changed() {
             session.set_restitution(value);
         }
     });

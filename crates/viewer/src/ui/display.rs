@@ -1,6 +1,6 @@
 //! What is drawn besides the bodies.
 
-use egui::{RichText, Slider};
+use egui::RichText;
 
 use super::field;
 use crate::number;
@@ -74,11 +74,10 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     });
     ui.horizontal(|ui| {
         field::label(ui, "Arrow", "Length of a velocity arrow");
-        ui.add(
-            Slider::new(&mut session.display.arrow_time, 0.01..=10.0)
-                .logarithmic(true)
-                .suffix(" s"),
-        )
+        let time = &mut session.display.arrow_time;
+        field::slider(ui, time, 0.01..=10.0, " s", |slider| {
+            slider.logarithmic(true)
+        })
         .on_hover_text(say("An arrow shows how far its body goes in this time"));
     });
     ui.horizontal(|ui| {
@@ -89,11 +88,11 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
             ));
         ui.add_enabled_ui(session.display.forces, |ui| {
             ui.spacing_mut().slider_width = 70.0;
-            let slider = Slider::new(&mut session.display.arrow_metres, 1e-4..=10.0)
-                .logarithmic(true)
-                .suffix(" m/N");
-            ui.add(slider)
-                .on_hover_text(say("Length of an arrow for each newton"));
+            let metres = &mut session.display.arrow_metres;
+            field::slider(ui, metres, 1e-4..=10.0, " m/N", |slider| {
+                slider.logarithmic(true)
+            })
+            .on_hover_text(say("Length of an arrow for each newton"));
         });
     });
     if turns(session.world()) {
@@ -158,10 +157,10 @@ fn spins(ui: &mut egui::Ui, session: &mut Session) {
             field::label(ui, name, meaning);
             // Less room, as the units are long.
             ui.spacing_mut().slider_width = 100.0;
-            let slider = Slider::new(scale, 1e-4..=1e3)
-                .logarithmic(true)
-                .suffix(unit);
-            ui.add(slider).on_hover_text(say(meaning));
+            field::slider(ui, scale, 1e-4..=1e3, unit, |slider| {
+                slider.logarithmic(true)
+            })
+            .on_hover_text(say(meaning));
         });
     }
 }
@@ -192,11 +191,11 @@ fn boxes(ui: &mut egui::Ui, session: &mut Session) {
             "Depth",
             "0 is the box around the whole mesh; [ and ] go up and down",
         );
-        ui.add_enabled(
-            !view.every_depth,
-            Slider::new(&mut view.depth, 0..=levels.saturating_sub(1)),
-        )
-        .on_hover_text(say("Depth of the boxes drawn"));
+        let deepest = levels.saturating_sub(1);
+        ui.add_enabled_ui(!view.every_depth, |ui| {
+            field::slider(ui, &mut view.depth, 0..=deepest, "", |slider| slider)
+                .on_hover_text(say("Depth of the boxes drawn"));
+        });
         ui.checkbox(&mut view.every_depth, say("all"));
     });
     tree(ui, session);

@@ -1,6 +1,10 @@
 //! Rows of the panel: a label, and numbers with their unit.
 
-use egui::{DragValue, RichText};
+use std::cell::RefCell;
+use std::ops::RangeInclusive;
+
+use egui::emath::Numeric;
+use egui::{DragValue, RichText, Slider};
 use sim_core::DVec3;
 
 use crate::expression;
@@ -88,16 +92,13 @@ pub(super) fn figure(ui: &mut egui::Ui, name: &str, meaning: &str, value: impl I
     });
 }
 
-/// What was typed into a field since the last call and is no number.
+/// Why what was typed into a field since the last call is not taken.
 type Refused = Option<String>;
 
-/// Says what was typed since the last call and is no number, until a number is taken.
+/// Says why what was typed since the last call is not taken, until a number is.
 pub(super) fn tell_refused(ctx: &egui::Context, notices: &mut Notices) {
     match ctx.data_mut(|data| data.remove_temp::<Refused>(refused_id())) {
-        Some(Some(typed)) => {
-            let text = format!("\"{typed}\" is not a number: write it like 1.5, -2e-3 or 1/60.");
-            notices.error("number", text);
-        }
+        Some(Some(why)) => notices.error("number", why),
         Some(None) => notices.dismiss("number"),
         None => {}
     }
@@ -107,30 +108,91 @@ fn refused_id() -> egui::Id {
     egui::Id::unique("refused number")
 }
 
+/// Reads what is typed, its unit too, and keeps why it is not taken.
+fn read(
+    typed: &str,
+    unit: &str,
+    range: &RangeInclusive<f64>,
+    refused: &RefCell<Refused>,
+) -> Option<f64> {
+    let number = typed.trim().strip_suffix(unit.trim()).unwrap_or(typed);
+    let number = expression::value(number);
+    let why = match number {
+        None => format!("\"{typed}\" is not a number: write it like 1.5, -2e-3 or 1/60."),
+        Some(number) if !range.contains(&number) => {
+            let [least, most] = [range.start(), range.end()].map(|end| shown(*end, 4));
+            format!("\"{typed}\" is not taken here: numbers from {least} to {most} are.")
+        }
+        _ => return number,
+    };
+    refused.replace(Some(why));
+    None
+}
+
+/// Hands on what was refused of a field; what it has taken ends the last refusal.
+fn settle(ui: &egui::Ui, response: &egui::Response, refused: RefCell<Refused>) {
+    let refused = refused.into_inner();
+    if refused.is_some() || response.changed() {
+        ui.data_mut(|data| data.insert_temp(refused_id(), refused));
+    }
+}
+
 /// A number that changes when typing ends rather than at each key, so that a mass of 0.5 can be
 /// typed although 0 is refused.
 fn number(ui: &mut egui::Ui, value: &mut f64, width: f32) -> egui::Response {
     let speed = 0.01 * value.abs().clamp(0.1, 1e9);
-    let refused = std::cell::RefCell::new(None);
+    let refused = RefCell::new(None);
+    let all = f64::NEG_INFINITY..=f64::INFINITY;
     let response = ui.add_sized(
         [width, ui.spacing().interact_size.y],
         DragValue::new(value)
             .speed(speed)
             .max_decimals(4)
             .custom_formatter(|value, decimals| shown(value, *decimals.end()))
-            .custom_parser(|typed| {
-                let number = expression::value(typed);
-                if number.is_none() {
-                    refused.replace(Some(typed.to_owned()));
-                }
-                number
-            })
+            .custom_parser(|typed| read(typed, "", &all, &refused))
             .update_while_editing(false),
     );
-    let refused: Refused = refused.take();
-    if refused.is_some() || response.changed() {
-        ui.data_mut(|data| data.insert_temp(refused_id(), refused));
-    }
+    settle(ui, &response, refused);
+    response
+}
+
+/// A number in a range that goes by a factor, typed as in [`number`].
+pub(super) fn within(
+    ui: &mut egui::Ui,
+    value: &mut f64,
+    range: RangeInclusive<f64>,
+    unit: &str,
+) -> egui::Response {
+    let refused = RefCell::new(None);
+    let speed = 0.01 * *value;
+    let field = DragValue::new(value)
+        .speed(speed)
+        .range(range.clone())
+        .max_decimals(1)
+        .suffix(unit)
+        .custom_parser(|typed| read(typed, unit, &range, &refused))
+        .update_while_editing(false);
+    let response = ui.add(field);
+    settle(ui, &response, refused);
+    response
+}
+
+/// A slider with its number, typed as in [`number`].
+pub(super) fn slider<N: Numeric>(
+    ui: &mut egui::Ui,
+    value: &mut N,
+    range: RangeInclusive<N>,
+    unit: &str,
+    look: impl FnOnce(Slider<'_>) -> Slider<'_>,
+) -> egui::Response {
+    let refused = RefCell::new(None);
+    let numbers = range.start().to_f64()..=range.end().to_f64();
+    let slider = Slider::new(value, range)
+        .suffix(unit)
+        .custom_parser(|typed| read(typed, unit, &numbers, &refused))
+        .update_while_editing(false);
+    let response = ui.add(look(slider));
+    settle(ui, &response, refused);
     response
 }
 

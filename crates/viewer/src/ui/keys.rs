@@ -201,7 +201,7 @@ impl WithCtrl {
     }
 }
 
-static WITH_CTRL: [WithCtrl; 10] = [
+static WITH_CTRL: [WithCtrl; 11] = [
     // With Shift first, since without it does not look at Shift.
     WithCtrl {
         modifiers: Modifiers::COMMAND.plus(Modifiers::SHIFT),
@@ -233,6 +233,9 @@ static WITH_CTRL: [WithCtrl; 10] = [
     }),
     WithCtrl::new(Key::T, "Ctrl + T", "guided tour", |ui, _| {
         ui.tour.open ^= true
+    }),
+    WithCtrl::new(Key::Q, "Ctrl + Q", "close the window", |_, session| {
+        session.leave(Leaving::Close);
     }),
 ];
 

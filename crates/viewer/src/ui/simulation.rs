@@ -1,6 +1,6 @@
 //! How to simulate: integrator, rate and collision test, all changeable while running.
 
-use egui::{ComboBox, Slider};
+use egui::ComboBox;
 use sim_core::{Collision, METHODS, Settings};
 
 use super::field;
@@ -86,14 +86,12 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         field::label(ui, "Rate", "Steps per second of simulated time");
         let mut rate = 1.0 / now.dt;
-        let slider = Slider::new(&mut rate, MIN_RATE..=MAX_RATE)
-            .logarithmic(true)
-            .clamping(egui::SliderClamping::Never)
-            .suffix(" Hz")
-            .max_decimals(1)
-            .step_by(1.0);
-        if ui
-            .add(slider)
+        let slider = field::slider(ui, &mut rate, MIN_RATE..=MAX_RATE, " Hz", |slider| {
+            // A file may have a rate beyond.
+            let slider = slider.clamping(egui::SliderClamping::Edits);
+            slider.logarithmic(true).max_decimals(1).step_by(1.0)
+        });
+        if slider
             .on_hover_text(say(format!(
                 "One step is {}. From {MIN_RATE} to {MAX_RATE} Hz; click the number to type.",
                 number::seconds(now.dt)
@@ -139,12 +137,13 @@ fn tolerance(ui: &mut egui::Ui, session: &mut Session, now: f64) {
     ui.horizontal(|ui| {
         field::label(ui, "Tolerance", meaning);
         let mut value = now;
-        let slider = Slider::new(&mut value, Settings::TOLERANCES)
-            .logarithmic(true)
-            .clamping(egui::SliderClamping::Edits)
-            .custom_formatter(|value, _| format!("{value:.1e}"))
-            .custom_parser(|text| text.trim().parse().ok());
-        if ui.add(slider).on_hover_text(say(meaning)).changed() {
+        let slider = field::slider(ui, &mut value, Settings::TOLERANCES, "", |slider| {
+            slider
+                .logarithmic(true)
+                .clamping(egui::SliderClamping::Edits)
+                .custom_formatter(|value, _| format!("{value:.1e}"))
+        });
+        if slider.on_hover_text(say(meaning)).changed() {
             session.set_tolerance(value);
         }
     });

@@ -1,8 +1,8 @@
 //! The line of time under the picture: what is kept of the run, its impacts, and the speed.
 
-use egui::{Button, Color32, Panel, Sense, Slider, Stroke};
+use egui::{Button, Color32, Panel, Sense, Stroke};
 
-use super::{Ui, style};
+use super::{Ui, field, style};
 use crate::number;
 use crate::session::{SPEEDS, Session, State};
 use crate::words::say;
@@ -54,11 +54,10 @@ pub(super) fn five_steps(session: &mut Session) {
 fn speed(ui: &mut egui::Ui, session: &mut Session) {
     let mut speed = session.speed();
     ui.spacing_mut().slider_width = 90.0;
-    let slider = Slider::new(&mut speed, SPEEDS)
-        .logarithmic(true)
-        .prefix("×")
-        .max_decimals(3);
-    let response = ui.add(slider).on_hover_text(say(
+    let slider = field::slider(ui, &mut speed, SPEEDS, "", |slider| {
+        slider.logarithmic(true).prefix("×").max_decimals(3)
+    });
+    let response = slider.on_hover_text(say(
         "Simulated seconds in a real one: slow motion below 1. Double click for 1.",
     ));
     if response.double_clicked() {

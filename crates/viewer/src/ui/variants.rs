@@ -1,6 +1,6 @@
 //! Comparing: other ways to run the scene beside it, what each costs and how far each is off.
 
-use egui::{ComboBox, DragValue, Grid, RichText};
+use egui::{ComboBox, Grid, RichText};
 use sim_core::{Collision, METHODS, Settings};
 
 use super::field;
@@ -8,9 +8,12 @@ use crate::number;
 use crate::session::{MAX_RATE, MIN_RATE, PRESETS, Session};
 use crate::words::say;
 
-/// The variant that is to be added next.
+/// The variant that is to be added next: as the scene is run, until something else is chosen for it.
 #[derive(Default)]
-pub(super) struct Choice(Option<Settings>);
+pub(super) struct Choice {
+    scene: String,
+    settings: Option<Settings>,
+}
 
 pub(super) fn show(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
     let own = *session.world().settings();
@@ -40,8 +43,13 @@ pub(super) fn show(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session
 /// A row to put together one more variant.
 fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
     let own = *session.world().settings();
-    let mut settings = choice.0.unwrap_or(own);
+    if choice.scene != session.scene().name {
+        choice.scene.clone_from(&session.scene().name);
+        choice.settings = None;
+    }
+    let mut settings = choice.settings.unwrap_or(own);
     settings.tolerance = own.tolerance;
+    let before = settings;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let list = ui.scope(|ui| {
@@ -61,16 +69,8 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
         });
         let list = list.inner;
         field::named(&list, "Integrator of the variant", settings.method.title);
-        let now = 1.0 / settings.dt;
-        let mut rate = now;
-        let field = DragValue::new(&mut rate)
-            .range(MIN_RATE..=MAX_RATE)
-            .speed(0.01 * now)
-            .max_decimals(1)
-            .update_while_editing(false)
-            .suffix(" Hz");
-        if ui
-            .add(field)
+        let mut rate = 1.0 / settings.dt;
+        if field::within(ui, &mut rate, MIN_RATE..=MAX_RATE, " Hz")
             .on_hover_text(say("Steps per simulated second of the variant"))
             .changed()
         {
@@ -101,7 +101,9 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
             session.compare_with(all);
         }
     });
-    choice.0 = Some(settings);
+    if settings != before {
+        choice.settings = Some(settings);
+    }
 }
 
 fn collision_name(how: Collision) -> &'static str {

@@ -41,6 +41,55 @@ fn edits_are_asked_for_before_they_are_lost() {
 }
 
 #[test]
+fn closing_asks_and_each_answer_does_what_it_says() {
+    let name = format!("cowbell-closing-{}.toml", std::process::id());
+    let file = std::env::temp_dir().join(name);
+    let close = |window: &mut Window<'_>| {
+        window.key_press_modifiers(Modifiers::COMMAND, Key::Q);
+        window.run();
+    };
+    let open = || {
+        let mut window = opened("cube-cow");
+        window.state_mut().1.save(&file, true);
+        click(&mut window, "sphere");
+        close(&mut window);
+        assert!(!window.state().1.is_closing(), "it is asked first");
+        window
+    };
+    let bodies = || {
+        let text = std::fs::read_to_string(&file).expect("the scene's file");
+        text.matches("[[body]]").count()
+    };
+    let mut window = open();
+    click(&mut window, "Cancel");
+    assert!(!window.state().1.is_closing() && window.state().1.is_changed());
+    close(&mut window);
+    click(&mut window, "Do not save");
+    assert!(window.state().1.is_closing());
+    assert_eq!(bodies(), 2);
+
+    let mut window = open();
+    // The panel has a button of this name too, which the question is over.
+    window
+        .query_all_by_label("Save")
+        .last()
+        .expect("an answer")
+        .click();
+    window.run();
+    assert!(window.state().1.is_closing());
+    assert_eq!(bodies(), 3);
+
+    let mut window = open();
+    window.key_press(Key::Escape);
+    window.run();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.run();
+    close(&mut window);
+    assert!(window.state().1.is_closing(), "nothing is lost");
+    let _ = std::fs::remove_file(&file);
+}
+
+#[test]
 fn a_body_is_renamed_hidden_and_a_scene_begun() {
     let mut window = opened("cube-cow");
     window.state_mut().1.select(Some(1));
@@ -118,24 +167,65 @@ fn handles_move_turn_and_stretch_the_selected_body() {
     );
 }
 
+/// Types a text into the field that shows a value.
+fn write(window: &mut Window<'_>, shown: &str, text: &str) {
+    {
+        let mut fields = window.query_all_by_role(Role::SpinButton);
+        let field = fields.find(|node| node.value().as_deref() == Some(shown));
+        field.expect(shown).click();
+    }
+    window.run();
+    window.event(egui::Event::Text(text.to_owned()));
+    window.run();
+}
+
+/// Types a text into the field that shows a value, and ends it.
+fn enter(window: &mut Window<'_>, shown: &str, text: &str) {
+    write(window, shown, text);
+    window.key_press(Key::Enter);
+    window.run();
+}
+
+const NOT_A_NUMBER: &str = "\"nan\" is not a number: write it like 1.5, -2e-3 or 1/60.";
+
 #[test]
 fn what_is_no_number_is_told_until_a_number_is_typed() {
     let mut window = opened("cube-cow");
     window.state_mut().1.select(Some(0));
     window.run();
-    let mut enter = |mass: &str, text: &str| {
-        {
-            let mut fields = window.query_all_by_role(Role::SpinButton);
-            let field = fields.find(|node| node.value().as_deref() == Some(mass));
-            field.expect("the field of the mass").click();
-        }
-        window.run();
-        window.event(egui::Event::Text(text.to_owned()));
-        window.key_press(Key::Enter);
-        window.run();
-        let told = "\"nan\" is not a number: write it like 1.5, -2e-3 or 1/60.";
-        (stands(&window, told), window.state().1.world().mass(0))
+    let mut mass = |text: &str| {
+        enter(&mut window, "6", text);
+        let told = stands(&window, NOT_A_NUMBER);
+        (told, window.state().1.world().mass(0))
     };
-    assert_eq!(enter("6", "nan"), (true, 6.0));
-    assert_eq!(enter("6", "2*3.5"), (false, 7.0));
+    assert_eq!(mass("nan"), (true, 6.0));
+    assert_eq!(mass("2*3.5"), (false, 7.0));
+}
+
+#[test]
+fn numbers_of_sliders_are_typed_as_in_fields() {
+    let mut window = opened("cube-cow");
+    let rate = |window: &Window<'_>| (1.0 / window.state().1.world().settings().dt).round();
+    enter(&mut window, "60 Hz", "nan");
+    assert!(stands(&window, NOT_A_NUMBER));
+    enter(&mut window, "60 Hz", "1e9");
+    let beyond = "\"1e9\" is not taken here: numbers from 1 to 100000 are.";
+    assert!(stands(&window, beyond));
+    assert_eq!(rate(&window), 60.0);
+    enter(&mut window, "60 Hz", "2*500 Hz");
+    assert!(!stands(&window, beyond));
+    assert_eq!(rate(&window), 1000.0);
+    // A run remembers every rate that it had: while one is typed there is none between.
+    write(&mut window, "1000 Hz", "2");
+    assert_eq!(rate(&window), 1000.0);
+    window.key_press(Key::Enter);
+    window.run();
+    assert_eq!(rate(&window), 2.0);
+    enter(&mut window, "×1.0", "100");
+    assert!(stands(
+        &window,
+        "\"100\" is not taken here: numbers from 0.001 to 10 are."
+    ));
+    enter(&mut window, "×1.0", "1/4");
+    assert_eq!(window.state().1.speed(), 0.25);
 }

@@ -1,6 +1,7 @@
 //! Running, comparing, and what is made of a run.
 
 use egui::Key;
+use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use sim_core::{Collision, Method};
 use viewer::session::State;
@@ -49,6 +50,20 @@ fn a_comparison_is_chosen_run_and_given_up() {
     }
     click(&mut window, "Compare nothing");
     assert!(window.state().1.variants().is_empty());
+}
+
+#[test]
+fn the_next_variant_is_run_as_the_scene_is() {
+    let mut window = opened("five-hertz");
+    window.run();
+    let offers = |window: &Window<'_>, rate: &str| {
+        let mut fields = window.query_all_by_role(Role::SpinButton);
+        fields.any(|node| node.value().as_deref() == Some(rate))
+    };
+    assert!(offers(&window, "5.0 Hz"));
+    window.state_mut().1.open("two-cubes");
+    window.run();
+    assert!(offers(&window, "60.0 Hz") && !offers(&window, "5.0 Hz"));
 }
 
 #[test]

@@ -119,6 +119,19 @@ fn slow_motion_holds_and_goes_on_where_it_is() {
 }
 
 #[test]
+fn nothing_is_shown_before_the_start() {
+    let mut session = session();
+    session.set_speed(0.01);
+    session.start();
+    for _ in 0..200 {
+        let before = session.shown_time();
+        advance(&mut session, FRAME, free());
+        assert!(session.shown_time() >= before && before >= 0.0, "{before}");
+    }
+    assert!(session.world().steps() > 0);
+}
+
+#[test]
 fn impacts_are_gone_to_one_after_the_other() {
     let mut session = at_impact();
     session.go_to(0);

@@ -15,6 +15,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("Reset, and step at {} Hz", "复位，并用 {0} Hz"),
     ("Reset, and look within the step", "复位，并在一步之内寻找碰撞"),
     ("\"{}\" is not a number: write it like 1.5, -2e-3 or 1/60.", "“{0}”不是数字：请写成 1.5、-2e-3 或 1/60 的形式。"),
+    ("\"{}\" is not taken here: numbers from {} to {} are.", "这里不能用“{0}”：请输入 {1} 到 {2} 的数。"),
     ("A body needs a name.", "物体需要一个名称。"),
     ("Another body is called {}.", "另一个物体已叫 {0}。"),
     ("Deleted {}.", "已删除 {0}。"),

@@ -168,6 +168,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("find a command", "查找命令"),
     ("gallery of scenes", "场景库"),
     ("guided tour", "导览"),
+    ("close the window", "关闭窗口"),
     ("Click", "点击"),
     ("select a body", "选择物体"),
     ("Drag left or right", "左键或右键拖动"),
