@@ -1,7 +1,7 @@
 //! The mesh of a body: what the scene file calls it, and the mesh itself.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::{self, Path, PathBuf};
 use std::sync::Arc;
 
 use sim_core::Mesh;
@@ -9,7 +9,7 @@ use sim_core::Mesh;
 use crate::mesh_file::{self, MeshFileError, MeshReport};
 
 /// A mesh by its name in the scene, loaded: neither rotated nor scaled.
-#[derive(Clone, PartialEq)]
+#[derive(Clone)]
 pub struct MeshRef {
     name: String,
     path: Option<PathBuf>,
@@ -74,6 +74,18 @@ impl MeshRef {
             name,
             ..self.clone()
         }
+    }
+}
+
+/// Of the same file, however that is called, or the same built-in mesh; and as it is in there.
+impl PartialEq for MeshRef {
+    fn eq(&self, other: &MeshRef) -> bool {
+        let same_place = match (&self.path, &other.path) {
+            (Some(a), Some(b)) => a == b || path::absolute(a).ok() == path::absolute(b).ok(),
+            (None, None) => self.name == other.name,
+            _ => false,
+        };
+        same_place && self.mesh == other.mesh
     }
 }
 

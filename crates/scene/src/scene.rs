@@ -246,7 +246,8 @@ impl Scene {
         body.map_or_else(String::new, |body| body.name.clone())
     }
 
-    /// Writes the scene to a file, whole or not at all. Meshes of other folders keep their place.
+    /// Writes the scene to a file, whole or not at all. Meshes beside it are named from its folder, those of other
+    /// folders keep their place.
     pub fn save(&self, path: &Path) -> Result<(), SceneError> {
         let text = self.text_at(path)?;
         file::write(path, text.as_bytes()).map_err(|error| SceneError::Write {
@@ -256,13 +257,18 @@ impl Scene {
     }
 
     /// The text of a scene file that gives this scene again where it is read as the file at `path`.
-    /// Meshes of other folders keep their place.
+    /// Meshes beside it are named from its folder, those of other folders keep their place.
     pub fn text_at(&self, path: &Path) -> Result<String, SceneError> {
         let refused = |error| SceneError::Write {
             path: path.to_owned(),
             error,
         };
         let folder = path.parent().unwrap_or(Path::new(""));
+        let whole_folder = match folder == Path::new("") {
+            true => std::env::current_dir(),
+            false => path::absolute(folder),
+        };
+        let whole_folder = whole_folder.map_err(refused)?;
         let mut scene = self.clone();
         for body in &mut scene.bodies {
             let SceneShape::Mesh(mesh) = &mut body.shape else {
@@ -271,17 +277,26 @@ impl Scene {
             let Some(mesh_file) = mesh.path() else {
                 continue;
             };
+            let absolute = path::absolute(mesh_file).map_err(refused)?;
             let found_from_there = folder.join(mesh.name()) == mesh_file;
-            if !found_from_there {
-                let absolute = path::absolute(mesh_file).map_err(refused)?;
-                let Some(name) = absolute.to_str() else {
-                    return Err(refused(io::Error::other(format!(
-                        "the path of the mesh {} is not text: rename it",
-                        shown::path(&absolute)
-                    ))));
-                };
-                *mesh = mesh.renamed(name.to_owned());
-            }
+            // What lies beside the scene, or deeper, goes along where its folder goes.
+            let place = match absolute.strip_prefix(&whole_folder) {
+                Ok(beneath) => beneath,
+                Err(_) if found_from_there => continue,
+                Err(_) => &absolute,
+            };
+            let Some(name) = place.to_str() else {
+                return Err(refused(io::Error::other(format!(
+                    "the path of the mesh {} is not text: rename it",
+                    shown::path(&absolute)
+                ))));
+            };
+            // Slashes are read everywhere.
+            let name = match cfg!(windows) {
+                true => name.replace('\\', "/"),
+                false => name.to_owned(),
+            };
+            *mesh = mesh.renamed(name);
         }
         Ok(scene.to_toml())
     }

@@ -466,6 +466,34 @@ fn a_saved_scene_finds_its_meshes_again() {
 }
 
 #[test]
+fn meshes_beside_a_saved_scene_go_along_with_its_folder() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    std::fs::create_dir_all(at("here/meshes")).expect("a folder");
+    let flat = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3";
+    for name in ["here/beside.obj", "here/meshes/deeper.obj", "above.obj"] {
+        std::fs::write(at(name), flat).expect("written");
+    }
+    // As files that are dropped onto a window come, by their whole paths.
+    let mut scene = parse("rate = 1").expect("a scene");
+    for name in ["here/beside.obj", "here/meshes/deeper.obj", "above.obj"] {
+        let mesh = MeshRef::load(&at(name)).expect("a mesh");
+        let shape = SceneShape::Mesh(mesh);
+        scene.bodies.push(SceneBody::new(name.to_owned(), shape));
+    }
+    scene.name = "own".to_owned();
+    scene.save(&at("here/own.toml")).expect("saved");
+    let text = std::fs::read_to_string(at("here/own.toml")).expect("text");
+    for name in ["\"beside.obj\"", "\"meshes/deeper.obj\""] {
+        assert!(text.contains(&format!("mesh = {name}")), "{text}");
+    }
+    let again = Scene::load(at("here/own.toml")).expect("a scene");
+    assert_eq!(again.bodies, scene.bodies);
+    std::fs::rename(at("here"), at("there")).expect("moved");
+    Scene::load(at("there/own.toml")).expect("it has its meshes with it");
+}
+
+#[test]
 fn saved_text_is_short() {
     let scene =
         parse("rate = 60\n[[body]]\nname = 'a'\nmesh = 'cube.obj'\nposition = [-5.0, 0.5, 0]");
