@@ -177,6 +177,7 @@ impl Session {
             Ok(()) => {
                 self.notices
                     .info("save", format!("Saved {}.", shown::path(&path)));
+                self.name_after(&path);
                 self.file = Some(path);
                 self.mark_saved();
                 self.tell_of_gone();

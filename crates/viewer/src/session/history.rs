@@ -191,6 +191,15 @@ impl Session {
         }
     }
 
+    /// The scene is called after its file, and so it stays when edits are taken back.
+    pub(super) fn name_after(&mut self, file: &Path) {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
+        for (_, scene) in &mut self.history.states {
+            scene.name = name.to_string();
+        }
+        self.scene.name = name.to_string();
+    }
+
     /// Opens another scene or closes the window, at once or once it is said what happens to edits
     /// that no file has.
     pub fn leave(&mut self, leaving: Leaving) {

@@ -168,7 +168,7 @@ pub(super) fn within(
     let field = DragValue::new(value)
         .speed(speed)
         .range(range.clone())
-        .max_decimals(1)
+        .custom_formatter(|value, _| shown(value, 1))
         .suffix(unit)
         .custom_parser(|typed| read(typed, unit, &range, &refused))
         .update_while_editing(false);
@@ -197,7 +197,7 @@ pub(super) fn slider<N: Numeric>(
 }
 
 /// A number as a field shows it, never wider than the field for long.
-fn shown(value: f64, decimals: usize) -> String {
+pub(super) fn shown(value: f64, decimals: usize) -> String {
     // No zero has a sign, nor has what is rounded to it.
     let value = value + 0.0;
     if value.abs() >= 1e6 || value != 0.0 && value.abs() < 1e-3 {

@@ -89,7 +89,9 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         let slider = field::slider(ui, &mut rate, MIN_RATE..=MAX_RATE, " Hz", |slider| {
             // A file may have a rate beyond.
             let slider = slider.clamping(egui::SliderClamping::Edits);
-            slider.logarithmic(true).max_decimals(1).step_by(1.0)
+            // What is typed is taken as it is, and shown in short.
+            let slider = slider.custom_formatter(|rate, _| field::shown(rate, 1));
+            slider.logarithmic(true)
         });
         if slider
             .on_hover_text(say(format!(

@@ -294,7 +294,7 @@ fn offer_drop(ui: &egui::Ui, rect: Rect) {
     ui.painter().text(
         rect.center(),
         Align2::CENTER_CENTER,
-        say("Drop a mesh to add it, or a scene (.toml) to open it"),
+        say("Drop a mesh to add it, or a scene (.toml) or a run (.run) to open it"),
         egui::TextStyle::Heading.resolve(ui.style()),
         Color32::WHITE,
     );

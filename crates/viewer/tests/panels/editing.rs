@@ -221,6 +221,9 @@ fn numbers_of_sliders_are_typed_as_in_fields() {
     window.key_press(Key::Enter);
     window.run();
     assert_eq!(rate(&window), 2.0);
+    enter(&mut window, "2 Hz", "1/0.3");
+    let dt = window.state().1.world().settings().dt;
+    assert!((dt - 0.3).abs() < 1e-15, "{dt}");
     enter(&mut window, "×1.0", "100");
     assert!(stands(
         &window,

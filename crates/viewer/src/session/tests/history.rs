@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::*;
 use crate::session::Leaving;
 use crate::words::Language;
+use scene::SceneShape;
 
 const LONG: Duration = Duration::from_secs(1);
 
@@ -151,6 +152,30 @@ fn a_file_that_has_changed_is_read_again_but_not_over_edits() {
     session.reread();
     assert_eq!(session.world().mass(0), 2.0, "edits are kept");
     assert!(session.notices().iter().any(|notice| notice.error));
+    std::fs::remove_dir_all(folder).expect("removed");
+}
+
+#[test]
+fn what_was_saved_here_is_not_read_again() {
+    let folder = std::env::temp_dir().join(format!("cowbell-own-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let mesh = folder.join("flat.obj");
+    std::fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    let mut session = session();
+    session.take_in(&mesh);
+    session.settle(Duration::from_secs(1));
+    session.add("ball", SceneShape::Sphere { radius: 0.5 });
+    session.settle(Duration::from_secs(1));
+    session.save(&folder.join("mine.toml"), false);
+    assert_eq!(session.scene().name, "mine");
+    session.step_once();
+    advance(&mut session, FRAME, free());
+    session.save_own();
+    session.reread();
+    assert_eq!(session.world().steps(), 1, "the run goes on");
+    session.undo();
+    assert_eq!(session.world().len(), 3, "edits can be taken back");
+    assert_eq!(session.scene().name, "mine");
     std::fs::remove_dir_all(folder).expect("removed");
 }
 

@@ -101,7 +101,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("floor", "地面"),
     ("half-space", "半空间"),
     ("The system showed no file dialog: type the path instead.", "系统没有显示文件对话框：请输入路径。"),
-    ("Drop a mesh to add it, or a scene (.toml) to open it", "放下网格以加入，或放下场景 (.toml)以打开"),
+    ("Drop a mesh to add it, or a scene (.toml) or a run (.run) to open it", "放下网格以加入，或放下场景 (.toml) 或运行 (.run) 以打开"),
 
     // The gallery, the palette, the tour.
     ("search for a name or word", "搜索名称或词语"),
