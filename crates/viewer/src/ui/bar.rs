@@ -12,54 +12,80 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
     let frame =
         egui::Frame::side_top_panel(root.style()).inner_margin(egui::Margin::symmetric(10, 7));
     Panel::top("bar").frame(frame).show(root, |ui| {
+        let room = ui.available_width();
+        // Where it does not fit into a line it takes several, in place of buttons over each other.
+        if state.bar > room {
+            ui.horizontal_wrapped(|ui| {
+                buttons(ui, session);
+                status(ui, session);
+                switches(ui, state);
+            });
+            return;
+        }
         ui.horizontal(|ui| {
+            let left = ui.cursor().left();
             buttons(ui, session);
             ui.add_space(6.0);
             status(ui, session);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let other = match state.language {
-                    Language::English => Language::Chinese,
-                    Language::Chinese => Language::English,
-                };
-                let name = match state.has_chinese {
-                    Some(true) => other.name(),
-                    _ => "Chinese",
-                };
-                if ui
-                    .button(name)
-                    .on_hover_text(say("The language of the window"))
-                    .clicked()
-                {
-                    state.language = other;
-                }
-                let theme = if state.light { "🌙" } else { "☀" };
-                if ui
-                    .button(theme)
-                    .on_hover_text(say("Dark or light panels"))
-                    .clicked()
-                {
-                    state.light ^= true;
-                }
-                ui.toggle_value(&mut state.help, say("Keys"))
-                    .on_hover_text(say("All keys and mouse gestures (H, ? or F1)"));
-                hiding(ui, &mut state.panel_hidden, "Panel", "Side panel (P)");
-                hiding(ui, &mut state.plots_hidden, "Plots", "Curves over time (G)");
-                hiding(ui, &mut state.live_hidden, "Live", "Live figures (L)");
-                ui.toggle_value(&mut state.tour.open, say("Tour"))
-                    .on_hover_text(say("A guided tour of the four labs (Ctrl+T)"));
-                ui.toggle_value(&mut state.gallery.open, say("Gallery"))
-                    .on_hover_text(say("Scenes that come with the program (Ctrl+G)"));
-                ui.add_space(6.0);
-                if !behind(ui, session) {
-                    let mark = if session.is_changed() { " *" } else { "" };
-                    let title = say(shown::part(&session.scene().title)) + mark;
-                    let title = RichText::new(title);
-                    ui.add(egui::Label::new(title).truncate())
-                        .on_hover_text(say(shown::part(&session.scene().about)));
-                }
-            });
+            let taken = ui.cursor().left() - left;
+            let right = egui::Layout::right_to_left(egui::Align::Center);
+            let size = egui::vec2(room - state.bar, ui.available_height());
+            ui.allocate_ui_with_layout(size, right, |ui| title(ui, session));
+            let switches = ui.scope(|ui| switches(ui, state)).response.rect;
+            // And the gap after the title.
+            state.bar = taken + switches.width() + ui.spacing().item_spacing.x;
         });
+        if state.bar > room {
+            ui.ctx().request_discard("bar");
+        }
     });
+}
+
+/// What runs, and whether it has edits; by how much it is behind, if it is.
+fn title(ui: &mut egui::Ui, session: &Session) {
+    if behind(ui, session) {
+        return;
+    }
+    let mark = if session.is_changed() { " *" } else { "" };
+    let title = say(shown::part(&session.scene().title)) + mark;
+    ui.add(egui::Label::new(RichText::new(title)).truncate())
+        .on_hover_text(say(shown::part(&session.scene().about)));
+}
+
+/// What is shown, and how.
+fn switches(ui: &mut egui::Ui, state: &mut Ui) {
+    ui.toggle_value(&mut state.gallery.open, say("Gallery"))
+        .on_hover_text(say("Scenes that come with the program (Ctrl+G)"));
+    ui.toggle_value(&mut state.tour.open, say("Tour"))
+        .on_hover_text(say("A guided tour of the four labs (Ctrl+T)"));
+    hiding(ui, &mut state.live_hidden, "Live", "Live figures (L)");
+    hiding(ui, &mut state.plots_hidden, "Plots", "Curves over time (G)");
+    hiding(ui, &mut state.panel_hidden, "Panel", "Side panel (P)");
+    ui.toggle_value(&mut state.help, say("Keys"))
+        .on_hover_text(say("All keys and mouse gestures (H, ? or F1)"));
+    let theme = if state.light { "🌙" } else { "☀" };
+    if ui
+        .button(theme)
+        .on_hover_text(say("Dark or light panels"))
+        .clicked()
+    {
+        state.light ^= true;
+    }
+    let other = match state.language {
+        Language::English => Language::Chinese,
+        Language::Chinese => Language::English,
+    };
+    let name = match state.has_chinese {
+        Some(true) => other.name(),
+        _ => "Chinese",
+    };
+    if ui
+        .button(name)
+        .on_hover_text(say("The language of the window"))
+        .clicked()
+    {
+        state.language = other;
+    }
 }
 
 fn buttons(ui: &mut egui::Ui, session: &mut Session) {

@@ -56,6 +56,8 @@ pub struct Ui {
     /// Whether a font has Chinese characters; not known before the first frame.
     has_chinese: Option<bool>,
     light: bool,
+    /// How much room the bar on top takes in one line, without the title, points.
+    bar: f32,
     /// Naive against BVH is measured, and a figure of it has come since it is.
     measured: [bool; 2],
 }

@@ -72,6 +72,34 @@ fn nothing_breaks_in_windows_of_any_size() {
 }
 
 #[test]
+fn buttons_of_the_bar_are_beside_each_other_however_narrow_it_is() {
+    let names = [
+        "▶ Start",
+        "⏩ Step",
+        "⟲ Reset",
+        "Gallery",
+        "Tour",
+        "Live",
+        "Plots",
+        "Panel",
+        "Keys",
+    ];
+    for width in [1360.0, 900.0, 700.0, 600.0, 320.0] {
+        let scene = Scene::load("cube-cow").expect("in the gallery");
+        let mut window = window(Session::new(scene).expect("a world"), [width, 500.0]);
+        window.run();
+        let places = names.map(|name| window.get_by_label(name).rect());
+        for (i, a) in places.iter().enumerate() {
+            assert!(a.right() <= width && a.width() > 20.0, "{} {a}", names[i]);
+            for (j, b) in places[..i].iter().enumerate() {
+                let both = a.intersect(*b);
+                assert!(!both.is_positive(), "{width}: {} {}", names[i], names[j]);
+            }
+        }
+    }
+}
+
+#[test]
 fn all_keys_are_in_sight_in_a_low_window() {
     let scene = Scene::load("cube-cow").expect("in the gallery");
     let mut window = window(Session::new(scene).expect("a world"), [900.0, 600.0]);
