@@ -63,6 +63,7 @@ impl Session {
         compare.forget();
         let variants = self.variants.edition + 1;
         display.trails = session.display.trails;
+        display.spins = session.display.spins;
         display.spin_metres = session.display.spin_metres;
         display.momentum_metres = session.display.momentum_metres;
         *self = session;

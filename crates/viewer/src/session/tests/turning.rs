@@ -213,6 +213,15 @@ fn bodies_are_drawn_as_they_are_turned_when_they_touch() {
 }
 
 #[test]
+fn arrows_of_turning_are_shown_whatever_scene_was_open_before() {
+    let mut session = gallery("cube-cow");
+    session.open("tennis-racket");
+    assert_eq!(session.picture().arrows.len(), 2);
+    session.open("cubes-turning");
+    assert_eq!(session.picture().arrows.len(), 0, "a hundred would be many");
+}
+
+#[test]
 fn arrows_show_how_bodies_turn_to_a_scale_that_is_told() {
     let mut session = gallery("tennis-racket");
     let momentum = session.world().angular_momentum(0);
