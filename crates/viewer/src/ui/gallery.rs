@@ -17,6 +17,8 @@ const COLUMNS: usize = 3;
 #[derive(Default)]
 pub(super) struct Gallery {
     pub(super) open: bool,
+    /// It was open in the last frame too.
+    stays: bool,
     search: String,
     pictures: HashMap<&'static str, TextureHandle>,
 }
@@ -72,8 +74,13 @@ static PICTURES: &[(&str, &[u8])] = pictures![
 ];
 
 pub(super) fn show(ctx: &egui::Context, gallery: &mut Gallery, session: &mut Session) {
+    let opens = gallery.open && !gallery.stays;
+    gallery.stays = gallery.open;
     if !gallery.open {
         return;
+    }
+    if opens {
+        gallery.search.clear();
     }
     let room = ctx.content_rect().size() - egui::vec2(60.0, 90.0);
     let mut open = true;
@@ -93,11 +100,20 @@ pub(super) fn show(ctx: &egui::Context, gallery: &mut Gallery, session: &mut Ses
             edit.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::TextInput, true, say("Search the gallery"))
             });
+            if opens {
+                edit.request_focus();
+            }
+            let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
             ScrollArea::vertical()
                 .auto_shrink([false, false])
                 .show(ui, |ui| {
                     chosen = sections(ui, gallery, &session.scene().name);
                 });
+            if entered && !gallery.search.trim().is_empty() {
+                let mut all = labs().into_iter().flat_map(|(_, scenes)| scenes);
+                let first = all.find(|entry| matches(entry, &gallery.search));
+                chosen = chosen.or(first.map(|entry| entry.name));
+            }
         });
     if let Some(name) = chosen {
         session.leave(Leaving::Open(name.into()));
