@@ -210,6 +210,38 @@ fn a_lift_carries_what_lies_on_it() {
     assert!((world.velocity(1).y - 1.0).abs() < 1e-6);
 }
 
+/// Four stacks of two, which slide off each other: one that touched a wall and two others stayed tilted in the air, as
+/// it could not be moved apart from all of them.
+#[test]
+fn cubes_that_slide_off_each_other_in_a_bin_come_to_lie() {
+    let wall = |normal: DVec3| Body {
+        restitution: 0.2,
+        ..bodies::wall(normal, -0.8 * normal, DVec3::ZERO)
+    };
+    let mut all = vec![floor(0.2)];
+    all.extend([DVec3::X, -DVec3::X, DVec3::Z, -DVec3::Z].map(wall));
+    for k in 0..8_u32 {
+        let side = |bit: u32| if k >> bit & 1 == 0 { -0.4 } else { 0.4 };
+        let place = DVec3::new(side(0), 0.6 + 0.9 * f64::from(k >> 2), side(1));
+        let mut body = cube(0.5, place, 0.2);
+        body.turn = Some(Turn {
+            spin: DVec3::new(0.5 * side(2), 0.7 * side(1), 0.9 * side(0)),
+            ..Turn::default()
+        });
+        all.push(body);
+    }
+    let mut world = worlds::world(all);
+    for _ in 0..64 {
+        worlds::step(&mut world, 10);
+        assert_eq!(world.meeting(), []);
+    }
+    for body in 5..world.len() {
+        let height = world.position(body).y;
+        let off = (height - 0.25).abs().min((height - 0.75).abs());
+        assert!(off < 1e-3, "{body} is at {height}");
+    }
+}
+
 #[test]
 fn what_lies_on_what_does_not_turn_is_borne_by_it() {
     let mut box_below = bodies::at(&shapes::cuboid([1.0, 0.5, 1.0]), 0.5 * DVec3::Y);

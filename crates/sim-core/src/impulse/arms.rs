@@ -7,6 +7,8 @@
 use alloc::{vec, vec::Vec};
 use glam::{DMat3, DVec3};
 
+use crate::pieces::Pieces;
+
 /// Two bodies in contact at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arms {
@@ -117,16 +119,46 @@ fn matrix(contacts: &[Arms], yielding: &[Yielding]) -> Vec<f64> {
 const DEPENDENT: f64 = 1e-10;
 
 /// The impulses, none negative, after which each contact opens by at least as much more as is wanted (m/s),
-/// and those that push by just that: of all motions that do, the nearest in the norm of kinetic energy. By
-/// active sets (Lawson, Hanson 1974, "Solving least squares problems", ch. 23).
+/// and those that push by just that: of all motions that do, the nearest in the norm of kinetic energy. What
+/// no body that moves ties together is found apart.
 pub(crate) fn multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f64]) -> Vec<f64> {
+    let moves = |body: usize| yielding[body].mass > 0.0 || yielding[body].inertia != DMat3::ZERO;
+    let mut pieces = Pieces::new(yielding.len());
+    for &Arms { bodies: (i, j), .. } in contacts {
+        if moves(i) && moves(j) {
+            pieces.join(i, j);
+        }
+    }
+    let piece = |contact: &Arms| {
+        let (i, j) = contact.bodies;
+        pieces.first(if moves(i) { i } else { j })
+    };
+    let mut of_pieces: Vec<(usize, usize)> = contacts.iter().map(piece).zip(0..).collect();
+    of_pieces.sort_unstable();
+    let mut given = vec![0.0; contacts.len()];
+    for tied in of_pieces.chunk_by(|a, b| a.0 == b.0) {
+        let part: Vec<Arms> = tied.iter().map(|&(_, k)| contacts[k]).collect();
+        let wanted: Vec<f64> = tied.iter().map(|&(_, k)| wanted[k]).collect();
+        let found = tied_multipliers(&part, yielding, &wanted);
+        for (&(_, k), found) in tied.iter().zip(found) {
+            given[k] = found;
+        }
+    }
+    given
+}
+
+/// The same of contacts that hang together. By active sets (Lawson, Hanson 1974, "Solving least squares
+/// problems", ch. 23).
+fn tied_multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f64]) -> Vec<f64> {
     let count = contacts.len();
     let matrix = matrix(contacts, yielding);
     let scale: Vec<f64> = (0..count)
         .map(|k| 1.0 / libm::sqrt(matrix[k * count + k]))
         .collect();
+    let entry = |k: usize, l: usize| matrix[k * count + l] * scale[k] * scale[l];
     let mut given = vec![0.0; count];
     let mut pushes: Vec<usize> = Vec::new();
+    let mut factor = Factor::default();
     // Those that have just been let go of, or depend on others that push.
     let mut barred = vec![false; count];
     let most = wanted
@@ -148,13 +180,20 @@ pub(crate) fn multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f6
         pushes.push(next);
         let mut is_changed = false;
         loop {
-            let Some(solved) = solve(&matrix, count, &pushes, wanted, &scale) else {
+            if !factor.grow(&pushes, entry) {
                 // The last one depends on the others.
                 if let Some(last) = pushes.pop() {
                     barred[last] = true;
                 }
                 break;
-            };
+            }
+            let right = pushes.iter().map(|&k| wanted[k] * scale[k]).collect();
+            let solved = factor.solve(&pushes, entry, right);
+            let solved: Vec<f64> = solved
+                .iter()
+                .zip(&pushes)
+                .map(|(x, &k)| x * scale[k])
+                .collect();
             let least = pushes
                 .iter()
                 .zip(&solved)
@@ -172,21 +211,21 @@ pub(crate) fn multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f6
             for (&k, solved) in pushes.iter().zip(&solved) {
                 given[k] += least.max(0.0) * (solved - given[k]);
             }
-            let before = pushes.len();
-            let gone: Vec<usize> = pushes
+            let is_gone: Vec<bool> = pushes
                 .iter()
                 .zip(&solved)
-                .filter(|&(&k, &solved)| solved <= 0.0 && given[k] <= f64::EPSILON * solved.abs())
-                .map(|(&k, _)| k)
+                .map(|(&k, &solved)| solved <= 0.0 && given[k] <= f64::EPSILON * solved.abs())
                 .collect();
-            for k in gone {
+            let Some(first) = is_gone.iter().position(|&gone| gone) else {
+                break;
+            };
+            for (&k, _) in pushes.iter().zip(&is_gone).filter(|&(_, &gone)| gone) {
                 given[k] = 0.0;
                 barred[k] = k == next;
-                pushes.retain(|&other| other != k);
             }
-            if pushes.len() == before {
-                break;
-            }
+            let mut gone = is_gone.iter();
+            pushes.retain(|_| gone.next() == Some(&false));
+            factor.rows.truncate(first);
         }
         if is_changed {
             barred.fill(false);
@@ -195,56 +234,67 @@ pub(crate) fn multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f6
     given
 }
 
-/// The impulses of those that push, by Cholesky's decomposition; `None` where they depend on each other.
-fn solve(
-    matrix: &[f64],
-    count: usize,
-    pushes: &[usize],
-    wanted: &[f64],
-    scale: &[f64],
-) -> Option<Vec<f64>> {
-    let n = pushes.len();
-    let entry = |k: usize, l: usize| {
-        let (k, l) = (pushes[k], pushes[l]);
-        matrix[k * count + l] * scale[k] * scale[l]
-    };
-    let mut lower = vec![0.0; n * n];
-    for k in 0..n {
-        for l in 0..=k {
-            let known: f64 = (0..l).map(|m| lower[k * n + m] * lower[l * n + m]).sum();
-            let left = entry(k, l) - known;
-            if k == l {
-                if left <= DEPENDENT {
-                    return None;
+/// Cholesky's decomposition of the rows and columns of those that push, in their order.
+#[derive(Default)]
+struct Factor {
+    /// Of the lower triangle.
+    rows: Vec<Vec<f64>>,
+}
+
+impl Factor {
+    /// Adds the rows that are missing; tells whether none depends on those before it.
+    fn grow(&mut self, pushes: &[usize], entry: impl Fn(usize, usize) -> f64) -> bool {
+        for k in self.rows.len()..pushes.len() {
+            let mut row: Vec<f64> = Vec::with_capacity(k + 1);
+            for l in 0..=k {
+                let of_l = self.rows.get(l).unwrap_or(&row);
+                let known: f64 = row.iter().zip(&of_l[..l]).map(|(a, b)| a * b).sum();
+                let left = entry(pushes[k], pushes[l]) - known;
+                if l < k {
+                    row.push(left / of_l[l]);
+                } else if left > DEPENDENT {
+                    row.push(libm::sqrt(left));
+                } else {
+                    return false;
                 }
-                lower[k * n + k] = libm::sqrt(left);
-            } else {
-                lower[k * n + l] = left / lower[l * n + l];
             }
+            self.rows.push(row);
         }
+        true
     }
-    let solve_with = |right: &[f64]| {
-        let mut x = right.to_vec();
-        for k in 0..n {
-            let known: f64 = (0..k).map(|m| lower[k * n + m] * x[m]).sum();
-            x[k] = (x[k] - known) / lower[k * n + k];
-        }
-        for k in (0..n).rev() {
-            let known: f64 = (k + 1..n).map(|m| lower[m * n + k] * x[m]).sum();
-            x[k] = (x[k] - known) / lower[k * n + k];
+
+    /// The solution for a right-hand side, and once more for what is left of it.
+    fn solve(
+        &self,
+        pushes: &[usize],
+        entry: impl Fn(usize, usize) -> f64,
+        right: Vec<f64>,
+    ) -> Vec<f64> {
+        let n = pushes.len();
+        let mut x = self.back(right.clone());
+        let product = |k: usize, x: &[f64]| {
+            let others = pushes.iter().zip(x);
+            others.map(|(&l, x)| entry(pushes[k], l) * x).sum::<f64>()
+        };
+        let left = (0..n).map(|k| right[k] - product(k, &x)).collect();
+        for (x, more) in x.iter_mut().zip(self.back(left)) {
+            *x += more;
         }
         x
-    };
-    let right: Vec<f64> = pushes.iter().map(|&k| wanted[k] * scale[k]).collect();
-    let mut x = solve_with(&right);
-    // Once more with what is left.
-    let left: Vec<f64> = (0..n)
-        .map(|k| right[k] - (0..n).map(|l| entry(k, l) * x[l]).sum::<f64>())
-        .collect();
-    for (x, more) in x.iter_mut().zip(solve_with(&left)) {
-        *x += more;
     }
-    Some(x.iter().zip(pushes).map(|(x, &k)| x * scale[k]).collect())
+
+    fn back(&self, mut x: Vec<f64>) -> Vec<f64> {
+        let n = x.len();
+        for (k, row) in self.rows.iter().enumerate() {
+            let known: f64 = row[..k].iter().zip(&x).map(|(a, x)| a * x).sum();
+            x[k] = (x[k] - known) / row[k];
+        }
+        for k in (0..n).rev() {
+            let known: f64 = (k + 1..n).map(|m| self.rows[m][k] * x[m]).sum();
+            x[k] = (x[k] - known) / self.rows[k][k];
+        }
+        x
+    }
 }
 
 /// Most rounds of reflection, as in [`super::reflect`].
@@ -307,4 +357,57 @@ pub(crate) fn reflect(
         }
     }
     impulse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns of cubes that stand on one floor, by corners.
+    fn columns(count: usize) -> (Vec<Arms>, Vec<Yielding>) {
+        let still = Yielding {
+            mass: 0.0,
+            inertia: DMat3::ZERO,
+        };
+        let mut yielding = vec![still];
+        let mut contacts = Vec::new();
+        for column in 0..count {
+            let mut below = 0;
+            for _ in 0..2 {
+                let mass = 1.0 + 0.25 * column as f64;
+                let body = yielding.len();
+                yielding.push(Yielding {
+                    mass,
+                    inertia: 6.0 * mass * DMat3::IDENTITY,
+                });
+                for (x, z) in [(-0.5, -0.5), (0.5, -0.5), (0.25, 0.5)] {
+                    let height = if below == 0 { 0.0 } else { 0.5 };
+                    contacts.push(Arms {
+                        bodies: (below, body),
+                        normal: DVec3::Y,
+                        arms: (DVec3::new(x, height, z), DVec3::new(x, -0.5, z)),
+                    });
+                }
+                below = body;
+            }
+        }
+        (contacts, yielding)
+    }
+
+    #[test]
+    fn what_only_a_floor_ties_is_found_as_if_alone() {
+        let (alone, of_alone) = columns(1);
+        let (all, of_all) = columns(3);
+        let wanted: Vec<f64> = (0..all.len()).map(|k| 1.0 + 0.1 * (k % 6) as f64).collect();
+        let first = multipliers(&alone, &of_alone, &wanted[..6]);
+        let given = multipliers(&all, &of_all, &wanted);
+        assert_eq!(given[..6], first);
+        let mut twists = vec![Twist::default(); of_all.len()];
+        push(&all, &of_all, &mut twists, &given);
+        for ((contact, wanted), given) in all.iter().zip(&wanted).zip(&given) {
+            let missing = wanted - contact.opening(&twists);
+            assert!(missing < 1e-13 && *given >= 0.0);
+            assert!(*given == 0.0 || missing > -1e-13, "{missing}");
+        }
+    }
 }

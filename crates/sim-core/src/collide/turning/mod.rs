@@ -125,6 +125,7 @@ pub fn first_contact_counted(
     let exactly = Care {
         halt: 0.0,
         most: MOST,
+        reach: 1.0,
     };
     first_contact_with(a, b, duration, exactly)
 }
@@ -137,6 +138,9 @@ pub(crate) struct Care {
     pub(crate) halt: f64,
     /// Pairs of pieces that are looked at, at most.
     pub(crate) most: u32,
+    /// How far apart they may be at the start to be in contact there, in what is a contact elsewhere, if they do not
+    /// part by more and are not certified to the end.
+    pub(crate) reach: f64,
 }
 
 impl Care {
@@ -144,6 +148,7 @@ impl Care {
     pub(crate) const TO_GO_ON: Care = Care {
         halt: 64.0,
         most: 1 << 12,
+        reach: 1.0,
     };
 }
 
@@ -266,16 +271,16 @@ fn search(
     };
     let (whole_a, whole_b) = (Item::whole(a), Item::whole(b));
     let roots = [Boxed::root(a), Boxed::root(b)];
-    let (mut now, mut apart) = (0.0, true);
+    let (mut now, mut apart, mut hint) = (0.0, true, None);
     // Two sets need no queue.
     while apart && whole_a.is_set() && whole_b.is_set() {
         let view = search.view(now);
         if now == 0.0 && search.apart_to_end(&view, &view.directions(), &roots) {
             return None;
         }
-        match search.advance(&view, (whole_a, whole_b)) {
+        match search.advance(&view, (whole_a, whole_b), hint) {
             Next::Apart => return None,
-            Next::Later(time) => now = time,
+            Next::Later(time, along) => (now, hint) = (time, Some(along)),
             Next::Contact(touch) => return Some(touch),
             Next::Untold => apart = false,
         }
@@ -301,8 +306,8 @@ struct Search<'a, 'b> {
 enum Next {
     /// They stay apart to the end.
     Apart,
-    /// They are apart until then.
-    Later(f64),
+    /// They are apart until then, by a direction in the world.
+    Later(f64, DVec3),
     Contact(TurningTouch),
     /// No direction has them on either side, of which one is a box.
     Untold,
@@ -326,11 +331,19 @@ impl Search<'_, '_> {
         view.boxes_apart(directions, [a, b], self.only) >= view.left
     }
 
-    /// What becomes of two sets from the time of a view on.
-    fn advance(&mut self, view: &View, (a, b): (Item, Item)) -> Next {
+    /// What becomes of two sets from the time of a view on. A direction in the world may be known that has kept them
+    /// apart before.
+    fn advance(&mut self, view: &View, (a, b): (Item, Item), hint: Option<DVec3>) -> Next {
         self.effort.pieces += 1;
         let (first, second) = (Points::of(self.bodies[0], a), Points::of(self.bodies[1], b));
-        let gap = view.sets_apart(&first, &second, self.only, self.care.halt);
+        let reach = if view.time == 0.0 {
+            self.care.reach
+        } else {
+            1.0
+        };
+        let hint = hint.map(|hint| view.axes.inverse() * hint);
+        let known = (self.only, hint);
+        let gap = view.sets_apart(&first, &second, known, (self.care.halt, reach));
         let is_box = a == Item::Cuboid || b == Item::Cuboid;
         if !gap.is_apart && is_box && self.only.is_none() {
             return Next::Untold;
@@ -341,9 +354,12 @@ impl Search<'_, '_> {
         }
         // Without a proof for any time, and where they are near and come nearer.
         let is_contact = until <= view.time || gap.distance <= gap.near && !gap.opens;
-        match is_contact || self.effort.pieces == self.care.most {
+        // Nor do they part at the start by more than that before they may be back.
+        let farthest = gap.distance + gap.parting.max(0.0) * gap.lasts;
+        let is_lying = reach > 1.0 && farthest <= reach * gap.near;
+        match is_contact || is_lying || self.effort.pieces == self.care.most {
             true => Next::Contact(touch(view, &gap)),
-            false => Next::Later(until),
+            false => Next::Later(until, view.axes * gap.normal),
         }
     }
 
@@ -372,9 +388,9 @@ impl Search<'_, '_> {
                     view = self.view(now);
                     directions = view.directions();
                 }
-                match self.advance(&view, (entry.a, entry.b)) {
+                match self.advance(&view, (entry.a, entry.b), None) {
                     Next::Apart => (),
-                    Next::Later(time) => queue.push(Entry { time, ..entry }),
+                    Next::Later(time, _) => queue.push(Entry { time, ..entry }),
                     Next::Contact(touch) => return Some(touch),
                     Next::Untold => queue.push(entry.opened(roots)),
                 }

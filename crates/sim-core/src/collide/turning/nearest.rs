@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::pieces::{MOST_POINTS, Points};
+use super::pieces::{Kind, MOST_POINTS, Points};
 
 /// Two points, and how far they are from each other.
 #[derive(Clone, Copy, Debug)]
@@ -84,14 +84,13 @@ pub(super) fn nearest(
                     best.keep_nearer(pair);
                 }
             };
-            // Those that reach farthest to the other side first.
-            let by = |of: &[f64], is_less: fn(f64, f64) -> bool| {
-                (1..of.len()).fold(0, |best, k| if is_less(of[k], of[best]) { k } else { best })
-            };
-            compare(
-                by(&tops[..count_a], |a, b| a > b),
-                by(&bottoms[..count_b], |a, b| a < b),
-            );
+            // Those first that are likely to be the nearest, so that few others are not passed over.
+            for (i, k) in likely((a, first), second, &of_b[..count_b]) {
+                compare(i, k);
+            }
+            for (k, i) in likely((b, second), first, &of_a[..count_a]) {
+                compare(i, k);
+            }
             for i in 0..count_a {
                 for k in 0..count_b {
                     compare(i, k);
@@ -100,6 +99,43 @@ pub(super) fn nearest(
         }
     }
     best
+}
+
+/// Of a box its two triangles on the side that is nearest to a corner of another set, each with a triangle of that one
+/// at the corner, by their places; none where the first set is no box.
+fn likely(
+    (a, at): (&Points<'_>, &At),
+    others: &At,
+    triangles: &[([u8; 3], u32)],
+) -> impl Iterator<Item = (usize, usize)> + use<> {
+    let axes = [1, 2, 4].map(|k| at[k] - at[0]);
+    let squares = axes.map(DVec3::length_squared);
+    // How far a corner is from the box, and which side is between them.
+    let away = |p: DVec3| {
+        let mut rest = p - at[0];
+        let mut side = (f64::NEG_INFINITY, 0);
+        for axis in 0..3 {
+            let along = axes[axis].dot(p - at[0]) / squares[axis];
+            rest -= along.clamp(0.0, 1.0) * axes[axis];
+            for (end, beyond) in [-along, along - 1.0].into_iter().enumerate() {
+                if beyond > 0.0 && beyond * beyond * squares[axis] > side.0 {
+                    side = (beyond * beyond * squares[axis], 2 * axis + end);
+                }
+            }
+        }
+        (rest.length_squared(), side.1)
+    };
+    let mut found = None;
+    if let Kind::Cuboid(_) = a.kind {
+        let corners = (0..).zip(others).map(|(corner, &p)| (away(p), corner));
+        let nearest = corners.min_by(|a, b| a.0.0.total_cmp(&b.0.0));
+        found = nearest.and_then(|((_, side), corner)| {
+            let beside = triangles.iter().position(|(by, _)| by.contains(&corner))?;
+            Some((side, beside))
+        });
+    }
+    let both = found.map(|(side, beside)| [(2 * side, beside), (2 * side + 1, beside)]);
+    both.into_iter().flatten()
 }
 
 /// Least and greatest corner of a box around a triangle.

@@ -37,6 +37,8 @@ pub(super) struct Gap {
     /// Whether the nearest points part along the direction that tells so, and fast enough beside what is near
     /// them for this to be followed.
     pub(super) opens: bool,
+    /// The speed at which they part along that direction at least, where they are near, m/s.
+    pub(super) parting: f64,
     pub(super) normal: DVec3,
     pub(super) points: [DVec3; 2],
     pub(super) faces: [Option<u32>; 2],
@@ -509,20 +511,22 @@ impl Own {
 }
 
 impl View {
-    /// What is between two sets, and how long it stays.
+    /// What is between two sets, and how long it stays. They are told apart along a direction alone, or along one that
+    /// may serve first of all. Roundings of a gap at which they stop, and how near they are
+    /// for it to matter whether they part, in what is a contact.
     pub(super) fn sets_apart(
         &self,
         a: &Points<'_>,
         b: &Points<'_>,
-        only: Option<DVec3>,
-        halt: f64,
+        known: (Option<DVec3>, Option<DVec3>),
+        care: (f64, f64),
     ) -> Gap {
         let is_big = |points: &Points<'_>| matches!(points.kind, Kind::Cuboid(_));
         match (is_big(a), is_big(b)) {
-            (false, false) => self.apart::<4, 4>(a, b, only, halt),
-            (true, false) => self.apart::<8, 4>(a, b, only, halt),
-            (false, true) => self.apart::<4, 8>(a, b, only, halt),
-            (true, true) => self.apart::<8, 8>(a, b, only, halt),
+            (false, false) => self.apart::<4, 4>(a, b, known, care),
+            (true, false) => self.apart::<8, 4>(a, b, known, care),
+            (false, true) => self.apart::<4, 8>(a, b, known, care),
+            (true, true) => self.apart::<8, 8>(a, b, known, care),
         }
     }
 
@@ -530,8 +534,8 @@ impl View {
         &self,
         a: &Points<'_>,
         b: &Points<'_>,
-        only: Option<DVec3>,
-        halt: f64,
+        (only, hint): (Option<DVec3>, Option<DVec3>),
+        (halt, reach): (f64, f64),
     ) -> Gap {
         let arms = b.at.map(|p| self.turn * p);
         let second = arms.map(|p| self.offset + p);
@@ -565,10 +569,10 @@ impl View {
                 Some(below(normal, b, &second))
             }
             None => {
-                let pair = sets.between((a, &a.at), (b, &second), &own);
+                let pair = sets.between((a, &a.at), (b, &second), &own, hint);
                 // Whether they part is asked of the nearest points.
                 let (widest, along) = sets.widest;
-                let is_asked = pair.is_none() && widest <= near;
+                let is_asked = pair.is_none() && widest <= reach * near;
                 pair.or_else(|| is_asked.then(|| nearest((a, &a.at), (b, &second), along)))
             }
         };
@@ -579,18 +583,20 @@ impl View {
             lasts: sets.lasts,
             is_apart: sets.widest.0 > 0.0,
             opens: false,
+            parting: 0.0,
             normal: sets.widest.1,
             points: pair.map_or([DVec3::ZERO; 2], |pair| pair.points),
             faces: pair.map_or([None; 2], |pair| pair.faces),
         };
         if let Some(direction) = &sets.direction {
             gap.normal = direction.along;
-            if gap.distance <= near {
+            if gap.distance <= reach * near {
                 let [at_a, at_b] = gap.points;
                 let parting = self.velocity + self.second.spin.cross(at_b - self.offset)
                     - self.first.spin.cross(at_a);
                 let parting = direction.along.dot(parting) - 32.0 * UNIT * margin.speed;
                 gap.opens = parting >= FOLLOWED * sets.closing(direction);
+                gap.parting = parting;
             }
         }
         if let Some(normal) = only {
@@ -622,10 +628,17 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
         (a, first): (&Points<'_>, &[DVec3; MOST_POINTS]),
         (b, second): (&Points<'_>, &[DVec3; MOST_POINTS]),
         own: &[Own; 2],
+        hint: Option<DVec3>,
     ) -> Option<Pair> {
         let left = self.view.left;
         let between = second[0] - first[0];
         let is_done = |sets: &Self| sets.lasts >= ENOUGH * left;
+        if let Some(hint) = hint {
+            self.along(hint, between);
+            if is_done(self) {
+                return None;
+            }
+        }
         let has_room = matches!(a.kind, Kind::Cuboid(_)) || matches!(b.kind, Kind::Cuboid(_));
         let mut pair = None;
         if has_room {

@@ -235,7 +235,8 @@ impl View<'_> {
         let of = |body: usize, point: DVec3| (point - start.position[body]).dot(up).abs();
         let point = event.contact.point;
         let most = f64::from(f32::EPSILON) * (of(floor, touched) + of(ledge, point));
-        if (point - touched).dot(up) > most {
+        // What it meets below the surface is no ledge of it.
+        if (point - touched).dot(up).abs() > most {
             return None;
         }
         let relative = start.velocity[body] - start.velocity[ledge];

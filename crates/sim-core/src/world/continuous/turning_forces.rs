@@ -264,6 +264,21 @@ impl Pressing<'_> {
         bend + 2.0 * n.dot(opening) / (PARTS[PARTS.len() - 1] * self.left)
     }
 
+    /// Whether neither body of a contact turns: impulses change their velocities at once, and their gap from then on.
+    fn is_straight(&self, k: usize) -> bool {
+        let contact = &self.contacts[k];
+        let (i, j) = contact.bodies;
+        contact.arms == (DVec3::ZERO, DVec3::ZERO)
+            && self.movers[i].turns.is_none()
+            && self.movers[j].turns.is_none()
+    }
+
+    /// The velocity of the second body of such a contact beside the first one, m/s.
+    fn parting(&self, k: usize, course: &Course) -> DVec3 {
+        let (i, j) = self.contacts[k].bodies;
+        course.rates[j].velocity - course.rates[i].velocity
+    }
+
     /// How far the point of a contact gets along a constant direction at constant arms.
     pub(super) fn gets(&self, contact: &Arms, course: &Course) -> f64 {
         let of = |body: usize, arm: DVec3| {
@@ -305,6 +320,8 @@ impl Pressing<'_> {
     /// The forces after which no gap is less than it must be.
     pub(super) fn find(&self) -> Result<Forces, (usize, Cause)> {
         let count = self.touching.len();
+        let widest = self.touching.iter().map(|touching| touching.room);
+        let widest = widest.fold(0.0, f64::max);
         let mut forces = Forces {
             impulse: vec![0.0; count],
             contacts: self.contacts.to_vec(),
@@ -325,6 +342,14 @@ impl Pressing<'_> {
             let mut is_found = true;
             let mut wanted = Vec::with_capacity(count);
             for k in 0..count {
+                if self.is_straight(k) {
+                    let opening = self.contacts[k].normal.dot(self.parting(k, &course));
+                    let missing = -self.left * opening;
+                    let slack = 0.25 * widest;
+                    is_found &= missing <= slack && (forces.impulse[k] == 0.0 || missing >= -slack);
+                    wanted.push(forces.contacts[k].opening(&pushed) - opening);
+                    continue;
+                }
                 let (from, room) = (self.touching[k].gap.min(self.room[k]), self.room[k]);
                 let later = PARTS.iter().enumerate().skip(1);
                 let missing = later

@@ -25,7 +25,7 @@ use crate::{
 };
 
 /// Features touch that are no farther apart than this times what is a contact.
-const REACH: f64 = 64.0;
+pub(super) const REACH: f64 = 64.0;
 /// Least gap from which bodies bounce, in the same: where those stop that come from afar.
 const LEAST_ROOM: f64 = 0.75;
 /// Gap at which bodies in contact are kept, in the same.
@@ -476,6 +476,9 @@ impl ContactSolver<'_> {
         // What has fallen through the room that bodies are kept at is no impact.
         let fallen = libm::sqrt(8.0 * ROOM * event.gap * pull);
         let unfelt = self.view().unfelt(load_speed) + fallen;
+        if closing <= unfelt && restitution < 1.0 {
+            return Ok(TurningOutcome::Rest);
+        }
         Ok(
             match most <= many && self.view().bounces(((i, j), normal), closing, load_speed) {
                 true => TurningOutcome::Bounce,

@@ -352,20 +352,45 @@ impl ContactSolver<'_> {
             yielding.mass = if moves { yielding.mass } else { 0.0 };
             yielding.inertia = DMat3::ZERO;
         }
-        let given = arms::multipliers(&island.contacts, &island.yielding, &wanted);
-        let mut way = vec![Twist::default(); island.bodies.len()];
-        arms::push(&island.contacts, &island.yielding, &mut way, &given);
-        let ways = island.bodies.iter().copied().zip(way.iter());
-        let mut moved: Vec<(usize, DVec3, DVec3)> = ways
-            .map(|(body, way)| (body, way.velocity, self.paths.start.position[body]))
-            .filter(|&(_, way, _)| way != DVec3::ZERO)
+        loop {
+            let given = arms::multipliers(&island.contacts, &island.yielding, &wanted);
+            let mut way = vec![Twist::default(); island.bodies.len()];
+            arms::push(&island.contacts, &island.yielding, &mut way, &given);
+            let ways = island.bodies.iter().copied().zip(&way);
+            let ways = ways.map(|(body, way)| (body, way.velocity));
+            let Some(blocked) = self.move_by(ways, time, restarted)? else {
+                for (contact, touching) in island.contacts.iter().zip(touching) {
+                    touching.gap += contact.opening(&way);
+                }
+                return Ok(());
+            };
+            // What has no room stays, and others make more of it.
+            let place = island.bodies.iter().position(|&body| body == blocked);
+            match place.filter(|&place| island.yielding[place].mass > 0.0) {
+                Some(place) => island.yielding[place].mass = 0.0,
+                None => return Ok(()),
+            }
+        }
+    }
+
+    /// Moves bodies, and what is in their way with them; where that has no room none, and it tells which of them
+    /// has none.
+    fn move_by(
+        &mut self,
+        ways: impl Iterator<Item = (usize, DVec3)>,
+        time: f64,
+        restarted: &mut Vec<usize>,
+    ) -> Result<Option<usize>, (usize, Cause)> {
+        // The body, its way, where it was, and which of those that were moved first takes it along.
+        let mut moved: Vec<(usize, DVec3, DVec3, usize)> = ways
+            .filter(|&(_, way)| way != DVec3::ZERO)
+            .map(|(body, way)| (body, way, self.paths.start.position[body], body))
             .collect();
-        for &(body, way, _) in &moved {
+        for &(body, way, ..) in &moved {
             self.paths.start.position[body] += way;
         }
-        // What is in the way goes with it.
         let mut next = 0;
-        while let Some(&(body, way, _)) = moved.get(next) {
+        while let Some(&(body, way, _, first)) = moved.get(next) {
             let Some(other) = self.met_by(body, time)? else {
                 next += 1;
                 continue;
@@ -373,19 +398,16 @@ impl ContactSolver<'_> {
             let all = self.scene.bodies;
             let is_free = all.is_movable(other) && all.tumbles(other);
             if !is_free || moved.iter().any(|&(body, ..)| body == other) {
-                for (body, _, before) in moved {
+                for (body, _, before, _) in moved {
                     self.paths.start.position[body] = before;
                 }
-                return Ok(());
+                return Ok(Some(first));
             }
             self.restart(other, time, restarted)?;
-            moved.push((other, way, self.paths.start.position[other]));
+            moved.push((other, way, self.paths.start.position[other], first));
             self.paths.start.position[other] += way;
         }
-        for (contact, touching) in island.contacts.iter().zip(touching) {
-            touching.gap += contact.opening(&way);
-        }
-        Ok(())
+        Ok(None)
     }
 
     /// Takes bodies from their forces, which are constant from here on, and tells those: by body what

@@ -12,6 +12,7 @@ use super::{
     event::{Event, EventKind},
     levered::{Pose, flight_over},
     trajectory::Probe,
+    turning_response::REACH,
     view::View,
 };
 use crate::{
@@ -152,7 +153,14 @@ impl View<'_> {
             turning: bodies.turning_of(j, flight),
             ..b
         };
-        let (found, effort) = turning::first_contact_with(&a, &b, length, Care::TO_GO_ON);
+        // What has lain on each other at the end of the last step does so where this one starts.
+        let is_first = self.paths.version[i] == 0 && self.paths.version[j] == 0;
+        let reach = if is_first { REACH } else { 1.0 };
+        let care = Care {
+            reach,
+            ..Care::TO_GO_ON
+        };
+        let (found, effort) = turning::first_contact_with(&a, &b, length, care);
         probe.work.certified += u64::from(effort.boxes) + u64::from(effort.pieces);
         let Some(touch) = found else {
             return Ok(None);
@@ -177,7 +185,7 @@ impl View<'_> {
         let time = (part.from.time + at).min(self.scene.settings.dt.next_down());
         let event = Event::impact(time, (i, j), contact, near, &self.paths.version);
         // What has been looked at for long enough goes on from there.
-        let kind = match distance <= near {
+        let kind = match distance <= reach * near {
             true => EventKind::Impact,
             false => EventKind::Horizon,
         };
