@@ -1,5 +1,5 @@
 //! A fixed number of the cases that `fuzz/` tries without end: inputs that are known, and mutations of
-//! them by a fixed seed. `COWBELL_FUZZ_RUNS` sets how many there are of each case (of `values` a fifth), `COWBELL_FUZZ_SEED`
+//! them by a fixed seed. `COWBELL_FUZZ_RUNS` sets how many there are of each case (of `values` and `turning` a fifth), `COWBELL_FUZZ_SEED`
 //! the seed, and `COWBELL_FUZZ_CASE` the only one.
 
 use std::fs;
@@ -93,9 +93,12 @@ fn nothing_that_is_tried_breaks_what_must_hold() {
         let corpus = corpus(name);
         let mut random = Random::scrambled(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
         let known = corpus.len() as u64;
-        // Each of those makes worlds, and steps them in every mode.
-        let runs = if name == "values" { runs / 5 } else { runs };
-        let reads_numbers = ["values", "pair", "sweep", "step"].contains(&name);
+        // The ones make worlds and step them in every mode, and some of the others take a second.
+        let runs = match name {
+            "values" | "turning" => runs / 5,
+            _ => runs,
+        };
+        let reads_numbers = ["values", "pair", "sweep", "step", "turning"].contains(&name);
         for run in 0..runs.max(known) {
             let input = match corpus.get(run as usize) {
                 Some(input) => input.clone(),

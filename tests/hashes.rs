@@ -3,7 +3,7 @@
 //!
 //! A change that means to keep every result keeps that file; one that means to change results
 //! changes it, where a reader of the change sees which. To print it anew:
-//! `COWBELL_PRINT_HASHES=1 cargo test -p tests --test hashes -- --nocapture`.
+//! `COWBELL_PRINT_HASHES=1 cargo test --test hashes -- --nocapture`.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

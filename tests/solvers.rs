@@ -50,7 +50,7 @@ fn compare(problem: &dyn Solve, tolerance: f64) {
 }
 
 /// Ours before theirs. The times are for a release build:
-/// `cargo test --release -p tests --test solvers -- --nocapture`.
+/// `cargo test --release --test solvers -- --nocapture`.
 #[test]
 fn the_same_evaluations_and_error_as_ode_solvers() {
     let mut compared = 0;

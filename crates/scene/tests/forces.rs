@@ -262,6 +262,17 @@ fn every_scene_runs_with_every_method_or_says_why_not() {
     }
 }
 
+/// A star of a billion kilograms asks for some ten thousand steps within each; questions where the stars are, for
+/// as many each. Ten steps of the world took half a minute.
+#[test]
+fn a_step_that_asks_a_method_for_ever_more_steps_of_its_own_is_refused() {
+    let text = include_str!("../assets/scenes/pleiades.toml");
+    let heavy = text.replacen("mass = 7", "mass = 1e9", 1);
+    let mut world = parse(&heavy).expect("a scene").world().expect("a world");
+    let error = world.step().expect_err("too much work");
+    assert!(matches!(error, StepError::TooMuchWork { .. }), "{error}");
+}
+
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![0.0..1e100_f64, (0..1000_u32).prop_map(f64::from), Just(0.0)]
 }

@@ -85,6 +85,9 @@ pub fn run(mut session: Session) -> Result<(), Failure> {
     let ran = event_loop.run_app(&mut app);
     if app.session.is_closing() {
         app.rescue.forget();
+    } else {
+        // Where this fails, what was written before is told below.
+        let _ = app.rescue.keep_at_once(&mut app.session);
     }
     let ended = match (app.failure.take(), ran) {
         (Some(failure), _) => failure,

@@ -12,6 +12,9 @@ use crate::render::{self, Renderer};
 /// Format of the picture's texture, the only one that egui shows.
 const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
+const NO_MEMORY: &str = "The graphics adapter has no memory left, and something is not drawn: make the window smaller, show \
+                         fewer or coarser meshes, or end other programs. Edits are kept.";
+
 /// A device with the two renderers, and the picture's texture.
 pub struct Canvas {
     device: wgpu::Device,
@@ -178,10 +181,20 @@ impl Canvas {
 }
 
 fn in_part(cut: &render::Cut) -> String {
-    let [drawn, all] = [cut.drawn, cut.triangles].map(|count| number::count(count as f64));
+    let [drawn, all] =
+        [cut.drawn, cut.mesh.triangles().len()].map(|count| number::count(count as f64));
     format!(
         "The graphics adapter has room for {drawn} of the {all} triangles of a mesh, and draws no more. All of them collide."
     )
+}
+
+/// What is to be told once there has been another error. What is missing for want of memory causes more of them.
+fn after(told: Option<String>, error: &wgpu::Error) -> String {
+    match (told, error) {
+        (_, wgpu::Error::OutOfMemory { .. }) => NO_MEMORY.to_owned(),
+        (Some(told), _) if told == NO_MEMORY => told,
+        (_, error) => error.to_string(),
+    }
 }
 
 impl Troubles {
@@ -191,7 +204,7 @@ impl Troubles {
         let troubles = self.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             if let Ok(mut slot) = troubles.error.lock() {
-                *slot = Some(error.to_string());
+                *slot = Some(after(slot.take(), &error));
             }
         }));
     }
@@ -249,6 +262,16 @@ mod tests {
         Some(Canvas::new(made.expect("a device"), FORMAT, samples))
     }
 
+    fn model(mesh: &Arc<sim_core::Mesh>, selected: bool) -> Model {
+        Model {
+            mesh: mesh.clone(),
+            position: DVec3::ZERO,
+            rotation: DQuat::IDENTITY,
+            colour: [0.5; 3],
+            selected,
+        }
+    }
+
     fn frame() -> UiFrame {
         UiFrame {
             primitives: Vec::new(),
@@ -285,16 +308,9 @@ mod tests {
         };
         let view = texture(canvas.device(), [64, 48], FORMAT);
         let mesh = scene::MeshRef::builtin("cow.obj").expect("built in");
-        let model = |selected| Model {
-            mesh: mesh.mesh().clone(),
-            position: DVec3::ZERO,
-            rotation: DQuat::IDENTITY,
-            colour: [0.5; 3],
-            selected,
-        };
         for (selected, least) in [(false, 1000), (true, 900)] {
             let picture = Picture {
-                models: vec![model(selected)],
+                models: vec![model(mesh.mesh(), selected)],
                 ..Picture::default()
             };
             canvas.paint(&view, [64, 48], (&picture, [64, 48]), &frame());
@@ -311,6 +327,23 @@ mod tests {
     }
 
     #[test]
+    fn want_of_memory_is_told_with_a_remedy_and_before_what_comes_of_it() {
+        let no_memory = wgpu::Error::OutOfMemory {
+            source: "out of memory".into(),
+        };
+        let invalid = wgpu::Error::Validation {
+            source: "invalid".into(),
+            description: "the buffer is invalid".to_owned(),
+        };
+        let other = after(None, &invalid);
+        assert!(other.contains("the buffer is invalid"), "{other}");
+        let told = after(Some(other), &no_memory);
+        assert_eq!(told, NO_MEMORY);
+        assert!(Language::Chinese.translated(&told).is_some(), "{told}");
+        assert_eq!(after(Some(told), &invalid), NO_MEMORY);
+    }
+
+    #[test]
     fn a_lost_device_is_noticed_and_painting_on_does_no_harm() {
         let Some(mut canvas) = canvas() else { return };
         let view = texture(canvas.device(), [64, 48], FORMAT);
@@ -320,7 +353,13 @@ mod tests {
         // It tells when all that it had to do is done.
         let _ = canvas.device().poll(wgpu::PollType::wait_indefinitely());
         assert!(canvas.is_lost());
-        canvas.paint(&view, [64, 48], (&Picture::default(), [32, 32]), &frame());
+        // A mesh that it has not seen, too.
+        let mesh = scene::MeshRef::builtin("cube.obj").expect("built in");
+        let picture = Picture {
+            models: vec![model(mesh.mesh(), true)],
+            ..Picture::default()
+        };
+        canvas.paint(&view, [64, 48], (&picture, [32, 32]), &frame());
         canvas.flush();
         // Another one takes its place.
         let Some(mut canvas) = self::canvas() else {

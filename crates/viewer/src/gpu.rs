@@ -14,8 +14,8 @@ use crate::render;
 /// Everything that draws into one window.
 pub struct Gpu {
     window: Arc<Window>,
-    instance: wgpu::Instance,
     surface: wgpu::Surface<'static>,
+    surface_lost: bool,
     config: wgpu::SurfaceConfiguration,
     canvas: Canvas,
 }
@@ -27,8 +27,8 @@ enum Next {
     Paint(wgpu::SurfaceTexture),
     /// Fit it to the window, and ask again.
     Fit,
-    /// Make it anew, and ask again.
-    Renew,
+    /// Open the window's graphics anew: another surface beside it would be in its way.
+    Reopen,
     /// Paint nothing: the window takes no pictures now.
     Wait,
 }
@@ -39,7 +39,7 @@ impl Next {
             wgpu::CurrentSurfaceTexture::Success(texture)
             | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => Self::Paint(texture),
             wgpu::CurrentSurfaceTexture::Outdated => Self::Fit,
-            wgpu::CurrentSurfaceTexture::Lost => Self::Renew,
+            wgpu::CurrentSurfaceTexture::Lost => Self::Reopen,
             wgpu::CurrentSurfaceTexture::Timeout
             | wgpu::CurrentSurfaceTexture::Occluded
             | wgpu::CurrentSurfaceTexture::Validation => Self::Wait,
@@ -81,8 +81,8 @@ impl Gpu {
         config.present_mode = wgpu::PresentMode::AutoVsync;
         let mut gpu = Self {
             window,
-            instance,
             surface,
+            surface_lost: false,
             config,
             canvas: Canvas::new(made, format, render::supported_samples(&adapter)),
         };
@@ -109,9 +109,9 @@ impl Gpu {
         let _ = device.poll(wgpu::PollType::wait_indefinitely());
     }
 
-    /// Whether the device is gone, so that everything must be made anew.
+    /// Whether the device or the surface is gone, so that everything must be made anew.
     pub fn is_lost(&self) -> bool {
-        self.canvas.is_lost()
+        self.surface_lost || self.canvas.is_lost()
     }
 
     /// What went wrong since this was last asked.
@@ -152,11 +152,9 @@ impl Gpu {
             match Next::after(self.surface.get_current_texture()) {
                 Next::Paint(texture) => return Some(texture),
                 Next::Fit => self.configure(),
-                Next::Renew => {
-                    if let Ok(surface) = self.instance.create_surface(self.window.clone()) {
-                        self.surface = surface;
-                    }
-                    self.configure();
+                Next::Reopen => {
+                    self.surface_lost = true;
+                    return None;
                 }
                 Next::Wait => return None,
             }
@@ -177,9 +175,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_surface_that_is_lost_is_made_anew_and_a_hidden_one_is_waited_for() {
+    fn all_is_opened_anew_for_a_surface_that_is_lost_and_a_hidden_one_is_waited_for() {
         use wgpu::CurrentSurfaceTexture as Answer;
-        assert!(matches!(Next::after(Answer::Lost), Next::Renew));
+        assert!(matches!(Next::after(Answer::Lost), Next::Reopen));
         assert!(matches!(Next::after(Answer::Outdated), Next::Fit));
         for answer in [Answer::Occluded, Answer::Timeout, Answer::Validation] {
             assert!(matches!(Next::after(answer), Next::Wait));

@@ -78,6 +78,12 @@ impl Rescue {
         written.with_context(place)
     }
 
+    /// Keeps the edits as the window ends by itself, what has not been left alone yet too.
+    pub fn keep_at_once(&mut self, session: &mut Session) -> Result<()> {
+        session.settle_at_once();
+        self.keep(session)
+    }
+
     /// The file with the edits, if there are some that no other file has.
     pub fn file(&self) -> Option<&Path> {
         let own = self.own.as_ref()?;
@@ -225,6 +231,9 @@ mod tests {
         session.settle(LONG);
         rescue.keep(&session).expect("kept");
         assert_eq!(mass(&file), 9.0);
+        session.set_mass(9.5);
+        rescue.keep_at_once(&mut session).expect("kept");
+        assert_eq!(mass(&file), 9.5);
         session.save(&folder.join("mine"), false);
         rescue.keep(&session).expect("saved");
         assert!(rescue.file().is_none() && !file.exists());

@@ -1,14 +1,20 @@
 //! A picture of a scene in a PNG file, drawn without a window.
 
+use std::io::{Write, stderr};
+use std::sync::Arc;
 use std::time::Duration;
 
+use image::RgbaImage;
 use scene::{Scene, file, shown};
+use sim_core::{Mesh, Shape};
 
 use crate::cli::{Depth, ShotArgs};
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
+use crate::number;
 use crate::picture;
-use crate::render::offscreen::{self, ShotError};
+use crate::render::Cut;
+use crate::render::offscreen::{Offscreen, ShotError};
 use crate::session::Session;
 use crate::stopwatch::Stopwatch;
 
@@ -33,7 +39,7 @@ pub fn write(scene: Scene, args: &ShotArgs, interrupt: &Interrupt) -> Result<Str
         }
     }
     interrupt.tell(session.world().steps(), args.step, "steps");
-    let image = offscreen::shot(&session.picture(), args.size).map_err(failure)?;
+    let image = Studio::new()?.shot(&mut session, args.size)?;
     let png = picture::png(&image)
         .map_err(|error| Failure::Run(format!("cannot encode the picture: {error}")))?;
     file::write(&args.output, &png).map_err(|error| {
@@ -47,6 +53,70 @@ pub fn write(scene: Scene, args: &ShotArgs, interrupt: &Interrupt) -> Result<Str
         args.size[1],
         session.world().steps()
     ))
+}
+
+/// Takes pictures of a session, and says of each mesh once that it is drawn in part.
+pub struct Studio {
+    offscreen: Offscreen,
+    told: Vec<Arc<Mesh>>,
+}
+
+impl Studio {
+    /// On the fastest adapter there is.
+    pub fn new() -> Result<Self, Failure> {
+        Offscreen::new().map(Self::with).map_err(failure)
+    }
+
+    fn with(offscreen: Offscreen) -> Self {
+        Self {
+            offscreen,
+            told: Vec::new(),
+        }
+    }
+
+    /// The world as it is to be drawn now, in pixels.
+    pub fn shot(&mut self, session: &mut Session, size: [u32; 2]) -> Result<RgbaImage, Failure> {
+        let (image, lines) = self.drawn(session, size)?;
+        for line in lines {
+            // There is a picture whether that can be told or not.
+            let _ = writeln!(stderr(), "cowbell: {}", shown::message(&line));
+        }
+        Ok(image)
+    }
+
+    /// The picture, and what is to be told of it.
+    fn drawn(
+        &mut self,
+        session: &mut Session,
+        size: [u32; 2],
+    ) -> Result<(RgbaImage, Vec<String>), Failure> {
+        let image = self.offscreen.shot(&session.picture(), size);
+        let image = image.map_err(failure)?;
+        let mut lines = Vec::new();
+        for cut in self.offscreen.take_cut() {
+            if !self.told.iter().any(|told| Arc::ptr_eq(told, &cut.mesh)) {
+                lines.push(in_part(session, &cut));
+                self.told.push(cut.mesh);
+            }
+        }
+        Ok((image, lines))
+    }
+}
+
+fn in_part(session: &Session, cut: &Cut) -> String {
+    let is_its = |body: &usize| match session.world().shape(*body) {
+        Some(Shape::Mesh(mesh)) => Arc::ptr_eq(mesh, &cut.mesh),
+        _ => false,
+    };
+    let body = (0..session.world().len()).find(is_its);
+    let name = body.map(|body| format!(" of {}", shown::name(&session.scene().bodies[body].name)));
+    let [drawn, all] =
+        [cut.drawn, cut.mesh.triangles().len()].map(|count| number::count(count as f64));
+    format!(
+        "the graphics adapter has room for {drawn} of the {all} triangles of the mesh{}, and draws no more (all of \
+         them collide): use a coarser mesh, or another adapter",
+        name.unwrap_or_default()
+    )
 }
 
 /// Selects a body and shows boxes, as the arguments ask for.
@@ -82,7 +152,7 @@ pub fn look(
 }
 
 /// Why there is no picture, for the one who asked for it.
-pub fn failure(error: ShotError) -> Failure {
+fn failure(error: ShotError) -> Failure {
     let message = error.to_string();
     match error {
         ShotError::NoAdapter | ShotError::Device(_) => Failure::NoDisplay(message),
@@ -103,4 +173,52 @@ fn no_such_body(scene: &Scene, name: &str) -> Failure {
         shown::name(name),
         names.join(", ")
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A part of it is better than none, as long as it is told.
+    #[test]
+    fn a_mesh_that_is_drawn_in_part_is_told_once_with_the_name_of_its_body() {
+        // The vertices of the cow, 24 bytes each, do not fit into this.
+        let small = Offscreen::limited(|limits| egui_wgpu::wgpu::Limits {
+            max_buffer_size: 1 << 16,
+            ..limits
+        });
+        let offscreen = match small {
+            Ok(offscreen) => offscreen,
+            Err(error) => {
+                assert!(std::env::var_os("CI").is_none(), "{error}");
+                println!("skipped: {error}");
+                return;
+            }
+        };
+        let scene = scene::Scene::load("cube-cow").expect("a scene");
+        let mut session = Session::new(scene).expect("a session");
+        let mut studio = Studio::with(offscreen);
+        for frame in 0..3 {
+            // Selected, its triangles are drawn from another buffer.
+            session.select((frame == 2).then_some(0));
+            let (image, told) = studio.drawn(&mut session, [64, 48]).expect("a picture");
+            assert_eq!(image.dimensions(), (64, 48));
+            match frame {
+                0 => {
+                    let [line] = &told[..] else {
+                        panic!("{told:?}")
+                    };
+                    assert!(
+                        line.contains("of the 6,000 triangles of the mesh of cow,"),
+                        "{line}"
+                    );
+                    assert!(
+                        line.ends_with("use a coarser mesh, or another adapter"),
+                        "{line}"
+                    );
+                }
+                _ => assert_eq!(told, [""; 0], "once"),
+            }
+        }
+    }
 }

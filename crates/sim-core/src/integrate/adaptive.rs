@@ -11,7 +11,7 @@ use super::{Failure, Step, System};
 use crate::ode::{Embedded, Solver, State, Tolerance};
 
 /// Steps tried within one `dt` before it is given up.
-const MOST_STEPS: u32 = 100_000;
+pub(crate) const MOST_STEPS: u32 = 100_000;
 
 /// Columns of the scratch: state, both ends of a step, one more, and up to 16 stages.
 const COLUMNS: usize = 20;
@@ -46,7 +46,8 @@ pub(super) fn step<E: Embedded>(system: &dyn System, s: Step<'_>) -> Result<(), 
             let watch = watch.as_mut();
             watch.is_some_and(|watch| watch.stops(time, &[place(before)], &[place(after)]))
         };
-        let done = solve::<E, [f64; 6]>(f, &mut y, span, &mut || [0.0; 6], stops);
+        let (tried, done) = solve::<E, [f64; 6]>(f, &mut y, span, &mut || [0.0; 6], stops);
+        s.scratch.tried += tried;
         let [x, y, z, u, v, w] = y;
         s.new_position[0] = DVec3::new(x, y, z);
         s.new_velocity[0] = DVec3::new(u, v, w);
@@ -70,10 +71,12 @@ pub(super) fn step<E: Embedded>(system: &dyn System, s: Step<'_>) -> Result<(), 
         let watch = watch.as_mut();
         watch.is_some_and(|watch| watch.stops(time, before, after))
     };
-    let done = solve::<E, &mut [f64]>(f, &mut y, span, &mut room, stops);
+    let (tried, done) = solve::<E, &mut [f64]>(f, &mut y, span, &mut room, stops);
     let (x, v) = y.split_at(3 * n);
     s.new_position.copy_from_slice(cast_slice(x));
     s.new_velocity.copy_from_slice(cast_slice(v));
+    drop(columns);
+    s.scratch.tried += tried * n as u64;
     done.map_err(|()| {
         // The body that moved farthest is the one that asks for the shortest steps.
         let moved = |i: usize| (s.new_position[i] - s.position[i]).length_squared();
@@ -81,14 +84,15 @@ pub(super) fn step<E: Embedded>(system: &dyn System, s: Step<'_>) -> Result<(), 
     })
 }
 
-/// Solves from `y` to the end of the step, or to where it is stopped, and leaves the state there.
+/// Solves from `y` to the end of the step, or to where it is stopped, and leaves the state there. Returns how many
+/// steps were tried.
 fn solve<E: Embedded, Y: State>(
     f: impl FnMut(f64, &Y, &mut Y),
     y: &mut Y,
     [dt, tolerance]: [f64; 2],
     room: &mut dyn FnMut() -> Y,
     mut stops: impl FnMut(f64, &Y, &Y) -> bool,
-) -> Result<(), ()> {
+) -> (u64, Result<(), ()>) {
     let mut start = room();
     start.as_mut().copy_from_slice(y.as_ref());
     let mut solver =
@@ -103,5 +107,5 @@ fn solve<E: Embedded, Y: State>(
         done = solver.step(dt);
     }
     y.as_mut().copy_from_slice(solver.state().as_ref());
-    done.map_err(|_| ())
+    (solver.steps() + solver.rejected(), done.map_err(|_| ()))
 }

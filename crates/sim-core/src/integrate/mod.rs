@@ -4,7 +4,7 @@
 //! tests, benchmarks, scene files and the control panel go through the table. A method from
 //! outside is the same value, given to [`Settings`](crate::Settings) without an entry.
 
-mod adaptive;
+pub(crate) mod adaptive;
 mod backward_euler;
 pub(crate) mod ballistic;
 #[cfg(feature = "serde")]

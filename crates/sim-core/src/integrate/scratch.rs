@@ -14,6 +14,8 @@ pub struct Scratch {
     pub(super) newton: Newton,
     /// Where it is seldom needed, as all of this is moved about in each step.
     pub(crate) gathered: Option<Box<Gathered>>,
+    /// Bodies moved by the steps that adaptive methods have tried within theirs, since this was last taken.
+    pub(crate) tried: u64,
 }
 
 /// Room for bodies that are put side by side to be stepped.

@@ -8,10 +8,9 @@ use super::{Film, Form, MOST_FRAMES};
 use crate::cli::FilmArgs;
 use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
-use crate::render::offscreen::Offscreen;
 use crate::session::Session;
 use crate::session::TICKS;
-use crate::shot;
+use crate::shot::{self, Studio};
 use crate::stopwatch::Stopwatch;
 
 /// Runs a scene, draws its frames and writes the file, as far as it comes before an interrupt; says what was
@@ -38,7 +37,7 @@ pub fn write(scene: Scene, args: &FilmArgs, interrupt: &Interrupt) -> Result<Str
         session.show_trails(true);
     }
     session.camera.zoom(args.zoom);
-    let mut studio = Offscreen::new().map_err(shot::failure)?;
+    let mut studio = Studio::new()?;
     let mut film = Film::new(delay as u16);
     let mut progress = Progress::of(frames as u64, "frames");
     for n in 0..frames {
@@ -50,8 +49,7 @@ pub fn write(scene: Scene, args: &FilmArgs, interrupt: &Interrupt) -> Result<Str
         if interrupt.came() && !film.is_empty() {
             break;
         }
-        let image = studio.shot(&session.picture(), args.size);
-        film.push(image.map_err(shot::failure)?);
+        film.push(studio.shot(&mut session, args.size)?);
         progress.at(n as u64 + 1);
     }
     progress.end();

@@ -104,10 +104,10 @@ pub(super) struct Meshes {
 }
 
 /// A mesh that is too large for a buffer of the device.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Cut {
-    /// How many triangles it has.
-    pub triangles: usize,
+    /// The geometry of its models.
+    pub mesh: Arc<Mesh>,
     /// How many of them are drawn.
     pub drawn: usize,
 }
@@ -158,12 +158,12 @@ impl Meshes {
             }
             let address = Arc::as_ptr(geometry).addr();
             let mut note = |drawn: &Triangles| {
-                let (triangles, drawn) = (geometry.triangles().len(), drawn.count());
+                let (mesh, drawn) = (geometry.clone(), drawn.count());
                 self.cut
-                    .extend((drawn < triangles).then_some(Cut { triangles, drawn }));
+                    .extend((drawn < mesh.triangles().len()).then_some(Cut { mesh, drawn }));
             };
             let mesh = self.known.entry(address).or_insert_with(|| {
-                let mesh = DeviceMesh::new(device, geometry);
+                let mesh = DeviceMesh::new((device, queue), geometry);
                 note(&mesh.shared);
                 mesh
             });
@@ -171,7 +171,7 @@ impl Meshes {
                 self.order.push(address);
             }
             if look.is_edged() && mesh.apart.is_none() {
-                let apart = Triangles::apart(device, geometry);
+                let apart = Triangles::apart((device, queue), geometry);
                 note(&apart);
                 mesh.apart = Some(apart);
             }
@@ -254,11 +254,11 @@ struct Places {
 }
 
 impl DeviceMesh {
-    fn new(device: &wgpu::Device, mesh: &Arc<Mesh>) -> Self {
+    fn new(made_on: (&wgpu::Device, &wgpu::Queue), mesh: &Arc<Mesh>) -> Self {
         let radius = mesh.bounds().half_extent().length() as f32;
         Self {
             _mesh: Arc::downgrade(mesh),
-            shared: Triangles::shared(device, mesh),
+            shared: Triangles::shared(made_on, mesh),
             apart: None,
             solid: mesh.volume().is_some_and(|volume| volume > 0.0),
             radius: radius.max(f32::MIN_POSITIVE),

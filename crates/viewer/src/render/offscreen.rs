@@ -5,7 +5,7 @@ use std::fmt;
 use egui_wgpu::wgpu;
 use image::RgbaImage;
 
-use super::{Renderer, device_descriptor, paint_panels, supported_samples};
+use super::{Cut, Renderer, device_descriptor, paint_panels, supported_samples};
 use crate::picture::Picture;
 
 /// Bytes.
@@ -58,11 +58,6 @@ impl std::error::Error for ShotError {
     }
 }
 
-/// One picture of a size in pixels, with a device of its own. [`Offscreen`] takes several in a row faster.
-pub fn shot(picture: &Picture, size: [u32; 2]) -> Result<RgbaImage, ShotError> {
-    Offscreen::new()?.shot(picture, size)
-}
-
 /// A device with a renderer that needs no display.
 pub struct Offscreen {
     device: wgpu::Device,
@@ -78,10 +73,18 @@ impl Offscreen {
     }
 
     fn with_format(format: wgpu::TextureFormat) -> Result<Self, ShotError> {
+        Self::made(format, |limits| limits)
+    }
+
+    fn made(
+        format: wgpu::TextureFormat,
+        limited: impl FnOnce(wgpu::Limits) -> wgpu::Limits,
+    ) -> Result<Self, ShotError> {
         let adapter = adapter().ok_or(ShotError::NoAdapter)?;
+        let mut descriptor = device_descriptor(&adapter);
+        descriptor.required_limits = limited(descriptor.required_limits);
         let (device, queue) =
-            pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
-                .map_err(ShotError::Device)?;
+            pollster::block_on(adapter.request_device(&descriptor)).map_err(ShotError::Device)?;
         let renderer = Renderer::new(&device, format, supported_samples(&adapter));
         Ok(Self {
             device,
@@ -89,6 +92,19 @@ impl Offscreen {
             format,
             renderer,
         })
+    }
+
+    /// The same on a device of other limits.
+    #[cfg(test)]
+    pub(crate) fn limited(
+        limited: impl FnOnce(wgpu::Limits) -> wgpu::Limits,
+    ) -> Result<Self, ShotError> {
+        Self::made(wgpu::TextureFormat::Rgba8UnormSrgb, limited)
+    }
+
+    /// The meshes of which this device can draw a part only, each once since it came into the picture.
+    pub fn take_cut(&mut self) -> Vec<Cut> {
+        self.renderer.take_cut()
     }
 
     /// One picture of a size in pixels.

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use egui_wgpu::wgpu;
-use egui_wgpu::wgpu::util::DeviceExt;
 use sim_core::Mesh;
 
 use super::normals::{Shaded, Vertex};
@@ -18,7 +17,7 @@ pub(super) struct Triangles {
 
 impl Triangles {
     /// Corners share vertices.
-    pub(super) fn shared(device: &wgpu::Device, mesh: &Mesh) -> Self {
+    pub(super) fn shared((device, queue): (&wgpu::Device, &wgpu::Queue), mesh: &Mesh) -> Self {
         let shaded = Shaded::new(mesh);
         let vertices = &shaded.vertices[..shaded.vertices.len().min(most::<Vertex>(device))];
         let mut indices = &shaded.indices[..shaded.indices.len().min(most::<u32>(device))];
@@ -28,21 +27,21 @@ impl Triangles {
             indices = &indices[..end / 3 * 3];
         }
         Self {
-            vertices: buffer(device, wgpu::BufferUsages::VERTEX, vertices),
-            indices: Some(buffer(device, wgpu::BufferUsages::INDEX, indices)),
+            vertices: buffer((device, queue), wgpu::BufferUsages::VERTEX, vertices),
+            indices: Some(buffer((device, queue), wgpu::BufferUsages::INDEX, indices)),
             corners: indices.len() as u32,
         }
     }
 
     /// Each corner by itself, the three of a triangle in order.
-    pub(super) fn apart(device: &wgpu::Device, mesh: &Mesh) -> Self {
+    pub(super) fn apart((device, queue): (&wgpu::Device, &wgpu::Queue), mesh: &Mesh) -> Self {
         let shaded = Shaded::new(mesh);
         let corners = shaded.indices.iter().take(most::<Vertex>(device));
         let vertices: Vec<Vertex> = corners
             .map(|&index| shaded.vertices[index as usize])
             .collect();
         Self {
-            vertices: buffer(device, wgpu::BufferUsages::VERTEX, &vertices),
+            vertices: buffer((device, queue), wgpu::BufferUsages::VERTEX, &vertices),
             indices: None,
             corners: vertices.len() as u32,
         }
@@ -72,14 +71,21 @@ fn most<T>(device: &wgpu::Device) -> usize {
     (items.min(u64::from(u32::MAX)) / 3 * 3) as usize
 }
 
+/// Written by the queue, as a buffer that a device without memory, or a lost one, has not made cannot be mapped.
 fn buffer<T: bytemuck::Pod>(
-    device: &wgpu::Device,
+    (device, queue): (&wgpu::Device, &wgpu::Queue),
     usage: wgpu::BufferUsages,
     items: &[T],
 ) -> wgpu::Buffer {
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+    let bytes: &[u8] = bytemuck::cast_slice(items);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("triangles"),
-        contents: bytemuck::cast_slice(items),
-        usage,
-    })
+        size: bytes.len() as u64,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    if !bytes.is_empty() {
+        queue.write_buffer(&buffer, 0, bytes);
+    }
+    buffer
 }

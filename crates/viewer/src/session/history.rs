@@ -98,6 +98,13 @@ impl Session {
         }
     }
 
+    /// Ends an edit, whether it has been left alone or not.
+    pub fn settle_at_once(&mut self) {
+        if self.is_settling() {
+            self.history.push(&self.scene);
+        }
+    }
+
     /// Whether an edit waits for being done.
     pub fn is_settling(&self) -> bool {
         self.history.pending.is_some()

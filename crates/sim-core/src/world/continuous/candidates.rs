@@ -156,7 +156,7 @@ impl EventLoop<'_> {
             self.solver.scene.bodies.need_bvh(other);
             let mut probe = mem::take(&mut self.solver.paths.probe);
             let event = self.view().find_impact(pair.0, pair.1, &mut probe);
-            self.queue.work.add(probe.work);
+            self.queue.work.add(mem::take(&mut probe.work));
             self.solver.paths.probe = probe;
             self.queue.waiting.extend(event?);
             self.queue.work.check(pair, self.solver.scene.bodies)?;

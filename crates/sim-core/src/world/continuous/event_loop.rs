@@ -47,6 +47,7 @@ impl EventLoop<'_> {
         self.queue.waiting.clear();
         self.queue.resolved = 0;
         self.queue.work = Work::default();
+        self.solver.paths.probe.work = Work::default();
         if is_placed {
             self.solver.find_initial_contacts();
         }
@@ -54,6 +55,7 @@ impl EventLoop<'_> {
         if self.solver.contacts.is_empty() {
             return Ok(());
         }
+        let first = self.solver.contacts.all()[0].bodies;
         self.solver.sleep_on();
         self.solver.measure_contacts()?;
         self.solver.unstagger_velocities();
@@ -71,7 +73,15 @@ impl EventLoop<'_> {
         self.solver.finish_restarted(&restarted)?;
         self.queue_contact_ends(&restarted);
         *self.restarted = restarted;
-        Ok(())
+        self.count_work(first)
+    }
+
+    /// Counts what has been asked beside the searches since this was last done.
+    pub(super) fn count_work(&mut self, pair: (usize, usize)) -> Result<(), (usize, Cause)> {
+        self.queue
+            .work
+            .add(mem::take(&mut self.solver.paths.probe.work));
+        self.queue.work.check(pair, self.solver.scene.bodies)
     }
 
     /// Finds the first impact of every pair that may have one.
@@ -90,12 +100,12 @@ impl EventLoop<'_> {
         let mut events = mem::take(&mut self.queue.waiting);
         let view = self.view();
         let pairs = self.solver.near.candidate_pairs.iter();
-        let mut work = Work::default();
+        let mut work = self.queue.work;
         let found = pairs
             .filter(|&&(i, j)| !view.sleep_together(i, j))
             .try_for_each(|&(i, j)| {
                 events.extend(view.find_impact(i, j, &mut probe)?);
-                work.add(probe.work);
+                work.add(mem::take(&mut probe.work));
                 work.check((i, j), view.scene.bodies)
             });
         (self.solver.paths.probe, self.queue.waiting) = (probe, events);
@@ -113,7 +123,10 @@ impl EventLoop<'_> {
             true => None,
             false => match view.find_impact(i, j, probe) {
                 Ok(None) if probe.work.is_none() => None,
-                found => Some(((i, j), found.map(|event| (event, probe.work)))),
+                found => Some((
+                    (i, j),
+                    found.map(|event| (event, mem::take(&mut probe.work))),
+                )),
             },
         };
         let pairs = self.solver.near.candidate_pairs.par_iter();
@@ -138,7 +151,7 @@ impl EventLoop<'_> {
         self.queue.progress.begin(bodies);
         let mut group = mem::take(&mut self.queue.group);
         while let Some(first) = self.next_event(f64::INFINITY) {
-            let time = first.time;
+            let (time, pair) = (first.time, first.bodies);
             // The same instant, but for rounding.
             let until = time + 4.0 * f64::EPSILON * time;
             group.clear();
@@ -150,6 +163,7 @@ impl EventLoop<'_> {
             self.count_events(&group)?;
             self.watch_crush(&group)?;
             self.resolve(&mut group, time)?;
+            self.count_work(pair)?;
             self.queue.progress.note_changes(&group);
             self.solver.near.shorten();
         }

@@ -23,7 +23,7 @@
 use glam::DVec3;
 
 use super::super::{layout::RESOLUTION_ULPS, stepping::Cause};
-use super::{event::Event, trajectory::Probe, view::View, work::Work};
+use super::{event::Event, trajectory::Probe, view::View};
 use crate::collide::{Contact, Form, Parabola, first_contact, first_on_parabola, has_roots, snap};
 
 /// Departure of a chord from its trajectory that is looked past, in largest half extents of the
@@ -68,7 +68,6 @@ impl View<'_> {
         j: usize,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
-        probe.work = Work::default();
         if self.scene.bodies.pair_tumbles(i, j) {
             return self.find_turning_impact((i, j), probe);
         }
@@ -370,7 +369,6 @@ impl PairSearch<'_> {
 
     fn offset_at(&self, time: f64, probe: &mut Probe) -> Result<DVec3, (usize, Cause)> {
         let first = self.view.motion().motion_at(self.i, time, probe)?.0;
-        probe.work.check((self.i, self.j), self.view.scene.bodies)?;
         Ok(self.view.motion().motion_at(self.j, time, probe)?.0 - first)
     }
 

@@ -79,11 +79,6 @@ impl EventLoop<'_> {
         restarted.sort_unstable();
         restarted.dedup();
         self.solver.finish_restarted(&restarted)?;
-        let motion = self.view().motion();
-        let moved = restarted
-            .iter()
-            .filter(|&&body| motion.coupled_group(body).is_some());
-        self.queue.work.moved += moved.count() as u64;
         for &body in &restarted {
             self.update_swept(body);
         }

@@ -36,7 +36,7 @@ use crate::{
 pub(in crate::world) struct Probe {
     pub(super) state: State,
     pub(super) scratch: Scratch,
-    /// What has been asked since this was last set back.
+    /// What has been asked since this was last taken.
     pub(super) work: Work,
 }
 
@@ -295,7 +295,9 @@ impl Trajectories {
                 let mut end = mem::take(&mut self.end);
                 let mut probe = mem::take(&mut self.probe);
                 let block = self.motion(scene).block_of(bodies.clone(), is_coupled, dt);
+                probe.work.moved += bodies.len() as u64;
                 let moved = scene.step_to_horizon(contacts, block, &mut end, &mut probe.scratch);
+                probe.work.tried += mem::take(&mut probe.scratch.tried);
                 (self.end, self.probe) = (end, probe);
                 self.horizons.set(bodies, moved?, scene);
             }
@@ -365,6 +367,7 @@ impl<'a> Motion<'a> {
         let Some((bodies, is_coupled)) = self.coupled_group(body) else {
             return Ok(self.on_parabola(body, h));
         };
+        probe.work.check((body, body), self.scene.bodies)?;
         probe.work.moved += bodies.len() as u64;
         probe.state.match_len(&paths.start);
         self.step_group(
@@ -374,6 +377,7 @@ impl<'a> Motion<'a> {
             &mut probe.state,
             &mut probe.scratch,
         )?;
+        probe.work.tried += mem::take(&mut probe.scratch.tried);
         Ok((probe.state.position[body], probe.state.velocity[body]))
     }
 

@@ -2,13 +2,16 @@
 //!
 //! Impacts of free bodies cost little, and may be very many ([`World::MOST_IMPACTS`]). Where a method
 //! makes the trajectory, each question where a body is is a step of the method, of all that it is stepped
-//! with; and turning bodies are followed by certificates. At speeds and forces far out of proportion to
-//! sizes both are asked without end. So a step may cost what it costs without impacts times a number,
-//! and no more. It is counted, not timed, and so the same on every machine and on any number of threads.
+//! with, and one with error control takes steps of its own in each; and turning bodies are followed by
+//! certificates. At speeds and forces far out of proportion to sizes all of it is asked without end. So a
+//! step may cost what it costs without impacts times a number, and all its questions together as many of a
+//! method's own steps as one may have. It is counted, not timed, and so the same on every machine and on any
+//! number of threads.
 //!
 //! [`World::MOST_IMPACTS`]: crate::World::MOST_IMPACTS
 
 use super::super::{bodies::Bodies, stepping::Cause};
+use crate::integrate::adaptive::MOST_STEPS;
 
 /// Bodies moved by the method, for each body of the world.
 const MOST_MOVED: u64 = 1 << 14;
@@ -21,6 +24,8 @@ const MOST_CERTIFIED: u64 = 1 << 20;
 pub(in crate::world) struct Work {
     /// Bodies that were moved by the method to some time within the step.
     pub(super) moved: u64,
+    /// Bodies that were moved by each step that a method with error control has tried for that.
+    pub(super) tried: u64,
     /// Pairs of boxes and of pieces that were certified to be apart.
     pub(super) certified: u64,
 }
@@ -28,11 +33,12 @@ pub(in crate::world) struct Work {
 impl Work {
     #[cfg(feature = "rayon")]
     pub(super) fn is_none(&self) -> bool {
-        self.moved == 0 && self.certified == 0
+        self.moved == 0 && self.tried == 0 && self.certified == 0
     }
 
     pub(super) fn add(&mut self, other: Work) {
         self.moved += other.moved;
+        self.tried += other.tried;
         self.certified += other.certified;
     }
 
@@ -43,7 +49,10 @@ impl Work {
         bodies: &Bodies,
     ) -> Result<(), (usize, Cause)> {
         let all = bodies.len() as u64;
-        if self.moved <= MOST_MOVED * all && self.certified <= MOST_CERTIFIED * all {
+        if self.moved <= MOST_MOVED * all
+            && self.tried <= u64::from(MOST_STEPS) * all
+            && self.certified <= MOST_CERTIFIED * all
+        {
             return Ok(());
         }
         let body = if bodies.is_movable(i) { i } else { j };

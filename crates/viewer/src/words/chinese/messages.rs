@@ -71,6 +71,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("The mesh {} is gone. The scene stays here as it is, and cannot be opened again before the mesh is back.", "网格 {0} 不见了。场景在这里保持不变，但在网格放回之前无法重新打开。"),
     ("A window has ended before its edits were saved. They are in {}: open that file.", "一个窗口在保存编辑之前结束了。编辑在 {0} 中：请打开该文件。"),
     ("The graphics device was lost, and another one has taken its place.", "图形设备丢失，已由另一个代替。"),
+    ("The graphics adapter has no memory left, and something is not drawn: make the window smaller, show fewer or coarser meshes, or end other programs. Edits are kept.", "显卡已没有内存，有些东西没有绘制：请缩小窗口，显示更少或更粗的网格，或结束其他程序。编辑内容会保留。"),
     ("The graphics adapter has room for {} of the {} triangles of a mesh, and draws no more. All of them collide.", "显卡只容得下一个网格的 {1} 个三角形中的 {0} 个，其余的不绘制。全部三角形都参与碰撞。"),
     ("The file has changed and was read again.", "文件已更改，已重新读取。"),
     ("The file has changed. Your edits are kept: open it again to see what is in it.", "文件已更改。你的编辑保留着：要看文件内容请重新打开。"),
