@@ -229,7 +229,7 @@ fn what_tips_over_another_gains_little_in_short_steps() {
             other.velocity = -5.0 * DVec3::Y;
             let settings = Settings {
                 dt: 1.0 / rate,
-                ..worlds::world([]).settings().clone()
+                ..Settings::default()
             };
             let mut world = worlds::world_of(settings, [floor(0.0), body, other]);
             for _ in 0..(1.5 * rate) as u32 {
