@@ -33,3 +33,20 @@ impl Pieces {
         one != other
     }
 }
+
+/// For each pair a number that those have in common which movable bodies tie together.
+pub(crate) fn ties(
+    pairs: impl Iterator<Item = (usize, usize)> + Clone,
+    bodies: usize,
+    is_movable: impl Fn(usize) -> bool,
+) -> Vec<usize> {
+    let mut pieces = Pieces::new(bodies);
+    for (i, j) in pairs.clone() {
+        if is_movable(i) && is_movable(j) {
+            pieces.join(i, j);
+        }
+    }
+    pairs
+        .map(|(i, j)| pieces.first(if is_movable(i) { i } else { j }))
+        .collect()
+}

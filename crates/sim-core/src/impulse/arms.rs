@@ -7,7 +7,7 @@
 use alloc::{vec, vec::Vec};
 use glam::{DMat3, DVec3};
 
-use crate::pieces::Pieces;
+use crate::pieces::ties;
 
 /// Two bodies in contact at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,20 +123,12 @@ const DEPENDENT: f64 = 1e-10;
 /// no body that moves ties together is found apart.
 pub(crate) fn multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f64]) -> Vec<f64> {
     let moves = |body: usize| yielding[body].mass > 0.0 || yielding[body].inertia != DMat3::ZERO;
-    let mut pieces = Pieces::new(yielding.len());
-    for &Arms { bodies: (i, j), .. } in contacts {
-        if moves(i) && moves(j) {
-            pieces.join(i, j);
-        }
-    }
-    let piece = |contact: &Arms| {
-        let (i, j) = contact.bodies;
-        pieces.first(if moves(i) { i } else { j })
-    };
-    let mut of_pieces: Vec<(usize, usize)> = contacts.iter().map(piece).zip(0..).collect();
-    of_pieces.sort_unstable();
+    let pairs = contacts.iter().map(|contact| contact.bodies);
+    let ties = ties(pairs, yielding.len(), moves);
+    let mut ties: Vec<(usize, usize)> = ties.into_iter().zip(0..).collect();
+    ties.sort_unstable();
     let mut given = vec![0.0; contacts.len()];
-    for tied in of_pieces.chunk_by(|a, b| a.0 == b.0) {
+    for tied in ties.chunk_by(|a, b| a.0 == b.0) {
         let part: Vec<Arms> = tied.iter().map(|&(_, k)| contacts[k]).collect();
         let wanted: Vec<f64> = tied.iter().map(|&(_, k)| wanted[k]).collect();
         let found = tied_multipliers(&part, yielding, &wanted);

@@ -138,8 +138,8 @@ pub(crate) struct Care {
     pub(crate) halt: f64,
     /// Pairs of pieces that are looked at, at most.
     pub(crate) most: u32,
-    /// How far apart they may be at the start to be in contact there, in what is a contact elsewhere, if they do not
-    /// part by more and are not certified to the end.
+    /// Shapes that are no farther apart at the start than this times what is a contact lie on each other there, unless
+    /// they part by more before they may be back.
     pub(crate) reach: f64,
 }
 

@@ -511,9 +511,10 @@ impl Own {
 }
 
 impl View {
-    /// What is between two sets, and how long it stays. They are told apart along a direction alone, or along one that
-    /// may serve first of all. Roundings of a gap at which they stop, and how near they are
-    /// for it to matter whether they part, in what is a contact.
+    /// What is between two sets, and how long it stays. `known` has the only direction that they are kept apart along,
+    /// and one that is tried first; `care` the roundings of a gap that are left where they stop
+    /// ([`Care::halt`](super::Care::halt)), and how near they are where it is told whether they part
+    /// ([`Care::reach`](super::Care::reach)).
     pub(super) fn sets_apart(
         &self,
         a: &Points<'_>,

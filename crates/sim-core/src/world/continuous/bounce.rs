@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     impulse::{ALL_SWEEPS, drag, greatest, limit, reflect},
-    pieces::Pieces,
+    pieces::ties,
 };
 
 impl EventLoop<'_> {
@@ -175,21 +175,4 @@ impl EventLoop<'_> {
             None => self.queue.progress.note_nothing(),
         }
     }
-}
-
-/// For each pair a number that those have in common which movable bodies tie together.
-pub(super) fn ties(
-    pairs: impl Iterator<Item = (usize, usize)> + Clone,
-    bodies: usize,
-    is_movable: impl Fn(usize) -> bool,
-) -> Vec<usize> {
-    let mut pieces = Pieces::new(bodies);
-    for (i, j) in pairs.clone() {
-        if is_movable(i) && is_movable(j) {
-            pieces.join(i, j);
-        }
-    }
-    pairs
-        .map(|(i, j)| pieces.first(if is_movable(i) { i } else { j }))
-        .collect()
 }

@@ -273,10 +273,12 @@ impl Pressing<'_> {
             && self.movers[j].turns.is_none()
     }
 
-    /// The velocity of the second body of such a contact beside the first one, m/s.
-    fn parting(&self, k: usize, course: &Course) -> DVec3 {
-        let (i, j) = self.contacts[k].bodies;
-        course.rates[j].velocity - course.rates[i].velocity
+    /// The speed at which such a contact opens, m/s.
+    fn parting(&self, k: usize, course: &Course) -> f64 {
+        let contact = &self.contacts[k];
+        let (i, j) = contact.bodies;
+        let relative = course.rates[j].velocity - course.rates[i].velocity;
+        contact.normal.dot(relative)
     }
 
     /// How far the point of a contact gets along a constant direction at constant arms.
@@ -343,7 +345,7 @@ impl Pressing<'_> {
             let mut wanted = Vec::with_capacity(count);
             for k in 0..count {
                 if self.is_straight(k) {
-                    let opening = self.contacts[k].normal.dot(self.parting(k, &course));
+                    let opening = self.parting(k, &course);
                     let missing = -self.left * opening;
                     let slack = 0.25 * widest;
                     is_found &= missing <= slack && (forces.impulse[k] == 0.0 || missing >= -slack);

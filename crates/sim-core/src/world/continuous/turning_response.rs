@@ -10,7 +10,6 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::super::stepping::Cause;
 use super::{
-    bounce::ties,
     event::{Event, EventKind},
     event_loop::EventLoop,
     position_correction::shares,
@@ -22,6 +21,7 @@ use crate::{
         turning::{ContactPoint, Moving, Turning, features_within},
     },
     impulse::arms::{self, Arms, Twist, Yielding},
+    pieces::ties,
 };
 
 /// Features touch that are no farther apart than this times what is a contact.
