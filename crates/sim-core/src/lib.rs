@@ -82,8 +82,8 @@
 //!
 //! - Bodies turn where they have a [`Turn`], without friction. Methods turn them at their own order where forces act at
 //!   points of them, and exactly else; there methods that are not symplectic refuse a step of half a turn. In contact they are pushed by forces that are constant
-//!   for what is left of a step: what slides on its faces is exact, what tips or spins there loses energy to second
-//!   order, and may gain some to third. What touches too often in a step stands still for the rest of it. Turning
+//!   for what is left of a step or a part of it: what slides on its faces is exact, what tips or spins there loses
+//!   energy to second order. What touches too often in a step stands still for the rest of it. Turning
 //!   bodies that are put into each other pass through each other until they are apart.
 //! - Ways that bend under forces are searched along chords. A graze shallower than a thousandth of
 //!   the smaller body may be missed within a step; never an overlap at its end.

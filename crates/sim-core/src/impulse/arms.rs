@@ -139,8 +139,10 @@ pub(crate) fn multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f6
     given
 }
 
-/// The same of contacts that hang together. By active sets (Lawson, Hanson 1974, "Solving least squares
-/// problems", ch. 23).
+/// The same of contacts that hang together, by active sets: each contact that lacks some of what is wanted pushes as
+/// far as those that push before allow, which cease to push where they would pull (Goldfarb, Idnani 1983, "A
+/// numerically stable dual method for solving strictly convex quadratic programs", section 3). What depends on others
+/// that push takes the place of one of them.
 fn tied_multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f64]) -> Vec<f64> {
     let count = contacts.len();
     let matrix = matrix(contacts, yielding);
@@ -148,79 +150,76 @@ fn tied_multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f64]) ->
         .map(|k| 1.0 / libm::sqrt(matrix[k * count + k]))
         .collect();
     let entry = |k: usize, l: usize| matrix[k * count + l] * scale[k] * scale[l];
+    // In the scale in which each opens by 1 for what it gives itself.
+    let wanted: Vec<f64> = wanted.iter().zip(&scale).map(|(w, s)| w * s).collect();
     let mut given = vec![0.0; count];
     let mut pushes: Vec<usize> = Vec::new();
     let mut factor = Factor::default();
-    // Those that have just been let go of, or depend on others that push.
+    // Those that no others leave room for.
     let mut barred = vec![false; count];
-    let most = wanted
-        .iter()
-        .zip(&scale)
-        .fold(0.0_f64, |most, (w, s)| most.max((w * s).abs()));
+    let most = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
     let rounding = 64.0 * f64::EPSILON * most;
     for _ in 0..8 * count + 8 {
-        let missing = |k: usize, given: &[f64]| {
-            let row = &matrix[k * count..(k + 1) * count];
-            wanted[k] - row.iter().zip(given).map(|(x, g)| x * g).sum::<f64>()
+        let missing = |k: usize| {
+            let opened = pushes.iter().map(|&l| entry(k, l) * given[l]);
+            wanted[k] - opened.sum::<f64>()
         };
         let next = (0..count)
             .filter(|&k| !barred[k] && scale[k].is_finite() && !pushes.contains(&k))
-            .map(|k| (k, missing(k, &given) * scale[k]))
+            .map(|k| (k, missing(k)))
             .filter(|&(_, missing)| missing > rounding)
             .max_by(|a, b| a.1.total_cmp(&b.1));
-        let Some((next, _)) = next else { break };
-        pushes.push(next);
-        let mut is_changed = false;
+        let Some((next, mut missing)) = next else {
+            break;
+        };
+        let before = (given.clone(), pushes.clone());
         loop {
-            if !factor.grow(&pushes, entry) {
-                // The last one depends on the others.
-                if let Some(last) = pushes.pop() {
-                    barred[last] = true;
-                }
-                break;
-            }
-            let right = pushes.iter().map(|&k| wanted[k] * scale[k]).collect();
-            let solved = factor.solve(&pushes, entry, right);
-            let solved: Vec<f64> = solved
-                .iter()
-                .zip(&pushes)
-                .map(|(x, &k)| x * scale[k])
-                .collect();
-            let least = pushes
-                .iter()
-                .zip(&solved)
-                .filter(|&(_, &solved)| solved <= 0.0)
-                .map(|(&k, &solved)| given[k] / (given[k] - solved))
-                .fold(1.0_f64, f64::min);
-            if solved.iter().all(|&solved| solved > 0.0) {
-                given.fill(0.0);
-                for (&k, solved) in pushes.iter().zip(solved) {
-                    given[k] = solved;
-                }
-                is_changed = true;
-                break;
-            }
-            for (&k, solved) in pushes.iter().zip(&solved) {
-                given[k] += least.max(0.0) * (solved - given[k]);
-            }
-            let is_gone: Vec<bool> = pushes
-                .iter()
-                .zip(&solved)
-                .map(|(&k, &solved)| solved <= 0.0 && given[k] <= f64::EPSILON * solved.abs())
-                .collect();
-            let Some(first) = is_gone.iter().position(|&gone| gone) else {
-                break;
+            let (own, by_others) = factor.reach(&pushes, next, entry);
+            let to_find = if own > DEPENDENT {
+                missing / own
+            } else {
+                f64::INFINITY
             };
-            for (&k, _) in pushes.iter().zip(&is_gone).filter(|&(_, &gone)| gone) {
-                given[k] = 0.0;
-                barred[k] = k == next;
+            let first = (0..pushes.len())
+                .filter(|&place| by_others[place] > 0.0)
+                .map(|place| (given[pushes[place]] / by_others[place], place))
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            let step = first.map_or(to_find, |(step, _)| step.min(to_find));
+            if step.is_infinite() {
+                (given, pushes) = before;
+                factor.rows.clear();
+                factor.grow(&pushes, entry);
+                barred[next] = true;
+                break;
             }
-            let mut gone = is_gone.iter();
-            pushes.retain(|_| gone.next() == Some(&false));
-            factor.rows.truncate(first);
+            for (&k, by) in pushes.iter().zip(&by_others) {
+                given[k] = (given[k] - step * by).max(0.0);
+            }
+            given[next] += step;
+            if step == to_find {
+                pushes.push(next);
+                factor.grow(&pushes, entry);
+                barred.fill(false);
+                break;
+            }
+            missing -= step * own;
+            if let Some((_, place)) = first {
+                given[pushes.remove(place)] = 0.0;
+                factor.rows.truncate(place);
+                factor.grow(&pushes, entry);
+            }
         }
-        if is_changed {
-            barred.fill(false);
+        let right = pushes.iter().map(|&k| wanted[k]).collect();
+        let solved = factor.solve(&pushes, entry, right);
+        if solved.iter().all(|&solved| solved > 0.0) {
+            for (&k, solved) in pushes.iter().zip(solved) {
+                given[k] = solved;
+            }
+        }
+    }
+    for (given, scale) in given.iter_mut().zip(&scale) {
+        if *given != 0.0 {
+            *given *= scale;
         }
     }
     given
@@ -234,25 +233,29 @@ struct Factor {
 }
 
 impl Factor {
-    /// Adds the rows that are missing; tells whether none depends on those before it.
-    fn grow(&mut self, pushes: &[usize], entry: impl Fn(usize, usize) -> f64) -> bool {
+    /// Adds the rows that are missing.
+    fn grow(&mut self, pushes: &[usize], entry: impl Fn(usize, usize) -> f64) {
         for k in self.rows.len()..pushes.len() {
-            let mut row: Vec<f64> = Vec::with_capacity(k + 1);
-            for l in 0..=k {
-                let of_l = self.rows.get(l).unwrap_or(&row);
-                let known: f64 = row.iter().zip(&of_l[..l]).map(|(a, b)| a * b).sum();
-                let left = entry(pushes[k], pushes[l]) - known;
-                if l < k {
-                    row.push(left / of_l[l]);
-                } else if left > DEPENDENT {
-                    row.push(libm::sqrt(left));
-                } else {
-                    return false;
-                }
-            }
+            let mut row = self.forward(pushes[..k].iter().map(|&l| entry(pushes[k], l)));
+            let known: f64 = row.iter().map(|x| x * x).sum();
+            row.push(libm::sqrt(
+                (entry(pushes[k], pushes[k]) - known).max(DEPENDENT),
+            ));
             self.rows.push(row);
         }
-        true
+    }
+
+    /// What is left of a contact's own number where those that push keep still, and what they push less by for what it
+    /// pushes.
+    fn reach(
+        &self,
+        pushes: &[usize],
+        next: usize,
+        entry: impl Fn(usize, usize) -> f64,
+    ) -> (f64, Vec<f64>) {
+        let row = self.forward(pushes.iter().map(|&l| entry(next, l)));
+        let known: f64 = row.iter().map(|x| x * x).sum();
+        (entry(next, next) - known, self.backward(row))
     }
 
     /// The solution for a right-hand side, and once more for what is left of it.
@@ -275,12 +278,21 @@ impl Factor {
         x
     }
 
-    fn back(&self, mut x: Vec<f64>) -> Vec<f64> {
-        let n = x.len();
-        for (k, row) in self.rows.iter().enumerate() {
-            let known: f64 = row[..k].iter().zip(&x).map(|(a, x)| a * x).sum();
-            x[k] = (x[k] - known) / row[k];
+    fn back(&self, right: Vec<f64>) -> Vec<f64> {
+        self.backward(self.forward(right.into_iter()))
+    }
+
+    fn forward(&self, right: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut x: Vec<f64> = Vec::with_capacity(self.rows.len());
+        for (row, right) in self.rows.iter().zip(right) {
+            let known: f64 = row.iter().zip(&x).map(|(a, x)| a * x).sum();
+            x.push((right - known) / row[x.len()]);
         }
+        x
+    }
+
+    fn backward(&self, mut x: Vec<f64>) -> Vec<f64> {
+        let n = x.len();
         for k in (0..n).rev() {
             let known: f64 = (k + 1..n).map(|m| self.rows[m][k] * x[m]).sum();
             x[k] = (x[k] - known) / self.rows[k][k];
@@ -400,6 +412,50 @@ mod tests {
             let missing = wanted - contact.opening(&twists);
             assert!(missing < 1e-13 && *given >= 0.0);
             assert!(*given == 0.0 || missing > -1e-13, "{missing}");
+        }
+    }
+
+    /// A plate on many points, each of which wants it higher than the last did: no more than three of them can be told
+    /// apart, and those that push have to give way to others.
+    #[test]
+    fn of_points_that_depend_on_each_other_the_right_ones_push() {
+        let still = Yielding {
+            mass: 0.0,
+            inertia: DMat3::ZERO,
+        };
+        let plate = Yielding {
+            mass: 0.5,
+            inertia: DMat3::from_diagonal(DVec3::new(3.0, 2.0, 5.0)),
+        };
+        let mut state = 5_u64;
+        let mut number = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1);
+            (state >> 33) as f64 / (1_u64 << 30) as f64 - 1.0
+        };
+        for round in 0..2000 {
+            let count = 3 + round % 10;
+            let contacts: Vec<Arms> = (0..count)
+                .map(|_| Arms {
+                    bodies: (0, 1),
+                    normal: DVec3::Y,
+                    arms: (DVec3::ZERO, DVec3::new(number(), -0.1, number())),
+                })
+                .collect();
+            let wanted: Vec<f64> = (0..count).map(|_| number()).collect();
+            let given = multipliers(&contacts, &[still, plate], &wanted);
+            let mut twists = [Twist::default(); 2];
+            push(&contacts, &[still, plate], &mut twists, &given);
+            for ((contact, wanted), given) in contacts.iter().zip(&wanted).zip(&given) {
+                let missing = wanted - contact.opening(&twists);
+                assert!(
+                    missing < 1e-9 && *given >= 0.0,
+                    "round {round}: {missing:e}"
+                );
+                assert!(
+                    *given == 0.0 || missing > -1e-9,
+                    "round {round}: {missing:e}"
+                );
+            }
         }
     }
 }

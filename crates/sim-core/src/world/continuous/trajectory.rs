@@ -65,8 +65,8 @@ pub(in crate::world) struct Trajectories {
     /// By slot, what a method of first order adds to the angular momentum of a body with levers when the step is
     /// over, kg m²/s.
     pub(super) kicks: Vec<Option<DVec3>>,
-    /// By slot, the torque on a body in contact, N m, contacts included: its forces are constant.
-    pub(super) pressed: Vec<Option<DVec3>>,
+    /// By slot, how contacts press a body.
+    pub(super) pressed: Vec<Option<Press>>,
     /// By body, whether its forces are constant from where its trajectory starts ([`ContactSolver::freeze`]); empty where
     /// none are.
     pub(super) frozen: Vec<bool>,
@@ -76,6 +76,15 @@ pub(in crate::world) struct Trajectories {
     pub(super) probe: Probe,
     restarted_motion: Vec<(DVec3, DVec3)>,
     restarted_turned: Vec<(usize, Turned)>,
+}
+
+/// The forces on a body in contact: constant ones.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Press {
+    /// Of all forces, those of contacts included, N m.
+    pub(super) torque: DVec3,
+    /// When they end, s from the step's start.
+    pub(super) until: f64,
 }
 
 /// Trajectories in their scene.
@@ -167,7 +176,7 @@ impl Trajectories {
     ) -> Result<Flight, FlightError> {
         let turners = &scene.bodies.turners;
         let torque = match (self.pressed[slot], self.kicks[slot]) {
-            (Some(torque), _) => torque,
+            (Some(press), _) => press.torque,
             (None, Some(_)) => DVec3::ZERO,
             (None, None) => self.applied_torque[slot],
         };
@@ -191,15 +200,18 @@ impl Trajectories {
 
     /// Lets a body turn on from where its trajectory starts.
     fn turn_on(&mut self, scene: &Scene<'_>, slot: usize, body: usize) -> Result<(), FlightError> {
-        let length = scene.settings.dt - self.since[body];
+        let known = self.motion(scene).horizon(body) - self.since[body];
         let (start, is_bent) = (
             self.start.turned[slot],
             self.motion(scene).is_turning_bent(body),
         );
         if is_bent {
-            let known = self.motion(scene).horizon(body) - self.since[body];
             self.applied_torque[slot] = levered::mean_torque(start, self.end.turned[slot], known);
         }
+        let length = match is_bent {
+            true => scene.settings.dt - self.since[body],
+            false => known,
+        };
         self.flights[slot] = self.flight_from(scene, slot, start, length)?;
         if !is_bent {
             self.turn_to_end(slot, length);
@@ -284,9 +296,15 @@ impl Trajectories {
         let dt = scene.settings.dt;
         match self.motion(scene).coupled_group(bodies.start) {
             None => {
-                self.horizons.set(bodies.clone(), None, scene);
+                let until = self
+                    .motion(scene)
+                    .press(bodies.start)
+                    .map(|press| press.until);
+                let until = until.filter(|&until| until < dt);
+                self.horizons.set(bodies.clone(), until, scene);
                 for body in bodies.clone() {
-                    let (x, v) = self.motion(scene).on_parabola(body, dt - self.since[body]);
+                    let length = until.unwrap_or(dt) - self.since[body];
+                    let (x, v) = self.motion(scene).on_parabola(body, length);
                     self.end.position[body] = x;
                     self.end.velocity[body] = self.motion(scene).unstaggered_velocity(body, v);
                 }
@@ -327,10 +345,14 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Whether contacts push a body by constant forces.
+    /// How contacts press a body, if they do.
+    pub(super) fn press(&self, body: usize) -> Option<Press> {
+        let slot = self.scene.bodies.turners.slot(body)?;
+        self.paths.pressed[slot]
+    }
+
     fn is_pressed(&self, body: usize) -> bool {
-        let slot = self.scene.bodies.turners.slot(body);
-        slot.is_some_and(|slot| self.paths.pressed[slot].is_some())
+        self.press(body).is_some()
     }
 
     #[inline(never)]

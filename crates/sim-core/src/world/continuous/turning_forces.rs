@@ -8,13 +8,17 @@
 //! normals of the start `D(s) = g(s) - g(0) - c s²/2`, and with those of the end `g(s) - g(0) + c (τ s - s²/2)`,
 //! where `c` is how the gap would be bent if bodies kept their velocities, third orders apart. Each contact
 //! takes the one with which it does no work but for the room that it lacks, whenever the step is cut short:
-//! contact never gives energy to second order. What flat faces do, and what does not turn, has `c = 0` and
-//! is exact; else the loss is `f |c| τ²/2` in a step, and vanishes with its length.
+//! contact never gives energy to second order. For that the arms of the end are those of the points that are over
+//! each other then, not of those that were at the start. What is left, of third order and where a contact opens, is
+//! known, as bodies are on parabolas: forces that give energy are not taken ([`Pressing::find`]).
+//!
+//! What flat faces do, and what does not turn, has `c = 0` and is exact; else the loss is `f |c| τ²/2` in a step,
+//! and vanishes with its length.
 
 use alloc::{vec, vec::Vec};
 use glam::{DQuat, DVec3};
 
-use super::super::{state::Turned, stepping::Cause};
+use super::super::state::Turned;
 use super::turning_response::Touching;
 use crate::{
     impulse::arms::{self, Arms, Twist, Yielding},
@@ -26,6 +30,9 @@ pub(super) const PARTS: [f64; 4] = [0.0, 1.0, 0.5, 0.125];
 
 /// Rounds in which forces are found at most. What is left of a gap then is met early.
 pub(super) const ROUNDS: usize = 12;
+
+/// Angle that a body turns by at most while forces are constant, rad.
+const FARTHEST: f64 = 1.0;
 
 /// A contact by points of both bodies.
 #[derive(Clone, Copy, Debug)]
@@ -114,28 +121,34 @@ impl Anchored {
         }
     }
 
-    /// Where it is in some poses.
+    /// Where it is in some poses: a corner over the plane that it was over, or the nearest points of two lines.
     pub(super) fn later(&self, at: [At; 2]) -> Later {
         let [first, second] = at;
-        let arms = (
+        let mut arms = (
             first.rotation * self.points[0],
             second.rotation * self.points[1],
         );
-        let owned = at[self.owner].rotation * self.normal;
-        let normal = match self.edges {
-            None => owned,
-            Some([e, f]) => {
-                let across = (first.rotation * e).cross(second.rotation * f);
-                let sign = 1.0_f64.copysign(across.dot(owned));
-                across.try_normalize().map_or(owned, |n| sign * n)
-            }
-        };
         let between = second.position - first.position;
-        Later {
-            gap: (between + arms.1 - arms.0).dot(normal),
-            normal,
-            arms,
+        let apart = between + arms.1 - arms.0;
+        let owned = at[self.owner].rotation * self.normal;
+        let edges = self
+            .edges
+            .map(|[e, f]| [first.rotation * e, second.rotation * f]);
+        let across = edges.and_then(|[e, f]| e.cross(f).try_normalize());
+        let normal = across.map_or(owned, |across| across.dot(owned).signum() * across);
+        let gap = apart.dot(normal);
+        let slid = apart - gap * normal;
+        match edges.filter(|_| across.is_some()) {
+            None if self.owner == 0 => arms.0 += slid,
+            None => arms.1 -= slid,
+            Some([e, f]) => {
+                // Along each line as far as the other one has slid across it.
+                let sine = e.cross(f).dot(normal);
+                arms.0 += slid.cross(f).dot(normal) / sine * e;
+                arms.1 += slid.cross(e).dot(normal) / sine * f;
+            }
         }
+        Later { gap, normal, arms }
     }
 }
 
@@ -182,7 +195,8 @@ impl Pressing<'_> {
         pushes
     }
 
-    pub(super) fn course(&self, forces: &Forces) -> Result<Course, (usize, Cause)> {
+    /// How bodies move under some forces; none where one turns so far that nothing can be said of its contacts.
+    fn course(&self, forces: &Forces) -> Option<Course> {
         let pushes = self.pushes(forces);
         let mut course = Course {
             rates: Vec::with_capacity(self.movers.len()),
@@ -209,8 +223,12 @@ impl Pressing<'_> {
                     let acceleration = turns.pull + mover.mass / self.left * impulse;
                     let Turned { rotation, momentum } = turns.turned;
                     let torque = turns.torque + torque;
-                    let flight = Flight::new(turns.moments, rotation, momentum, torque, self.left)
-                        .map_err(|error| (mover.body, Cause::Turning(error)))?;
+                    let most = momentum.length() + self.left * torque.length();
+                    if self.left * most > FARTHEST * turns.moments.min_element() {
+                        return None;
+                    }
+                    let flight = Flight::new(turns.moments, rotation, momentum, torque, self.left);
+                    let flight = flight.ok()?;
                     let poses = times.map(|t| flight.at(t));
                     for ((at, t), pose) in at.iter_mut().zip(times).zip(&poses) {
                         at.position += t * (mover.velocity + 0.5 * t * acceleration);
@@ -231,7 +249,7 @@ impl Pressing<'_> {
             course.at.push(at);
             course.turn.push(turn);
         }
-        Ok(course)
+        Some(course)
     }
 
     /// A contact after a part of what is left.
@@ -298,10 +316,8 @@ impl Pressing<'_> {
     pub(super) fn choose(&self, forces: &mut Forces, course: &Course) -> bool {
         let mut is_changed = false;
         for k in 0..self.contacts.len() {
-            let lacking = (self.room[k] - self.touching[k].gap).max(0.0);
-            let least = 0.25 * self.touching[k].room;
             let is_active = forces.impulse[k] > 0.0;
-            if !is_active || self.gets(&forces.contacts[k], course) <= lacking + least {
+            if !is_active || self.gets(&forces.contacts[k], course) <= self.allowed(k) {
                 continue;
             }
             let Later { normal, arms, .. } = self.later(k, course, 1);
@@ -319,60 +335,89 @@ impl Pressing<'_> {
         is_changed
     }
 
-    /// The forces after which no gap is less than it must be.
-    pub(super) fn find(&self) -> Result<Forces, (usize, Cause)> {
-        let count = self.touching.len();
-        let widest = self.touching.iter().map(|touching| touching.room);
-        let widest = widest.fold(0.0, f64::max);
-        let mut forces = Forces {
-            impulse: vec![0.0; count],
+    /// What contacts give to bodies, J, but for what it takes to get the room that they lack.
+    fn gain(&self, forces: &Forces, course: &Course) -> f64 {
+        let pairs = forces.contacts.iter().zip(&forces.impulse).enumerate();
+        let given = pairs.map(|(k, (contact, impulse))| {
+            impulse / self.left * (self.gets(contact, course) - self.allowed(k))
+        });
+        given.sum()
+    }
+
+    /// How far a contact may get along its force, m: the room that it lacks, and what is a rounding beside it.
+    fn allowed(&self, k: usize) -> f64 {
+        let touching = &self.touching[k];
+        (self.room[k] - touching.gap).max(0.0) + 0.25 * touching.room
+    }
+
+    /// No forces at all.
+    pub(super) fn no_forces(&self) -> Forces {
+        Forces {
+            impulse: vec![0.0; self.touching.len()],
             contacts: self.contacts.to_vec(),
-        };
+        }
+    }
+
+    /// The forces after which no gap is less than it must be, or about those, and whether they are found; none
+    /// where they would give energy or nothing can turn so.
+    pub(super) fn find(&self) -> Option<(Forces, bool)> {
+        let mut forces = self.no_forces();
         for round in 0..ROUNDS {
             let course = self.course(&forces)?;
             if round == 1 {
                 self.choose(&mut forces, &course);
                 continue;
             }
-            let mut pushed = vec![Twist::default(); self.movers.len()];
-            arms::push(
-                &forces.contacts,
-                &self.yielding,
-                &mut pushed,
-                &forces.impulse,
-            );
-            let mut is_found = true;
-            let mut wanted = Vec::with_capacity(count);
-            for k in 0..count {
-                if self.is_straight(k) {
-                    let opening = self.parting(k, &course);
-                    let missing = -self.left * opening;
-                    let slack = 0.25 * widest;
-                    is_found &= missing <= slack && (forces.impulse[k] == 0.0 || missing >= -slack);
-                    wanted.push(forces.contacts[k].opening(&pushed) - opening);
-                    continue;
+            let (wanted, is_found) = self.wanted(&forces, &course);
+            if is_found {
+                let gain = self.gain(&forces, &course);
+                if gain <= 0.0 || !self.choose(&mut forces, &course) {
+                    return (gain <= 0.0).then_some((forces, true));
                 }
-                let (from, room) = (self.touching[k].gap.min(self.room[k]), self.room[k]);
-                let later = PARTS.iter().enumerate().skip(1);
-                let missing = later
-                    .map(|(place, part)| {
-                        let share = part * part;
-                        let least = from + share * (room - from);
-                        (least - self.later(k, &course, place).gap) / share
-                    })
-                    .fold(
-                        -0.5 * self.left * self.left * self.growth(k, &course),
-                        f64::max,
-                    );
-                let slack = 0.25 * self.touching[k].room;
-                is_found &= missing <= slack && (forces.impulse[k] == 0.0 || missing >= -slack);
-                wanted.push(forces.contacts[k].opening(&pushed) + missing / self.left);
-            }
-            if is_found && !self.choose(&mut forces, &course) {
-                break;
             }
             forces.impulse = arms::multipliers(&forces.contacts, &self.yielding, &wanted);
         }
-        Ok(forces)
+        let course = self.course(&forces)?;
+        (self.gain(&forces, &course) <= 0.0).then_some((forces, false))
+    }
+
+    /// The mean speed at which each contact has to open by forces, m/s, if others only change it as where bodies
+    /// are now; and whether it does so already.
+    fn wanted(&self, forces: &Forces, course: &Course) -> (Vec<f64>, bool) {
+        let widest = self.touching.iter().map(|touching| touching.room);
+        let widest = widest.fold(0.0, f64::max);
+        let mut pushed = vec![Twist::default(); self.movers.len()];
+        arms::push(
+            &forces.contacts,
+            &self.yielding,
+            &mut pushed,
+            &forces.impulse,
+        );
+        let mut is_found = true;
+        let wanted = (0..self.touching.len())
+            .map(|k| {
+                let (missing, room) = match self.is_straight(k) {
+                    true => (-self.left * self.parting(k, course), widest),
+                    false => (self.missing(k, course), self.touching[k].room),
+                };
+                let slack = 0.25 * room;
+                is_found &= missing <= slack && (forces.impulse[k] == 0.0 || missing >= -slack);
+                forces.contacts[k].opening(&pushed) + missing / self.left
+            })
+            .collect();
+        (wanted, is_found)
+    }
+
+    /// What a gap lacks at some time, m, as of the end; less than nothing where it is never so small.
+    fn missing(&self, k: usize, course: &Course) -> f64 {
+        let (from, room) = (self.touching[k].gap.min(self.room[k]), self.room[k]);
+        let at_first = -0.5 * self.left * self.left * self.growth(k, course);
+        let later = PARTS.iter().enumerate().skip(1);
+        let later = later.map(|(place, part)| {
+            let share = part * part;
+            let least = from + share * (room - from);
+            (least - self.later(k, course, place).gap) / share
+        });
+        later.fold(at_first, f64::max)
     }
 }

@@ -74,12 +74,21 @@ impl EventLoop<'_> {
                 && event.bodies.0 != event.bodies.1
                 && bodies.pair_tumbles(event.bodies.0, event.bodies.1)
         };
+        let is_press_end = |event: &Event| {
+            let (i, j) = event.bodies;
+            event.kind == EventKind::Horizon && i == j && self.view().motion().press(i).is_some()
+        };
+        let ended: Vec<usize> = group
+            .iter()
+            .filter(|event| is_press_end(event))
+            .map(|event| event.bodies.0)
+            .collect();
         let mut turning: Vec<Event> = group
             .iter()
             .filter(|event| is_turning(event))
             .cloned()
             .collect();
-        if turning.is_empty() {
+        if turning.is_empty() && ended.is_empty() {
             return Ok(());
         }
         group.retain(|event| !is_turning(event));
@@ -98,6 +107,12 @@ impl EventLoop<'_> {
                     pressed.push(body);
                 }
                 seeds.push(body);
+            }
+        }
+        let is_met = !turning.is_empty();
+        for body in ended {
+            if self.solver.release(body) {
+                pressed.push(body);
             }
         }
         let mut found: Vec<Vec<Touching>> = Vec::new();
@@ -125,7 +140,8 @@ impl EventLoop<'_> {
             self.solver.anchor(touching, time);
         }
         if !pressed.is_empty() {
-            self.solver.press_all(&pressed, time, (seeds, restarted))?;
+            self.solver
+                .press_all((&pressed, is_met), time, (seeds, restarted))?;
         }
         Ok(())
     }

@@ -3,7 +3,8 @@
 //! First the contacts that close cease to: of all motions in which none does, bodies take the nearest one in
 //! the norm of kinetic energy, which takes energy only. Then each contact pushes with a constant force `f`,
 //! along a constant direction at constant arms, so that bodies go along parabolas and turn under constant
-//! torques, which is exact ([`crate::rotation`]; [`super::turning_forces`] finds it).
+//! torques, which is exact ([`crate::rotation`]; [`super::turning_forces`] finds it), for what is left of the step, or
+//! half of it, or a quarter, as long as these forces are found and give no energy. Then they are found anew.
 //!
 //! Trajectories are searched like all others. What they meet early ends the contact forces there, and they
 //! are found anew with that contact as well. No crossing is possible whatever the forces are.
@@ -16,6 +17,7 @@ use super::{
     event::{Event, EventKind},
     event_loop::EventLoop,
     solver::ContactSolver,
+    trajectory::Press,
     turning_forces::{Anchored, At, Forces, Mover, PARTS, Pressing, Turns},
     turning_response::{ArmIsland, Touching},
 };
@@ -27,6 +29,9 @@ use crate::{
 /// Contacts that may be met while bodies are in contact, one after the other, before they stop for the rest of
 /// the step.
 const MANY_ROUNDS: u32 = 24;
+
+/// Part of a step for which contacts press at least.
+const SHORTEST: f64 = 1.0 / 512.0;
 
 /// Cosine above which two normals are one.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
@@ -156,6 +161,11 @@ impl ContactSolver<'_> {
                 .map(|[e, f]| [rotations[0] * e, rotations[1] * f]);
             let at = |rotation, position| At { position, rotation };
             let later = contact.later([at(rotations[0], DVec3::ZERO), at(rotations[1], between)]);
+            // Bodies never meet: what would be so far within the other one has left it, over the end of an edge or
+            // the border of a face.
+            if later.gap < -contact.room {
+                continue;
+            }
             touching.push(Touching {
                 bodies: contact.bodies,
                 arms: later.arms,
@@ -291,7 +301,7 @@ impl ContactSolver<'_> {
     /// Lets bodies that touch, and those in contact that touch them, stay in contact for the rest of the step.
     pub(super) fn press_all(
         &mut self,
-        seen: &[usize],
+        (seen, is_met): (&[usize], bool),
         time: f64,
         (seeds, restarted): (&mut Vec<usize>, &mut Vec<usize>),
     ) -> Result<(), (usize, Cause)> {
@@ -308,7 +318,7 @@ impl ContactSolver<'_> {
             .flat_map(|touching| [touching.bodies.0, touching.bodies.1]);
         seeds.extend(tied.chain(bodies.iter().copied()));
         self.lift(&bodies, &mut touching, time, restarted)?;
-        let pulls = self.begin_contact(&bodies, &touching, time);
+        let pulls = self.begin_contact((&bodies, is_met), &touching, time);
         let mut island = self.gather(&touching, time)?;
         // Nothing closes any more.
         let wanted: Vec<f64> = island
@@ -324,10 +334,25 @@ impl ContactSolver<'_> {
             &given,
         );
         self.put(&island, &given);
-        let pressing = self.pressing(&island, &touching, &pulls, time)?;
-        let forces = pressing.find()?;
-        self.press(&pressing, &forces);
-        Ok(())
+        let left = self.scene.settings.dt - time;
+        let mut length = left;
+        loop {
+            let pressing = self.pressing(&island, &touching, &pulls, (time, length))?;
+            let is_shortest = length <= SHORTEST * self.scene.settings.dt;
+            let found = pressing
+                .find()
+                .filter(|&(_, is_found)| is_found || is_shortest);
+            let found = found.map(|(forces, _)| forces);
+            if let Some(forces) = found.or_else(|| is_shortest.then(|| pressing.no_forces())) {
+                let until = match length < left {
+                    true => time + length,
+                    false => self.scene.settings.dt,
+                };
+                self.press(&pressing, &forces, until);
+                return Ok(());
+            }
+            length *= 0.5;
+        }
     }
 
     /// Moves bodies apart that lack the room of their contacts: by roundings, each as little as it can, where
@@ -414,7 +439,7 @@ impl ContactSolver<'_> {
     /// accelerates it. What has met too much stops, and so does what touches it.
     fn begin_contact(
         &mut self,
-        bodies: &[usize],
+        (bodies, is_met): (&[usize], bool),
         touching: &[Touching],
         time: f64,
     ) -> Vec<(usize, DVec3)> {
@@ -422,7 +447,7 @@ impl ContactSolver<'_> {
         let left = self.scene.settings.dt - time;
         for &body in bodies {
             if let Some(slot) = all.turners.slot(body) {
-                self.turning.rounds[slot] += 1;
+                self.turning.rounds[slot] += u32::from(is_met);
             }
         }
         self.stop_together(bodies, touching);
@@ -485,10 +510,9 @@ impl ContactSolver<'_> {
         island: &'a ArmIsland,
         touching: &'a [Touching],
         pulls: &[(usize, DVec3)],
-        time: f64,
+        (time, left): (f64, f64),
     ) -> Result<Pressing<'a>, (usize, Cause)> {
         let all = self.scene.bodies;
-        let left = self.scene.settings.dt - time;
         let mut movers = Vec::with_capacity(island.bodies.len());
         for (place, &body) in island.bodies.iter().enumerate() {
             let pull = pulls.iter().find(|(pulled, _)| *pulled == body);
@@ -563,8 +587,8 @@ impl ContactSolver<'_> {
         })
     }
 
-    /// Lets forces push for what is left of the step.
-    fn press(&mut self, pressing: &Pressing<'_>, forces: &Forces) {
+    /// Lets forces push until a time.
+    fn press(&mut self, pressing: &Pressing<'_>, forces: &Forces, until: f64) {
         let pushes = pressing.pushes(forces);
         for (contact, &impulse) in forces.contacts.iter().zip(&forces.impulse) {
             let (i, j) = contact.bodies;
@@ -589,7 +613,8 @@ impl ContactSolver<'_> {
                 Some(turns) => {
                     let by_contact = mover.mass / pressing.left * impulse;
                     self.paths.acceleration[mover.body] = turns.pull + by_contact;
-                    self.paths.pressed[turns.slot] = Some(turns.torque + torque);
+                    let torque = turns.torque + torque;
+                    self.paths.pressed[turns.slot] = Some(Press { torque, until });
                 }
                 None if mover.mass > 0.0 => {
                     self.paths.start.velocity[mover.body] += mover.mass * impulse;

@@ -110,7 +110,7 @@ impl View<'_> {
             && slot.is_none_or(|slot| {
                 let torque = self.paths.applied_torque[slot];
                 self.paths.start.turned[slot].momentum == DVec3::ZERO
-                    && self.paths.pressed[slot].unwrap_or(torque) == DVec3::ZERO
+                    && self.paths.pressed[slot].map_or(torque, |press| press.torque) == DVec3::ZERO
             })
     }
 
