@@ -377,26 +377,26 @@ impl Kept {
     fn check(&self, world: &World) {
         let now = Kept::of(world);
         let all = || (0..world.len()).filter(|&body| world.kind(body).is_movable());
-        let is_continuous = world.settings().collision == Collision::Continuous;
-        // What comes to rest in the continuous mode is kept in contact by constant forces, which are not those of a contact
-        // once bodies have turned far in the rest of the step.
-        if is_continuous && (0..world.len()).any(|body| world.restitution(body) < 1.0) {
-            return;
-        }
         let moving = |body| world.mass(body) * world.velocity(body).length();
         let about = |body| {
             (world.position(body).length() + 1e2) * moving(body)
                 + world.angular_momentum(body).length()
         };
         let turning = all().map(|body| about(body) * world.spin(body).length());
-        let rounding = 1e-9 * self.energy + 1e-13 * turning.sum::<f64>();
+        // Contact that lasts may give some where another contact is met in the meantime.
+        let is_continuous = world.settings().collision == Collision::Continuous;
+        let lasts = is_continuous && (0..world.len()).any(|body| world.restitution(body) < 1.0);
+        let share = if lasts { 1e-3 } else { 1e-9 };
+        let rounding = share * self.energy + 1e-13 * turning.sum::<f64>();
         assert!(
             now.energy <= self.energy + rounding,
             "energy {} became {}",
             self.energy,
             now.energy
         );
-        if all().count() < world.len() {
+        // What does not turn takes for immovable what has met too much in a step.
+        let turns = |body| world.inertia(body).is_some();
+        if all().count() < world.len() || lasts && !all().all(turns) {
             return;
         }
         let most = all().map(moving).sum::<f64>();

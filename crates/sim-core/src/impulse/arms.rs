@@ -38,6 +38,14 @@ pub(crate) struct Twist {
     pub(crate) spin: DVec3,
 }
 
+impl Yielding {
+    /// Of what nothing moves.
+    pub(crate) const NOTHING: Yielding = Yielding {
+        mass: 0.0,
+        inertia: DMat3::ZERO,
+    };
+}
+
 impl Twist {
     fn at(&self, arm: DVec3) -> DVec3 {
         self.velocity + self.spin.cross(arm)

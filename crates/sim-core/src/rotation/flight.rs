@@ -54,6 +54,9 @@ pub enum FlightError {
 /// No flight has more pieces, of about a quarter of a radian each.
 const MOST_PIECES: usize = 1 << 16;
 
+/// Pieces for which a flight costs about as much as an impact.
+const AFFORDABLE: f64 = 256.0;
+
 /// A rotation for some time: under no torque, or under one that is constant in the world.
 ///
 /// Exact to rounding for any moments at any speed. The momentum is that of the start plus torque times
@@ -134,6 +137,25 @@ impl Flight {
         }
         flight.kind = flight.kind()?;
         Ok(flight)
+    }
+
+    /// For how long a body may be followed at a cost that is bounded, s: any time where there is a closed form.
+    pub(crate) fn affordable(
+        moments: DVec3,
+        rotation: DQuat,
+        momentum: DVec3,
+        torque: DVec3,
+    ) -> f64 {
+        let start = Flight::new(moments, rotation, momentum, torque, 0.0);
+        let Ok(Flight {
+            kind: Kind::One(_), ..
+        }) = start
+        else {
+            return f64::INFINITY;
+        };
+        let spin = rotation.inverse() * momentum / moments;
+        let pull = torque.length() / moments.min_element();
+        AFFORDABLE * FARTHEST / rate(spin.length(), pull)
     }
 
     fn kind(&self) -> Result<Kind, FlightError> {

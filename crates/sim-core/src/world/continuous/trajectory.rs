@@ -148,22 +148,63 @@ impl Trajectories {
         self.kicks.resize(scene.bodies.turners.body.len(), None);
         self.applied_torque.clone_from(&scene.bodies.turners.torque);
         for (slot, &body) in scene.bodies.turners.body.iter().enumerate() {
-            let dt = scene.settings.dt;
+            let mut length = scene.settings.dt;
             // Of what forces turn that depend on the motion, the method knows how it is turned at the end.
             let is_levered = scene.is_turned_by_levers(body);
             if is_levered {
                 self.begin_levered(scene, slot, body)
                     .map_err(|error| (body, Cause::Turning(error)))?;
             }
+            if self.motion(scene).coupled_group(body).is_none() {
+                let until = self.turns_until(scene, slot, body);
+                if until < length {
+                    length = until;
+                    self.end_at(scene, body, until);
+                }
+            }
             let flight = self
-                .flight_from(scene, slot, self.start.turned[slot], dt)
+                .flight_from(scene, slot, self.start.turned[slot], length)
                 .map_err(|error| (body, Cause::Turning(error)))?;
             self.flights.push(flight);
             if !is_levered {
-                self.turn_to_end(slot, dt);
+                self.turn_to_end(slot, length);
             }
         }
         Ok(())
+    }
+
+    /// Until when a body is followed that turns: as long as contacts press it as they do, and not for so many turns in
+    /// a step that each impact would cost thousands of them. There its trajectory starts again.
+    fn turns_until(&self, scene: &Scene<'_>, slot: usize, body: usize) -> f64 {
+        let dt = scene.settings.dt;
+        if self.kicks[slot].is_some() {
+            return dt;
+        }
+        let Turned { rotation, momentum } = self.start.turned[slot];
+        let moments = scene.bodies.turners.inertia[slot].moments();
+        let torque = self.torque_on(slot);
+        let affordable = Flight::affordable(moments, rotation, momentum, torque);
+        let pressed = self.pressed[slot].map_or(dt, |press| press.until);
+        pressed.min(self.since[body] + affordable)
+    }
+
+    /// Lets the parabola of a body end at a time, which is its horizon if it is before the step's end.
+    fn end_at(&mut self, scene: &Scene<'_>, body: usize, until: f64) {
+        let dt = scene.settings.dt;
+        let known = (until < dt).then_some(until);
+        self.horizons.set(body..body + 1, known, scene);
+        let length = until.min(dt) - self.since[body];
+        let (x, v) = self.motion(scene).on_parabola(body, length);
+        self.end.position[body] = x;
+        self.end.velocity[body] = self.motion(scene).unstaggered_velocity(body, v);
+    }
+
+    fn torque_on(&self, slot: usize) -> DVec3 {
+        match (self.pressed[slot], self.kicks[slot]) {
+            (Some(press), _) => press.torque,
+            (None, Some(_)) => DVec3::ZERO,
+            (None, None) => self.applied_torque[slot],
+        }
     }
 
     /// The flight of a body that turns, from how it is turned.
@@ -175,16 +216,11 @@ impl Trajectories {
         duration: f64,
     ) -> Result<Flight, FlightError> {
         let turners = &scene.bodies.turners;
-        let torque = match (self.pressed[slot], self.kicks[slot]) {
-            (Some(press), _) => press.torque,
-            (None, Some(_)) => DVec3::ZERO,
-            (None, None) => self.applied_torque[slot],
-        };
         Flight::new(
             turners.inertia[slot].moments(),
             turned.rotation,
             turned.momentum,
-            torque,
+            self.torque_on(slot),
             duration,
         )
     }
@@ -296,17 +332,12 @@ impl Trajectories {
         let dt = scene.settings.dt;
         match self.motion(scene).coupled_group(bodies.start) {
             None => {
-                let until = self
-                    .motion(scene)
-                    .press(bodies.start)
-                    .map(|press| press.until);
-                let until = until.filter(|&until| until < dt);
-                self.horizons.set(bodies.clone(), until, scene);
                 for body in bodies.clone() {
-                    let length = until.unwrap_or(dt) - self.since[body];
-                    let (x, v) = self.motion(scene).on_parabola(body, length);
-                    self.end.position[body] = x;
-                    self.end.velocity[body] = self.motion(scene).unstaggered_velocity(body, v);
+                    let until = match scene.bodies.turners.slot(body) {
+                        Some(slot) => self.turns_until(scene, slot, body),
+                        None => dt,
+                    };
+                    self.end_at(scene, body, until);
                 }
             }
             Some((bodies, is_coupled)) => {

@@ -284,11 +284,12 @@ impl Pressing<'_> {
 
     /// Whether neither body of a contact turns: impulses change their velocities at once, and their gap from then on.
     fn is_straight(&self, k: usize) -> bool {
-        let contact = &self.contacts[k];
-        let (i, j) = contact.bodies;
-        contact.arms == (DVec3::ZERO, DVec3::ZERO)
-            && self.movers[i].turns.is_none()
-            && self.movers[j].turns.is_none()
+        let turns = |place: usize| {
+            let mover = &self.movers[place];
+            mover.turns.is_some() || mover.rotations.iter().any(|r| *r != mover.rotations[0])
+        };
+        let (i, j) = self.contacts[k].bodies;
+        !turns(i) && !turns(j)
     }
 
     /// The speed at which such a contact opens, m/s.

@@ -456,7 +456,7 @@ impl ContactSolver<'_> {
             let Some(slot) = all.turners.slot(body) else {
                 continue;
             };
-            if !all.tumbles(body) || !all.is_movable(body) {
+            if !all.is_movable(body) || !all.tumbles(body) && !self.is_stopped(body) {
                 continue;
             }
             let mut pull = self.view().motion().acceleration_there(body);
@@ -516,33 +516,34 @@ impl ContactSolver<'_> {
         let mut movers = Vec::with_capacity(island.bodies.len());
         for (place, &body) in island.bodies.iter().enumerate() {
             let pull = pulls.iter().find(|(pulled, _)| *pulled == body);
-            let turns = pull.and_then(|&(_, pull)| {
+            let is_kept = self.kept(body).is_some();
+            let turns = pull.filter(|_| !is_kept).and_then(|&(_, pull)| {
                 let slot = all.turners.slot(body)?;
                 let inertia = &all.turners.inertia[slot];
-                let is_stopped = self.is_stopped(body);
                 Some(Turns {
                     slot,
                     pull,
-                    torque: if is_stopped {
-                        DVec3::ZERO
-                    } else {
-                        self.view().motion().torque_there(slot, body)
-                    },
+                    torque: self.view().motion().torque_there(slot, body),
                     moments: inertia.moments(),
                     axes: inertia.axes(),
                     turned: self.paths.start.turned[slot],
                 })
             });
+            // What has stopped stands.
+            let (velocity, mass) = match is_kept {
+                true => (DVec3::ZERO, 0.0),
+                false => (island.twists[place].velocity, island.yielding[place].mass),
+            };
             movers.push(Mover {
                 body,
                 turns,
                 position: self.place_at(body, time)?,
-                velocity: match self.kept(body) {
-                    Some(_) => DVec3::ZERO,
-                    None => island.twists[place].velocity,
+                velocity,
+                mass,
+                rotations: match is_kept {
+                    true => [self.rotation_at(body, time); PARTS.len()],
+                    false => PARTS.map(|part| self.rotation_at(body, time + part * left)),
                 },
-                mass: island.yielding[place].mass,
-                rotations: PARTS.map(|part| self.rotation_at(body, time + part * left)),
             });
         }
         // Of a constant force half of the speed at its end is the mean; what does not turn gets its impulse
@@ -554,7 +555,8 @@ impl ContactSolver<'_> {
                     mass: 0.5 * yielding.mass,
                     inertia: 0.5 * yielding.inertia,
                 },
-                None => *yielding,
+                None if mover.mass > 0.0 => *yielding,
+                None => Yielding::NOTHING,
             })
             .collect();
         let place = |contact: &Arms| [contact.bodies.0, contact.bodies.1];
@@ -589,26 +591,20 @@ impl ContactSolver<'_> {
 
     /// Lets forces push until a time.
     fn press(&mut self, pressing: &Pressing<'_>, forces: &Forces, until: f64) {
+        let all = self.scene.bodies;
         let pushes = pressing.pushes(forces);
-        for (contact, &impulse) in forces.contacts.iter().zip(&forces.impulse) {
-            let (i, j) = contact.bodies;
-            let push = impulse * contact.normal;
-            for (place, other, arm, push) in
-                [(i, j, contact.arms.0, -push), (j, i, contact.arms.1, push)]
-            {
-                // What has stopped is moved by these forces and keeps its motion, but for what it takes from
-                // what has not.
-                let (mover, other) = (&pressing.movers[place], &pressing.movers[other]);
-                let takes = other.turns.is_none() && other.mass > 0.0;
-                if let Some(kept) = mover.turns.as_ref().filter(|_| takes)
-                    && let Some(kept) = self.turning.stopped[kept.slot].as_mut()
-                {
-                    kept.velocity += mover.mass * push;
-                    kept.momentum += arm.cross(push);
-                }
-            }
-        }
         for (mover, &(impulse, torque)) in pressing.movers.iter().zip(&pushes) {
+            // What has stopped stands, and is immovable for what does not turn.
+            if self.kept(mover.body).is_some()
+                && let Some(slot) = all.turners.slot(mover.body)
+            {
+                self.paths.acceleration[mover.body] = DVec3::ZERO;
+                self.paths.pressed[slot] = Some(Press {
+                    torque: DVec3::ZERO,
+                    until: self.scene.settings.dt,
+                });
+                continue;
+            }
             match &mover.turns {
                 Some(turns) => {
                     let by_contact = mover.mass / pressing.left * impulse;
