@@ -1,9 +1,9 @@
 //! Free flight and flight under a constant torque: numbers from closed forms, 17 digits each.
 
 use kit::elliptic::Racket;
-use kit::random::Random;
+use kit::{bodies, random::Random, shapes, worlds};
 use sim_core::rotation::{Flight, FlightError, spin};
-use sim_core::{DQuat, DVec3};
+use sim_core::{DQuat, DVec3, Turn};
 
 /// A rotation and its angular velocity in the body after a time, in one flight.
 fn flown(moments: DVec3, start: DVec3, t: f64) -> (DQuat, DVec3) {
@@ -395,6 +395,54 @@ fn derivatives_stay_within_their_bounds() {
             assert!(off <= 1e-2 * h * bounds.third + noise, "{case}: {off}");
         }
     }
+}
+
+/// In a step a body may tumble for thousands of turns. Each impact follows it for forty radians from there, not for what is
+/// left of the step: with that, a thousand impacts in a step would take minutes.
+#[test]
+fn a_body_that_tumbles_fast_may_have_many_impacts_in_a_step() {
+    let half = DVec3::new(0.1, 0.2, 0.3);
+    let mut body = bodies::at(&shapes::cuboid(half.as_vec3().to_array()), DVec3::ZERO);
+    body.velocity = 100.0 * DVec3::X;
+    let spin = 5e4 * DVec3::new(0.3, 1.0, 0.2);
+    body.turn = Some(Turn {
+        spin,
+        ..Turn::default()
+    });
+    let wall = |normal: DVec3| bodies::wall(normal, -0.4 * normal, DVec3::ZERO);
+    let mut world = worlds::world([wall(DVec3::X), wall(-DVec3::X), body]);
+    let energy = world.kinetic_energy();
+    for _ in 0..3 {
+        worlds::step(&mut world, 1);
+        assert_eq!(world.meeting(), []);
+    }
+    let count = world.impacts();
+    assert!(count > 50, "{count}");
+    let off = world.kinetic_energy() / energy - 1.0;
+    assert!(off.abs() < 1e-12, "{off:e}");
+
+    let mut free = bodies::at(&shapes::cuboid(half.as_vec3().to_array()), DVec3::ZERO);
+    free.turn = Some(Turn {
+        spin,
+        ..Turn::default()
+    });
+    let mut world = worlds::world([free.clone()]);
+    let (inertia, dt) = (world.inertia(0).unwrap().clone(), world.settings().dt);
+    let momentum = world.angular_momentum(0);
+    let whole = Flight::new(inertia.moments(), inertia.axes(), momentum, DVec3::ZERO, dt);
+    worlds::step(&mut world, 1);
+    let expected = whole.unwrap().rotation_at(dt) * inertia.axes().inverse();
+    let off = (world.rotation(0).inverse() * expected).xyz().length();
+    assert!(
+        off < 1e-9,
+        "after {:.0} rad off by {off:e}",
+        spin.length() * dt
+    );
+
+    free.turn.as_mut().unwrap().spin *= 1e4;
+    let mut world = worlds::world([free]);
+    let error = world.step().unwrap_err().to_string();
+    assert!(error.contains("tumbles more than"), "{error}");
 }
 
 #[test]

@@ -55,7 +55,7 @@ pub enum FlightError {
 const MOST_PIECES: usize = 1 << 16;
 
 /// Pieces for which a flight costs about as much as an impact.
-const AFFORDABLE: f64 = 256.0;
+const AFFORDABLE: usize = 256;
 
 /// A rotation for some time: under no torque, or under one that is constant in the world.
 ///
@@ -139,23 +139,32 @@ impl Flight {
         Ok(flight)
     }
 
-    /// For how long a body may be followed at a cost that is bounded, s: any time where there is a closed form.
+    /// For how much of a duration a body may be followed at a cost that is bounded, s: for all of it where there is a
+    /// closed form.
     pub(crate) fn affordable(
         moments: DVec3,
         rotation: DQuat,
         momentum: DVec3,
         torque: DVec3,
-    ) -> f64 {
-        let start = Flight::new(moments, rotation, momentum, torque, 0.0);
-        let Ok(Flight {
-            kind: Kind::One(_), ..
-        }) = start
-        else {
-            return f64::INFINITY;
+        duration: f64,
+    ) -> Result<f64, FlightError> {
+        let least = moments.min_element();
+        let pull = torque.length() / least;
+        let most = AFFORDABLE as f64 * FARTHEST;
+        if rate(momentum.length() / least, pull) * duration <= most {
+            return Ok(duration);
+        }
+        let start = Flight::new(moments, rotation, momentum, torque, 0.0)?;
+        let Kind::One(_) = start.kind else {
+            return Ok(duration);
         };
         let spin = rotation.inverse() * momentum / moments;
-        let pull = torque.length() / moments.min_element();
-        AFFORDABLE * FARTHEST / rate(spin.length(), pull)
+        let affordable = most / rate(spin.length(), pull);
+        let parts = (MOST_PIECES / AFFORDABLE) as f64;
+        match parts * affordable < duration {
+            true => Err(FlightError::TooFar { duration }),
+            false => Ok(affordable.min(duration)),
+        }
     }
 
     fn kind(&self) -> Result<Kind, FlightError> {

@@ -156,7 +156,7 @@ impl Trajectories {
                     .map_err(|error| (body, Cause::Turning(error)))?;
             }
             if self.motion(scene).coupled_group(body).is_none() {
-                let until = self.turns_until(scene, slot, body);
+                let until = self.turns_until(scene, slot, body)?;
                 if until < length {
                     length = until;
                     self.end_at(scene, body, until);
@@ -175,17 +175,27 @@ impl Trajectories {
 
     /// Until when a body is followed that turns: as long as contacts press it as they do, and not for so many turns in
     /// a step that each impact would cost thousands of them. There its trajectory starts again.
-    fn turns_until(&self, scene: &Scene<'_>, slot: usize, body: usize) -> f64 {
+    fn turns_until(
+        &self,
+        scene: &Scene<'_>,
+        slot: usize,
+        body: usize,
+    ) -> Result<f64, (usize, Cause)> {
         let dt = scene.settings.dt;
         if self.kicks[slot].is_some() {
-            return dt;
+            return Ok(dt);
         }
         let Turned { rotation, momentum } = self.start.turned[slot];
         let moments = scene.bodies.turners.inertia[slot].moments();
         let torque = self.torque_on(slot);
-        let affordable = Flight::affordable(moments, rotation, momentum, torque);
-        let pressed = self.pressed[slot].map_or(dt, |press| press.until);
-        pressed.min(self.since[body] + affordable)
+        let until = self.pressed[slot].map_or(dt, |press| press.until);
+        let left = until - self.since[body];
+        let affordable = Flight::affordable(moments, rotation, momentum, torque, left)
+            .map_err(|error| (body, Cause::Turning(error)))?;
+        Ok(match affordable < left {
+            true => self.since[body] + affordable,
+            false => until,
+        })
     }
 
     /// Lets the parabola of a body end at a time, which is its horizon if it is before the step's end.
@@ -334,7 +344,7 @@ impl Trajectories {
             None => {
                 for body in bodies.clone() {
                     let until = match scene.bodies.turners.slot(body) {
-                        Some(slot) => self.turns_until(scene, slot, body),
+                        Some(slot) => self.turns_until(scene, slot, body)?,
                         None => dt,
                     };
                     self.end_at(scene, body, until);
