@@ -288,21 +288,24 @@ pub(super) fn commands() -> impl Iterator<Item = (&'static str, &'static str, Do
     plain.chain(held)
 }
 
-/// Obeys the keys pressed, unless they are typed into a field.
+/// Obeys the keys pressed. While a field has the keyboard these are the keys with Ctrl that no field has a use for:
+/// the gallery closes by the key that opens it, though its search has the keyboard.
 pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session) {
-    if ctx.egui_wants_keyboard_input() {
-        return;
-    }
     if session.leaving().is_some() || state.palette.open {
         return;
     }
+    let is_typing = ctx.egui_wants_keyboard_input();
     for held in &WITH_CTRL {
+        let is_free = matches!(held.key, Key::G | Key::T | Key::P | Key::Q);
+        if is_typing && !is_free {
+            continue;
+        }
         if ctx.input_mut(|input| input.consume_key(held.modifiers, held.key)) {
             (held.act)(state, session);
         }
     }
     // While the right button is held, keys fly.
-    if ctx.input(|i| i.pointer.secondary_down()) {
+    if is_typing || ctx.input(|i| i.pointer.secondary_down()) {
         return;
     }
     for shortcut in &SHORTCUTS {
