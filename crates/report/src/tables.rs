@@ -509,6 +509,7 @@ pub(crate) fn racket(results: &Results) -> Table {
 /// How far an answer is from the first contact.
 fn late(run: &ContactRun) -> String {
     match (run.late(), run.exact, run.found.time) {
+        (Some(late), ..) if late.is_nan() => "no number".into(),
         (Some(0.0), ..) => "0".into(),
         (Some(late), ..) if late > 0.0 => format!("{} late", short(late)),
         (Some(late), ..) => format!("{} early", short(-late)),
@@ -572,4 +573,36 @@ pub(crate) fn levers(results: &Results) -> Table {
         }
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use cases::turning::contacts::{Found, Seeker};
+
+    use super::*;
+
+    #[test]
+    fn a_miss_and_a_ghost_are_no_figures() {
+        let cell = |exact, time| {
+            late(&ContactRun {
+                who: Seeker::Ours,
+                spin: 1.0,
+                exact,
+                found: Found {
+                    time,
+                    has_failed: false,
+                },
+                verdict: Verdict::Fail,
+                seconds: 1.0,
+            })
+        };
+        assert_eq!(cell(Some(0.5), Some(0.625)), "1.2e-1 late");
+        assert_eq!(cell(Some(0.5), Some(0.25)), "2.5e-1 early");
+        assert_eq!(cell(Some(0.5), Some(0.5)), "0");
+        assert_eq!(cell(Some(0.5), None), "missed");
+        assert_eq!(cell(None, Some(0.5)), "found one");
+        assert_eq!(cell(None, None), "none, rightly");
+        // What is no number is not praised.
+        assert_eq!(cell(Some(0.5), Some(f64::NAN)), "no number");
+    }
 }
