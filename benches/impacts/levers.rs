@@ -11,10 +11,10 @@ use crate::{row, short};
 
 /// Methods, and the most that each may err by at 60 Hz, m.
 const METHODS: [(&str, f64); 4] = [
-    ("velocity-verlet", 1e-1),
-    ("symplectic-4", 1e-2),
-    ("rk4", 1e-2),
-    ("radau5", 1e-4),
+    ("velocity-verlet", 2e-2),
+    ("symplectic-4", 1e-5),
+    ("rk4", 2e-3),
+    ("radau5", 5e-5),
 ];
 
 pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
