@@ -9,6 +9,7 @@ mod crowd;
 mod galperin;
 mod hard_cases;
 mod heap;
+mod levers;
 mod one;
 mod overlap;
 mod pair;
@@ -32,6 +33,7 @@ fn main() {
         one::bench(&mut criterion),
         galperin::bench(&mut criterion),
         turning::bench(&mut criterion),
+        levers::bench(&mut criterion),
     ];
     criterion.final_summary();
     let (heaps, mut wrong) = heap::bench();

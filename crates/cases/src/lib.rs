@@ -1,5 +1,5 @@
 //! What has a known outcome, each defined once: problems of dynamics, hard cases, and scenes of
-//! bodies that meet, lie and slide; and who is tried on them, ours and peers.
+//! bodies that meet, lie, slide and turn; and who is tried on them, ours and peers.
 //!
 //! Tests assert every verdict, the report tabulates the same ones, benchmarks time them. The peers
 //! are optional dependencies, each a feature of its name.
@@ -9,6 +9,7 @@ pub mod hard_cases;
 pub mod problems;
 pub mod scenes;
 pub mod solvers;
+pub mod turning;
 pub mod worlds;
 
 pub use hard_cases::{CASES, Case, Finding, Outcome, Verdict};

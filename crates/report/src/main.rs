@@ -20,6 +20,7 @@ mod stability;
 mod stopwatch;
 mod table;
 mod tables;
+mod turning;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -108,7 +109,12 @@ mod tests {
         let methods = sim_core::METHODS.iter().map(|m| m.title);
         let problems = results.diagrams.iter().map(|diagram| diagram.card.title);
         let cases = cases::CASES.iter().map(|case| case.title);
-        for name in methods.chain(problems).chain(cases) {
+        let turning = &results.turning;
+        let contacts = turning.contacts.iter().map(|it| it.contact.title);
+        let tumblers = turning.tumbles.iter().map(|it| it.tumbler.title);
+        let levers = turning.levers.iter().map(|it| it.lever.title);
+        let turning = contacts.chain(tumblers).chain(levers);
+        for name in methods.chain(problems).chain(cases).chain(turning) {
             let escaped = name.replace('&', "&amp;");
             assert!(page.contains(&escaped), "{name}");
         }

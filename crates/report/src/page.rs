@@ -111,6 +111,12 @@ fn tables_of(plot: &str, results: &Results) -> Vec<Table> {
         "stability" => vec![tables::stability(results)],
         "collisions" => vec![tables::collisions(results), tables::bounces(results)],
         "resting" => vec![tables::resting(results)],
+        "turning" => vec![
+            tables::tumbling(results),
+            tables::racket(results),
+            tables::first_contacts(results),
+            tables::levers(results),
+        ],
         _ => Vec::new(),
     }
 }

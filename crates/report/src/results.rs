@@ -10,6 +10,7 @@ use crate::resting::{self, Resting};
 use crate::runs::{self, Diagram};
 use crate::scope::Scope;
 use crate::stability;
+use crate::turning::{self, Turning};
 
 pub(crate) struct Results {
     pub(crate) diagrams: Vec<Diagram>,
@@ -19,6 +20,7 @@ pub(crate) struct Results {
     pub(crate) contact: Vec<contact::Row>,
     pub(crate) collisions: Collisions,
     pub(crate) resting: Vec<Resting>,
+    pub(crate) turning: Turning,
 }
 
 /// Measures all, and says what it is at.
@@ -44,6 +46,8 @@ pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
     let collisions = collisions::measure(scope);
     progress("friction, stacks and heaps");
     let resting = resting::measure(scope);
+    progress("bodies that turn");
+    let turning = turning::measure(scope);
     progress("drift");
     let drifts = drift::measure(scope);
     progress("stability");
@@ -58,5 +62,6 @@ pub(crate) fn measure(scope: Scope, mut progress: impl FnMut(&str)) -> Results {
         contact,
         collisions,
         resting,
+        turning,
     }
 }

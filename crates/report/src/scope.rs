@@ -42,6 +42,16 @@ impl Scope {
         self.either(100, 20)
     }
 
+    /// How long bodies tumble freely, s of motion.
+    pub(crate) fn tumbling_time(self) -> u32 {
+        self.either(600, 60)
+    }
+
+    /// From one number of steps of a lever to the next.
+    pub(crate) fn lever_factor(self) -> u64 {
+        self.either(2, 4)
+    }
+
     /// Steps after which growth is measured for the stability map.
     pub(crate) fn growth_steps(self) -> u32 {
         self.either(2000, 400)

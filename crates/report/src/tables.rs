@@ -1,12 +1,14 @@
 //! The tables of the page.
 
 use cases::problems::Effort;
+use cases::turning::racket::FLIPS;
 use cases::{CASES, Outcome, Verdict};
 use sim_core::METHODS;
 
 use crate::results::Results;
 use crate::runs::{Diagram, Point, Series, Who};
 use crate::table::{Table, seconds, short};
+use crate::turning::ContactRun;
 
 /// All, for the files.
 pub(crate) fn all(results: &Results) -> Vec<Table> {
@@ -25,6 +27,10 @@ pub(crate) fn all(results: &Results) -> Vec<Table> {
         collisions(results),
         bounces(results),
         resting(results),
+        tumbling(results),
+        racket(results),
+        first_contacts(results),
+        levers(results),
     ]
 }
 
@@ -435,4 +441,168 @@ pub(crate) fn resting(results: &Results) -> Table {
         }
     }
     table
+}
+
+/// Every run of a body in free flight.
+pub(crate) fn tumbling(results: &Results) -> Table {
+    let head = [
+        "body",
+        "rate, Hz",
+        "who",
+        "motion, s",
+        "energy, greatest",
+        "angular momentum, greatest",
+        "spin at the end",
+        "time of a step",
+    ];
+    let title = "Bodies that tumble freely: relative errors and time of a step";
+    let mut table = Table::new("tumbling", title, &head);
+    for tumbles in &results.turning.tumbles {
+        for run in &tumbles.runs {
+            table.rows.push(vec![
+                tumbles.tumbler.title.into(),
+                run.rate.to_string(),
+                run.who.name().into(),
+                tumbles.time.to_string(),
+                short(run.found.energy),
+                short(run.found.momentum),
+                short(run.found.spin),
+                seconds(run.seconds),
+            ]);
+        }
+    }
+    table
+}
+
+/// Every run of the tennis racket.
+pub(crate) fn racket(results: &Results) -> Table {
+    let head = [
+        "starts off the axis by",
+        "rate, Hz",
+        "who",
+        "first flip, s",
+        "tenth flip, s",
+        "flips, of 10",
+        "time of a step",
+    ];
+    let title = "The tennis racket: errors of the times of flips and time of a step";
+    let mut table = Table::new("racket", title, &head);
+    for run in &results.turning.rackets {
+        let error = |flip| {
+            run.flips
+                .error(run.start, flip)
+                .map_or("none".into(), short)
+        };
+        table.rows.push(vec![
+            run.start.to_string(),
+            run.rate.to_string(),
+            run.who.name().into(),
+            error(0),
+            error(FLIPS - 1),
+            run.flips.times.len().to_string(),
+            seconds(run.seconds),
+        ]);
+    }
+    table
+}
+
+/// How far an answer is from the first contact.
+fn late(run: &ContactRun) -> String {
+    match (run.late(), run.exact, run.found.time) {
+        (Some(late), ..) if late.is_nan() => "no number".into(),
+        (Some(0.0), ..) => "0".into(),
+        (Some(late), ..) if late > 0.0 => format!("{} late", short(late)),
+        (Some(late), ..) => format!("{} early", short(-late)),
+        (None, Some(_), _) => "missed".into(),
+        (None, None, Some(_)) => "found one".into(),
+        (None, None, None) => "none, rightly".into(),
+    }
+}
+
+/// Every search for a first contact.
+pub(crate) fn first_contacts(results: &Results) -> Table {
+    let head = [
+        "meshes",
+        "spin, rad/s",
+        "who",
+        "they meet at, s",
+        "error, s",
+        "verdict",
+        "time of an answer",
+    ];
+    let title = "First contacts of what turns: errors and time of an answer; an answer passes that is right to 1e-9 s";
+    let mut table = Table::new("first-contacts", title, &head);
+    for contacts in &results.turning.contacts {
+        for run in &contacts.runs {
+            let doubt = match run.found.has_failed {
+                true => ", status: failed",
+                false => "",
+            };
+            table.rows.push(vec![
+                contacts.contact.title.into(),
+                format!("{:.4}", run.spin)
+                    .trim_end_matches('0')
+                    .trim_end_matches('.')
+                    .into(),
+                run.who.name().into(),
+                run.exact
+                    .map_or("never".into(), |time| format!("{time:.6}")),
+                late(run) + doubt,
+                run.verdict.name().into(),
+                seconds(run.seconds),
+            ]);
+        }
+    }
+    table
+}
+
+/// Every run with a force at a point.
+pub(crate) fn levers(results: &Results) -> Table {
+    let head = ["body", "who", "effort", "error, m", "time of a run"];
+    let title = "Forces at points: error of a point at the end and time of a run";
+    let mut table = Table::new("levers", title, &head);
+    for levers in &results.turning.levers {
+        for run in &levers.runs {
+            table.rows.push(vec![
+                levers.lever.title.into(),
+                run.who.name().into(),
+                effort(run.effort),
+                run.error.clone().map_or_else(|why| why, short),
+                seconds(run.seconds),
+            ]);
+        }
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use cases::turning::contacts::{Found, Seeker};
+
+    use super::*;
+
+    #[test]
+    fn a_miss_and_a_ghost_are_no_figures() {
+        let cell = |exact, time| {
+            late(&ContactRun {
+                who: Seeker::Ours,
+                spin: 1.0,
+                exact,
+                found: Found {
+                    time,
+                    has_failed: false,
+                },
+                verdict: Verdict::Fail,
+                seconds: 1.0,
+            })
+        };
+        assert_eq!(cell(Some(0.5), Some(0.625)), "1.2e-1 late");
+        assert_eq!(cell(Some(0.5), Some(0.25)), "2.5e-1 early");
+        assert_eq!(cell(Some(0.5), Some(0.5)), "0");
+        assert_eq!(cell(Some(0.5), None), "missed");
+        assert_eq!(cell(None, Some(0.5)), "found one");
+        assert_eq!(cell(None, None), "none, rightly");
+        // What is no number is not praised.
+        assert_eq!(cell(Some(0.5), Some(f64::NAN)), "no number");
+    }
 }

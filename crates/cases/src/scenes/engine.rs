@@ -1,6 +1,6 @@
 //! Who steps scenes: one trait for ours and for peers.
 
-use sim_core::{Bundled, Collision, DVec3, StepError};
+use sim_core::{Bundled, Collision, DQuat, DVec3, StepError};
 
 use super::{Scene, ours};
 
@@ -17,6 +17,12 @@ pub trait Engine {
 
     /// Of a body, m/s.
     fn velocity(&self, body: usize) -> DVec3;
+
+    /// Turns the frame of a body's shape into the world.
+    fn rotation(&self, body: usize) -> DQuat;
+
+    /// Angular velocity of a body in the world, rad/s.
+    fn spin(&self, body: usize) -> DVec3;
 
     /// Of all bodies, J.
     fn kinetic_energy(&self) -> f64;

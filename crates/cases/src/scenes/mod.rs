@@ -26,6 +26,8 @@ pub use ours::{continuous, world};
 pub use pair::Pair;
 #[cfg(feature = "rapier3d-f64")]
 pub use rapier::Rapier;
+#[cfg(feature = "rapier3d-f64")]
+pub(crate) use rapier::vector;
 pub use resting::{RESTING, landing_way, sliding_way};
 
 /// The acceleration of what falls, m/s².

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use kit::meshes::builtin;
 use sim_core::{
-    Body, BodyKind, Bundled, Collision, DVec3, Force, Mesh, Method, Settings, Shape, StepError,
-    Turn, Vec3, World,
+    Body, BodyKind, Bundled, Collision, DQuat, DVec3, Force, Mesh, Method, Settings, Shape,
+    StepError, Turn, Vec3, World,
 };
 
 use super::{Engine, Form, Scene};
@@ -27,6 +27,14 @@ impl Engine for World {
 
     fn velocity(&self, body: usize) -> DVec3 {
         World::velocity(self, body)
+    }
+
+    fn rotation(&self, body: usize) -> DQuat {
+        World::rotation(self, body)
+    }
+
+    fn spin(&self, body: usize) -> DVec3 {
+        World::spin(self, body)
     }
 
     fn kinetic_energy(&self) -> f64 {

@@ -7,7 +7,7 @@
 //! the mover has it. Bodies sleep only where a scene lets them, so that all of them are simulated.
 
 use rapier3d_f64::prelude::*;
-use sim_core::{DVec3, StepError};
+use sim_core::{DQuat, DVec3, StepError};
 
 use super::{Engine, Form, Scene};
 
@@ -46,6 +46,16 @@ impl Engine for Rapier {
         DVec3::new(v.x, v.y, v.z)
     }
 
+    fn rotation(&self, body: usize) -> DQuat {
+        let r = self.world.bodies[self.handles[body]].rotation();
+        DQuat::from_xyzw(r.x, r.y, r.z, r.w)
+    }
+
+    fn spin(&self, body: usize) -> DVec3 {
+        let w = self.world.bodies[self.handles[body]].angvel();
+        DVec3::new(w.x, w.y, w.z)
+    }
+
     fn kinetic_energy(&self) -> f64 {
         if self.turns {
             let bodies = self.handles.iter().map(|&body| &self.world.bodies[body]);
@@ -58,7 +68,7 @@ impl Engine for Rapier {
     }
 }
 
-fn vector(v: DVec3) -> Vector {
+pub(crate) fn vector(v: DVec3) -> Vector {
     Vector::new(v.x, v.y, v.z)
 }
 

@@ -6,6 +6,7 @@ mod panel;
 mod resting;
 mod stability;
 mod style;
+mod turning;
 mod work_precision;
 
 use crate::results::Results;
@@ -20,12 +21,13 @@ pub(crate) struct Plot {
     pub(crate) draw: fn(&Results) -> Vec<Figure>,
 }
 
-pub(crate) static PLOTS: [&Plot; 5] = [
+pub(crate) static PLOTS: [&Plot; 6] = [
     &work_precision::PLOT,
     &drift::PLOT,
     &stability::PLOT,
     &collisions::PLOT,
     &resting::PLOT,
+    &turning::PLOT,
 ];
 
 /// A picture with what is said of it.
