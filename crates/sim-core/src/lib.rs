@@ -127,8 +127,6 @@ mod shape;
 #[cfg(test)]
 mod test_meshes;
 #[cfg(test)]
-mod test_numbers;
-#[cfg(test)]
 mod test_random;
 mod world;
 

@@ -258,6 +258,7 @@ fn first_root_in<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_random::Random;
 
     fn way(offset: DVec3, velocity: DVec3, acceleration: DVec3) -> Parabola {
         Parabola {
@@ -277,9 +278,8 @@ mod tests {
 
     #[test]
     fn roots_are_those_of_small_steps() {
-        let mut state = 9_u64;
-        let mut random = || crate::test_numbers::signed(&mut state);
-        let mut vector = move || DVec3::new(random(), random(), random());
+        let mut random = Random(9);
+        let mut vector = || random.in_cube();
         let (mut hits, mut misses) = (0, 0);
         for _ in 0..2000 {
             let way = way(2.0 * vector(), 2.0 * vector(), 8.0 * vector());

@@ -366,6 +366,7 @@ pub(crate) fn reflect(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_random::Random;
 
     /// Columns of cubes that stand on one floor, by corners.
     fn columns(count: usize) -> (Vec<Arms>, Vec<Yielding>) {
@@ -427,11 +428,8 @@ mod tests {
             mass: 0.5,
             inertia: DMat3::from_diagonal(DVec3::new(3.0, 2.0, 5.0)),
         };
-        let mut state = 5_u64;
-        let mut number = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1);
-            (state >> 33) as f64 / (1_u64 << 30) as f64 - 1.0
-        };
+        let mut random = Random(5);
+        let mut number = || random.signed();
         for round in 0..2000 {
             let count = 3 + round % 10;
             let contacts: Vec<Arms> = (0..count)

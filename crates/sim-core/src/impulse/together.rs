@@ -235,18 +235,16 @@ fn two(wanted: &[f64], [a, b]: [f64; 2], shared: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_numbers::signed as random;
+    use crate::test_random::Random;
 
     /// Random bodies, most of them near the first few, so that contacts share bodies.
     fn scene(seed: u64, bodies: usize, count: usize) -> (Vec<Joined>, Vec<f64>, Vec<DVec3>) {
-        let mut state = seed;
-        let vector = |state: &mut u64| DVec3::new(random(state), random(state), random(state));
+        let mut random = Random(seed);
         let mut contacts = Vec::new();
         while contacts.len() < count {
-            let pick = |state: &mut u64| ((random(state) + 1.0) * 0.5 * bodies as f64) as usize;
-            let (i, j) = (pick(&mut state), pick(&mut state));
+            let (i, j) = (random.below(bodies), random.below(bodies));
             if i != j {
-                let normal = vector(&mut state).normalize();
+                let normal = random.in_cube().normalize();
                 contacts.push(Joined {
                     bodies: (i, j),
                     normal,
@@ -258,7 +256,7 @@ mod tests {
                 if i == 0 {
                     0.0
                 } else {
-                    libm::exp(random(&mut state))
+                    libm::exp(random.signed())
                 }
             })
             .collect();
@@ -267,7 +265,7 @@ mod tests {
                 if i == 0 {
                     DVec3::ZERO
                 } else {
-                    vector(&mut state)
+                    random.in_cube()
                 }
             })
             .collect();
