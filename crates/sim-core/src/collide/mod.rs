@@ -32,7 +32,9 @@ pub(crate) use broad::{BoxTree, Broad, Front, Swept};
 pub use closest::Part;
 pub(crate) use closest::{Closest, closest, closest_to_point};
 pub(crate) use deep::stay_in_each_other;
-pub(crate) use form::{Contact, Form, first_contact, is_turned, meet, parting_normals, reach};
+pub(crate) use form::{
+    Contact, Form, MOST_NORMALS, first_contact, is_turned, meet, parting_normals, reach,
+};
 pub use hit::{Hit, Side};
 pub use pairs::Level;
 pub(crate) use parabola::{Parabola, first_on_parabola, has_roots};

@@ -9,14 +9,15 @@ use glam::DVec3;
 
 use super::{World, bodies::Bodies, state::State};
 use crate::{
-    collide::turning::{Turning, normals_within},
+    collide::{
+        MOST_NORMALS,
+        turning::{Turning, normals_within},
+    },
     impulse::{Joined, project},
 };
 
 /// Rounds in which one that is moved off another one may come to meet a third.
 const ROUNDS: usize = 16;
-/// Normals along which a pair may be moved apart, at most.
-const MOST_NORMALS: usize = 32;
 /// Halvings of what bodies may be moved by to the least.
 const HALVINGS: i32 = 24;
 
