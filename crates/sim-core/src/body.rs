@@ -1,4 +1,4 @@
-//! What is put into a world.
+//! Bodies as a user describes them to a world.
 
 use glam::{DQuat, DVec3};
 

@@ -1,7 +1,7 @@
 //! Frame time into whole steps.
 //!
-//! Frames last as long as they last; a step is always `dt`. Elapsed time is added to what was
-//! left over, whole steps are taken from it, and the rest waits for the next frame (Fiedler 2004,
+//! Frames have any duration; a step is always `dt`. The clock adds elapsed time to the remainder of the
+//! last frame, takes whole steps from the sum, and keeps the rest for the next frame (Fiedler 2004,
 //! "Fix your timestep!").
 
 use core::{ops::RangeInclusive, time::Duration};

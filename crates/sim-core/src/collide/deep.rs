@@ -1,4 +1,4 @@
-//! Whether meshes are so deep in each other that no small translation takes them apart.
+//! Proves that two meshes overlap so deeply that no small translation parts them.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;

@@ -1,4 +1,4 @@
-//! Two shapes, whichever they are: do they meet, and where do they touch first?
+//! Two shapes of any kind: do they meet, and where do they touch first?
 //!
 //! Meshes against meshes are exact ([`tree`], [`touch`]). Spheres and half-spaces have closed
 //! forms, whose times are rounded like any quotient. With the second shape at `r` and moving by

@@ -1,6 +1,6 @@
 //! Do two meshes meet, where, and which features touch first?
 //!
-//! All of it is about two meshes, the second one placed in the first one's frame ([`Placement`]),
+//! All functions take two meshes, the second one placed in the first one's frame ([`Placement`]),
 //! and every decision is exact for the placed vertices.
 
 mod apart;

@@ -1,10 +1,10 @@
-//! The first contact of two shapes that have no triangles, or one of which is a half-space, on a way
-//! that is a parabola.
+//! The first contact of two shapes that have no triangles, or one of which is a half-space, on a
+//! trajectory that is a parabola.
 //!
-//! Above a half-space the height is a quadratic function of time. Between spheres it is the square
-//! of the distance that is a polynomial, of degree four; in Bernstein's basis it has no root where
-//! all of its coefficients are positive, and is halved where they are not (Lane, Riesenfeld 1981,
-//! "Bounds on a polynomial"). So nothing is passed over, however shallow it is.
+//! Above a half-space the height is a quadratic function of time. Between spheres the square
+//! of the distance is a polynomial of degree four. In Bernstein's basis it has no root if
+//! all of its coefficients are positive; otherwise its interval is halved (Lane, Riesenfeld 1981,
+//! "Bounds on a polynomial"). So the search misses no contact, however shallow.
 
 use glam::DVec3;
 

@@ -1,8 +1,8 @@
-//! Several contacts at the same instant between bodies that turn.
+//! Several simultaneous contacts between turning bodies.
 //!
 //! As in [`super::together`], with velocities of six components: a contact at the arms `r1`, `r2` from the
-//! centres of mass opens at `n·(v2 + ω2×r2 - v1 - ω1×r1)`. Contacts are few, so that the matrix
-//! `N M⁻¹ Nᵀ` is a dense one.
+//! centres of mass opens at `n·(v2 + ω2×r2 - v1 - ω1×r1)`. Contacts are few, so the Delassus operator
+//! `N M⁻¹ Nᵀ` is a dense matrix.
 
 use alloc::{vec, vec::Vec};
 use glam::{DMat3, DVec3};

@@ -1,8 +1,8 @@
 //! Time integration: one step from a state to the next.
 //!
-//! A [`Method`] is a value in the table [`METHODS`]. A new one is a file here and a line there;
-//! tests, benchmarks, scene files and the control panel go through the table. A method from
-//! outside is the same value, given to [`Settings`](crate::Settings) without an entry.
+//! A [`Method`] is a value in the table [`METHODS`]. A new method is a file in this module and a line in the
+//! table; tests, benchmarks, scene files and the control panel read the table. A method from outside the crate is
+//! the same kind of value, given to [`Settings`](crate::Settings) without an entry.
 
 pub(crate) mod adaptive;
 mod backward_euler;

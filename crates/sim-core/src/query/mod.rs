@@ -1,9 +1,9 @@
-//! Questions about placed shapes: do they meet, how far apart are they, when do they hit each other, where is a
-//! point, what does a ray hit?
+//! Queries about placed shapes: do they meet, how far apart are they, when do they hit each other (a shape cast), where
+//! is a point, what does a ray hit?
 //!
-//! A [`Placed`] is a mesh, sphere or half-space at a position. A mesh is a surface, so that a sphere deep inside
-//! a closed mesh does not meet it; [`locate`] alone knows the inside of a mesh. Spheres and half-spaces are
-//! solid. Nothing here allocates. Worlds answer the same about all of their bodies:
+//! A [`Placed`] is a mesh, sphere or half-space at a position. A mesh is a surface, so a sphere deep inside
+//! a closed mesh does not meet it; only [`locate`] knows the inside of a mesh. Spheres and half-spaces are
+//! solid. No query allocates. A world answers the same queries about all of its bodies:
 //! [`World::cast_ray`](crate::World::cast_ray), [`World::cast_shape`](crate::World::cast_shape),
 //! [`World::bodies_meeting`](crate::World::bodies_meeting), [`World::nearest`](crate::World::nearest).
 //!

@@ -1,4 +1,4 @@
-//! Which bodies stay in contact, and what it costs in accuracy to solve many contacts at once.
+//! Lasting contacts of bodies, and the cost in accuracy of solving many contacts at once.
 
 use glam::DVec3;
 

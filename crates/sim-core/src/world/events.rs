@@ -1,4 +1,4 @@
-//! Contacts that have begun, persisted or ended in a step, by pairs of bodies.
+//! Contacts that begin, persist or end in a step, by pairs of bodies.
 
 use alloc::{boxed::Box, vec::Vec};
 use glam::DVec3;

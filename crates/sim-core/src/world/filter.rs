@@ -1,4 +1,4 @@
-//! Who never collides with whom: groups of bodies, and single pairs.
+//! Collision filters: groups of bodies, and single pairs that never collide.
 
 use alloc::{boxed::Box, collections::BTreeSet};
 

@@ -1,4 +1,4 @@
-//! The running state of a scene.
+//! The world: the state of a scene, and its step.
 
 mod bodies;
 mod body_view;

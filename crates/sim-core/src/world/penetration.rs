@@ -1,9 +1,9 @@
-//! How deep bodies are in each other, and which way is out.
+//! The depth of overlapping bodies, and the translation that parts them.
 //!
-//! Of spheres and of half-spaces the least translation that parts a pair has a closed form. Of other
-//! pairs it is sought: lengths are doubled, or halved, until one of many directions parts the pair at one
-//! and none at half of it, by the exact test; the directions that do are bisected; and from where the best of them parts the pair, the
-//! surface that it then touches gives the next direction, as long as that is a shorter way.
+//! For spheres and half-spaces the least translation that parts a pair has a closed form. For other pairs
+//! it is searched. The length is doubled or halved until, by the exact test, one of many directions parts the pair
+//! at this length and none at half of it. The lengths along these directions are bisected. The surface that
+//! touches at the end of the best translation gives the next direction, as long as this makes the translation shorter.
 
 use alloc::vec::Vec;
 use glam::DVec3;

@@ -1,5 +1,5 @@
-//! Questions about all bodies of a world where they are: what a ray or a shape hits, what is in a place, what is
-//! nearest.
+//! Queries about all bodies of a world at their places: ray and shape casts, bodies that meet a shape, the nearest
+//! body.
 
 use alloc::{boxed::Box, vec::Vec};
 use core::sync::atomic::{AtomicU32, Ordering};

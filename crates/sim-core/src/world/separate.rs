@@ -1,11 +1,11 @@
-//! Moving bodies in overlap out of each other.
+//! Moving overlapping bodies apart.
 //!
-//! First all together, by as little as can be: each pair that meets has a plane across its shortest way
-//! out, and bodies move to the nearest places, in the norm of their masses, on the far sides of all
-//! planes; who meets there gets a new plane, and so on until nobody meets. Where the planes have no
-//! such place, as those of a body between two immovable ones that face each other, bodies are placed
-//! one after the other, heavy ones first: each goes the shortest way along one of many directions to
-//! where it meets none that is there.
+//! First all bodies move together, by as little as possible. Each pair that meets has a plane across the
+//! shortest translation that parts it, and bodies move to the nearest places, in the norm of their masses, on
+//! the far sides of all planes. Pairs that meet at these places get a new plane, and so on until no two bodies
+//! meet. If the planes allow no such place, as for a body between two immovable ones that face each other,
+//! bodies are placed one after the other, heavy ones first: each takes the shortest of many directions to
+//! a place where it meets no body placed before it.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use glam::DVec3;

@@ -1,10 +1,10 @@
-//! Which of many boxes meet.
+//! The broad phase: which of many boxes meet.
 //!
-//! What sweeps little of its own size in a step keeps its *neighbours* for some steps (Verlet 1967,
-//! "Computer experiments on classical fluids", sec. II): they are those whose boxes meet when all
-//! are made wider by what bodies move in a few steps, and as long as a box stays within its wide
-//! one, no other one need be looked at. Boxes that have left theirs are sought among all
-//! ([`rows`]), and once they are many, all wide boxes are made anew.
+//! A body that sweeps little of its own size in a step keeps its *neighbours* for some steps (Verlet 1967,
+//! "Computer experiments on classical fluids", sec. II). Neighbours are the bodies whose fat AABBs meet: boxes
+//! widened by the motion of bodies in a few steps. As long as a box stays within its fat AABB, no other body
+//! need be tested. Boxes that have left theirs are tested against all ([`rows`]); once there are many of
+//! them, all fat AABBs and neighbours are built anew.
 
 mod near;
 mod neighbours;

@@ -1,7 +1,7 @@
 //! All features of two shapes that touch at one time: corners in faces, and edges that cross.
 //!
-//! One pair of nearest points is not enough for what happens at an impact: a cube that lands on its face
-//! touches with four corners, and does not turn.
+//! An impact needs more than one pair of nearest points: a cube that lands on its face
+//! touches with four corners, and does not start to rotate.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use core::ops::ControlFlow;
