@@ -1,21 +1,21 @@
 //! Rigid triangle meshes, spheres and half-spaces that move and collide.
 //!
-//! The crate is `no_std` with `alloc`. It has no I/O and no clock, and threads only with the feature `rayon`. `unsafe` is
-//! used only for vector instructions and for a stack that is not zeroed. Quantities are in SI units. The state is `f64`,
-//! geometry is `f32`, and decisions about geometry are exact.
+//! The crate is `no_std` with `alloc`. It has no I/O and no clock, and threads only with the feature `rayon`.
+//! `unsafe` is used only for vector instructions and for a stack that is not zeroed. Quantities are in SI units. The
+//! state is `f64`, geometry is `f32`, and decisions about geometry are exact.
 //!
 //! # A step, in the order in which it happens
 //!
 //! 1. [`FixedStep`] turns the time since the last frame into whole steps of `dt`.
 //! 2. [`World::step`] keeps the state as the previous one and moves every [`Body`] under its
 //!    [`Force`]s by a [`Method`] of the table [`METHODS`], or by one of your own.
-//! 3. With [`Collision::Continuous`], the default, the broad phase finds the pairs whose swept boxes meet, and the impact
-//!    search finds the first time of impact of each pair on their trajectories. For meshes that translate,
+//! 3. With [`Collision::Continuous`], the default, the broad phase finds the pairs whose swept boxes meet, and the
+//!    impact search finds the first time of impact of each pair on their trajectories. For meshes that translate,
 //!    [`collide::touch`] finds it exactly, with the feature that touches and its normal. The step resolves the earliest
 //!    impact ([`impulse::between`], or [`impulse::reflect`] for several at the same time), both bodies continue for the
 //!    rest of the step, and so on until no impact is left.
-//!    With [`Collision::Bvh`] and [`Collision::Naive`], the discrete modes of the course, bodies that meet at the end of
-//!    the step exchange an impulse and go back to where the step began.
+//!    With [`Collision::Bvh`] and [`Collision::Naive`], the discrete modes of the course, bodies that meet at the end
+//!    of the step exchange an impulse and go back to where the step began.
 //! 4. [`collide::naive`] decides whether two meshes meet by testing every edge against every triangle,
 //!    [`collide::tree`] by a [`Bvh`] of each mesh. Both use the exact [`collide::predicates`]
 //!    and always agree. No step ends with two surfaces crossing.
@@ -29,9 +29,9 @@
 //!    [`World::interpolated`] gives positions between the last two states, for drawing.
 //!    [`World::contact_events`] lists the contacts that begin, persist and end, with their impulses.
 //!
-//! The module [`query`] answers queries about shapes without a world: do they meet, how far apart are they, when do they
-//! hit (a shape cast), what does a ray hit? [`World::cast_ray`] and its like answer them for all bodies of a world, between
-//! steps.
+//! The module [`query`] answers queries about shapes without a world: do they meet, how far apart are they, when do
+//! they hit (a shape cast), what does a ray hit? [`World::cast_ray`] and its like answer them for all bodies of a
+//! world, between steps.
 //!
 //! ```
 //! use core::time::Duration;
@@ -64,9 +64,10 @@
 //!
 //! # Bodies
 //!
-//! A body is dynamic, kinematic or static ([`BodyKind`]). Collision groups and ignored pairs select which bodies collide
-//! ([`Groups`], [`World::ignore_pair`]). [`World::bodies`] gives all that a world knows of each body ([`BodyView`]).
-//! Bodies are named by index. [`World::remove`] changes indices; a [`BodyHandle`] names the same body before and after.
+//! A body is dynamic, kinematic or static ([`BodyKind`]). Collision groups and ignored pairs select which bodies
+//! collide ([`Groups`], [`World::ignore_pair`]). [`World::bodies`] gives all that a world knows of each body
+//! ([`BodyView`]). Bodies are named by index. [`World::remove`] changes indices; a [`BodyHandle`] names the same body
+//! before and after.
 //!
 //! # Features
 //!
@@ -80,19 +81,19 @@
 //!
 //! # Limits
 //!
-//! - A body rotates only if it has a [`Turn`], and then has no friction. Methods integrate a rotation at their own order
-//!   if forces act at points of the body, and exactly otherwise; in the first case methods that are not symplectic refuse a
-//!   step of half a turn. In contact, turning bodies are pushed by forces that are constant for the rest of a step or a part
-//!   of it: a body that slides on its faces moves exactly, a body that tips or spins in contact loses energy to second
-//!   order. A body that touches others too often in a step stands still for the rest of it. Turning bodies that are placed
-//!   in overlap pass through each other until they are apart.
+//! - A body rotates only if it has a [`Turn`], and then has no friction. Methods integrate a rotation at their own
+//!   order if forces act at points of the body, and exactly otherwise; in the first case methods that are not
+//!   symplectic refuse a step of half a turn. In contact, turning bodies are pushed by forces that are constant for
+//!   the rest of a step or a part of it: a body that slides on its faces moves exactly, a body that tips or spins in
+//!   contact loses energy to second order. A body that touches others too often in a step stands still for the rest
+//!   of it. Turning bodies that are placed in overlap pass through each other until they are apart.
 //! - The impact search follows trajectories that curve under forces along chords. It may miss a graze shallower than a
 //!   thousandth of the smaller body within a step, but never an overlap at its end.
 //! - In a heap whose contacts are solved at once, contacts close ahead of their time by up to a step, there are no
 //!   flights shorter than a step, and friction acts at the start of the step. These errors shrink with the step.
-//! - The discrete modes do not see a body that tunnels through another within one step, and a body that is put back loses
-//!   the rest of its step. Under a force the work of that step stays in its velocity: a bouncing body keeps its height
-//!   under symplectic and backward Euler, and gains some at each bounce under forward Euler and RK4.
+//! - The discrete modes do not see a body that tunnels through another within one step, and a body that is put back
+//!   loses the rest of its step. Under a force the work of that step stays in its velocity: a bouncing body keeps its
+//!   height under symplectic and backward Euler, and gains some at each bounce under forward Euler and RK4.
 //! - If several faces touch at a corner at once, one of them gives the normal.
 #![no_std]
 #![deny(unsafe_code)]

@@ -3,8 +3,8 @@
 //! Velocities are allowed if no contact closes: `N v >= 0`, with a row for each contact that gives
 //! the speed at which it opens. The *projection* is the allowed velocity nearest to the given one in the norm
 //! of kinetic energy (Gauss' principle); its contacts neither give nor take energy.
-//! The *reflection*, of elastic contacts, lies as far beyond the projection as the given velocity lies before it. It keeps
-//! the energy and treats equal contacts equally; contacts that close after that are reflected again
+//! The *reflection*, of elastic contacts, lies as far beyond the projection as the given velocity lies before it. It
+//! keeps the energy and treats equal contacts equally; contacts that close after that are reflected again
 //! (Smith, Kaufman, Vouga, Tamstorf, Grinspun 2012, "Reflections on simultaneous impact", sec. 5,
 //! generalized reflections).
 //!

@@ -8,9 +8,9 @@
 //! θ' = Ω + ½ θ×Ω + c θ×(θ×Ω)         c = (1 - ½|θ| cot ½|θ|)/s
 //! ```
 //!
-//! and `θ''` follows from `Ω'` by the derivative of the second equation (Iserles, Munthe-Kaas, Nørsett, Zanna 2000, "Lie-group
-//! methods", Acta Numerica 9, p. 215, app. B; the signs are those of rotations that act from the right). These
-//! equations hold for angles below a whole turn; a step ends within half a turn.
+//! and `θ''` follows from `Ω'` by the derivative of the second equation (Iserles, Munthe-Kaas, Nørsett, Zanna 2000,
+//! "Lie-group methods", Acta Numerica 9, p. 215, app. B; the signs are those of rotations that act from the right).
+//! These equations hold for angles below a whole turn; a step ends within half a turn.
 
 use glam::{DQuat, DVec3};
 

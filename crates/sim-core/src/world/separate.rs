@@ -63,13 +63,13 @@ struct Plane {
 }
 
 impl World {
-    /// Moves bodies in overlap out of each other, so that none overlap, and tells which ones were moved,
-    /// in order. Velocities stay as they are; bodies that were not in overlap are moved only where others
-    /// are moved into them.
+    /// Moves overlapping bodies apart, so that none overlap, and returns the bodies that were moved,
+    /// in order. Velocities do not change; a body that did not overlap moves only if others
+    /// are moved into it.
     ///
-    /// Of two bodies the lighter one goes farther, by the ratio of their masses, and immovable ones stay:
-    /// the sum of mass times square of the way is the least that moves all of them along their shortest
-    /// ways out ([`World::overlaps`]). What is moved out touches afterwards, as if placed face to face.
+    /// The lighter one of two bodies moves farther, by the ratio of their masses, and immovable bodies stay:
+    /// the sum of mass times square of the distance is the least that moves all of them along their shortest
+    /// translations ([`World::overlaps`]). Afterwards these bodies touch, as if placed face to face.
     ///
     /// On an error the world stays as it was.
     pub fn separate(&mut self) -> Result<Vec<usize>, SeparateError> {
@@ -99,7 +99,7 @@ impl World {
     }
 }
 
-/// Bodies that are moved out of each other.
+/// Overlapping bodies that are moved apart.
 struct Separation<'a> {
     layout: Layout<'a>,
 }

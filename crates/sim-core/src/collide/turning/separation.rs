@@ -3,8 +3,8 @@
 //! A direction may be constant, turn with one shape as the normal of its face does, or stay perpendicular to an edge of
 //! each: then it separates points that lie in a face, or roll on an edge, for as long as they are apart. Along a
 //! direction `n` every point has a height `n·p`. With its first two derivatives, and a bound `J` on the third
-//! derivative of the difference of two heights, the gap between the lowest point of the one set and the highest of the other is at
-//! least
+//! derivative of the difference of two heights, the gap between the lowest point of the one set and the highest of
+//! the other is at least
 //!
 //! `min (h + v t + (c - k) t²/2) - max (h + v t + (c - k) t²/2) - J t³/6`,
 //!
