@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use cases::hard_cases::balls::{dropped, floor, on_floor};
-use kit::bodies::{immovable, wall};
+use kit::bodies::{ball, immovable, mesh_body, wall};
 use kit::meshes::{boxes, cube};
-use kit::worlds::{GRAVITY, add_gravity, world_of};
+use kit::worlds::{GRAVITY, add_gravity, precise, world_of};
 use sim_core::{Body, DVec3, METHODS, Settings, Vec3};
 
-use crate::worlds::{DT, ball, mesh_body, run, settings};
+use crate::worlds::{DT, run};
 
 /// A constant force and a weight are the same fall.
 #[test]
@@ -107,7 +107,7 @@ fn stacks_stand() {
     for (method, restitution) in METHODS.iter().flat_map(|&m| [(m, 0.5), (m, 1.0)]) {
         let settings = Settings {
             method,
-            ..settings(DT)
+            ..precise(DT)
         };
         let mut world = world_of(settings, &[floor()]);
         world
@@ -151,7 +151,7 @@ fn what_just_touches_at_its_turn_falls_back() {
                     force: -8.0 * DVec3::Y,
                     ..ball(0.0, 8.0)
                 };
-                let mut world = world_of(settings(dt), &[thrown, above]);
+                let mut world = world_of(precise(dt), &[thrown, above]);
                 run(&mut world, (1.5 / dt).ceil() as u64);
                 let t = world.time();
                 let exact = 8.0 * t - 4.0 * t * t;
@@ -177,7 +177,7 @@ fn the_end_of_a_step_takes_no_speed() {
                 ..ball(0.5, x * DVec3::X, DVec3::X)
             };
             let wall = wall(DVec3::NEG_X, DVec3::ZERO, DVec3::ZERO);
-            let mut world = world_of(settings(dt), &[thrown, wall]);
+            let mut world = world_of(precise(dt), &[thrown, wall]);
             run(&mut world, 8);
             let speed = -world.velocity(0).x;
             assert!(
@@ -198,7 +198,7 @@ fn what_leaves_at_once_and_comes_back_is_met_there() {
             force: DVec3::new(-16.0, -2.0, 0.0),
             ..ball(0.5, (1.0 + gap) * DVec3::Y, 2.0 * DVec3::X)
         };
-        let mut world = world_of(settings(0.5), &[under, rolling]);
+        let mut world = world_of(precise(0.5), &[under, rolling]);
         assert!(world.overlapping().is_empty());
         assert!(run(&mut world, 1).len() > 2);
         (world.position(1), world.velocity(1))

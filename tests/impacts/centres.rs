@@ -1,17 +1,15 @@
 //! Impacts where forces grow without bound: bodies that meet go through no centre, and gain nothing.
 
-use kit::bodies::immovable;
+use kit::bodies::{ball, immovable};
 use kit::random::Random;
-use kit::worlds::world_of;
+use kit::worlds::{precise, world_of};
 use sim_core::{Body, DVec3, Force, METHODS, Method, Settings, World};
-
-use crate::worlds::{ball, settings};
 
 fn settings_of(method: &'static Method, dt: f64) -> Settings {
     Settings {
         method,
         tolerance: 1e-10,
-        ..settings(dt)
+        ..precise(dt)
     }
 }
 

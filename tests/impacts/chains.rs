@@ -1,10 +1,10 @@
 //! Many impacts one after the other, beside the cases of `cases::hard_cases::chains`.
 
 use cases::hard_cases::chains::galperin;
-use kit::bodies::wall;
+use kit::bodies::{ball, wall};
 use sim_core::{Body, DVec3};
 
-use crate::worlds::{DT, ball, run, world};
+use crate::worlds::{DT, run, world};
 
 /// The least loss at each impact changes nothing to speak of, however many there are in a step.
 #[test]

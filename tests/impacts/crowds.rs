@@ -1,11 +1,11 @@
 //! A hundred bodies in a closed box, beside the case of cubes for long; and heaps.
 
 use cases::scenes::{Form, GRAVITY, HALF, continuous, crowd, heap};
-use kit::bodies::immovable;
+use kit::bodies::{ball, immovable, mesh_body};
 use kit::meshes::cuboid;
 use sim_core::{Body, DVec3, Vec3, World};
 
-use crate::worlds::{DT, ball, bits, mesh_body, run, world};
+use crate::worlds::{DT, bits, run, world};
 
 const HALF_BOX: f64 = 2.5;
 

@@ -1,12 +1,12 @@
 //! Bodies that are long along one axis: the time of an impact along another is as exact as without.
 
-use kit::bodies::immovable;
+use kit::bodies::{ball, immovable, mesh_body};
 use kit::meshes::{cube, cuboid};
 use kit::random::Random;
-use kit::worlds::world_of;
+use kit::worlds::{precise, world_of};
 use sim_core::{DVec3, METHODS, Settings, Vec3, World};
 
-use crate::worlds::{DT, ULP, ball, mesh_body, run, settings};
+use crate::worlds::{DT, ULP, run};
 
 /// A plate in the way of a bullet.
 #[derive(Debug)]
@@ -66,7 +66,7 @@ fn a_plate_that_is_long_another_way_is_hit_in_time() {
     let mut wrong = Vec::new();
     for _ in 0..400 {
         let shot = Shot::random(&mut random);
-        let (error, most) = shot.error(&mut shot.world(settings(DT)));
+        let (error, most) = shot.error(&mut shot.world(precise(DT)));
         if error.is_nan() || error.abs() > most {
             wrong.push(format!("{error:e} s, more than {most:e}: {shot:?}"));
         }
@@ -90,7 +90,7 @@ fn a_plate_is_hit_in_time_on_a_way_that_bends() {
             shot.half[other] = shot.half[other].clamp(1e-9, 1e9);
             let settings = Settings {
                 method,
-                ..settings(DT)
+                ..precise(DT)
             };
             let (error, most) = shot.error(&mut shot.world(settings));
             if error.is_nan() || error.abs() > most {
@@ -111,7 +111,7 @@ fn a_bullet_goes_to_and_fro_between_plates_of_any_length() {
         };
         let bullet = mesh_body(&cube(0.25), DVec3::ZERO, 1000.0 * DVec3::X);
         let bodies = [plate(-5.0, length), plate(5.0, 3.0), bullet];
-        let mut world = world_of(settings(DT), &bodies);
+        let mut world = world_of(precise(DT), &bodies);
         let impacts = run(&mut world, 60);
         // 9.499 m to and fro in a second.
         assert_eq!(impacts.len(), 105, "{length:e}");
@@ -129,7 +129,7 @@ fn a_small_ball_hits_a_large_one_in_time() {
     for radius in [1.0, 1e3, 1e6, 1e9] {
         let large = immovable(ball(radius, (radius + 2.0) * DVec3::X, DVec3::ZERO));
         let small = ball(0.5, DVec3::ZERO, 100.0 * DVec3::X);
-        let mut world = world_of(settings(DT), &[large, small]);
+        let mut world = world_of(precise(DT), &[large, small]);
         let impacts = run(&mut world, 2);
         let error = impacts[0].time - 0.015;
         assert!(

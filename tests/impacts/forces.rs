@@ -2,17 +2,17 @@
 
 use std::f64::consts::PI;
 
-use kit::bodies::{immovable, wall};
+use kit::bodies::{ball, immovable, mesh_body, wall};
 use kit::meshes::{cube, cuboid};
-use kit::worlds::{GRAVITY, world_of};
+use kit::worlds::{GRAVITY, precise, world_of};
 use sim_core::{Body, DVec3, Force, METHODS, Method, Settings, Vec3, World};
 
-use crate::worlds::{ball, mesh_body, run, settings};
+use crate::worlds::run;
 
 fn world(method: &'static Method, dt: f64, bodies: &[Body], force: Force) -> World {
     let settings = Settings {
         method,
-        ..settings(dt)
+        ..precise(dt)
     };
     let mut world = world_of(settings, bodies);
     world.add_force(force).expect("a force");

@@ -1,9 +1,10 @@
 //! A body that just touches a floor of several, beside the case of grazing.
 
+use kit::bodies::mesh_body;
 use kit::meshes::cube;
 use sim_core::{Body, BodyKind, DVec3};
 
-use crate::worlds::{DT, mesh_body, run, world};
+use crate::worlds::{DT, run, world};
 
 /// A cube slides along a floor of four cubes, a hair above it, and is not stopped where they join.
 #[test]

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use cases::Verdict;
 use cases::hard_cases::meshes::Encountered;
+use kit::bodies::mesh_body;
 use kit::meshes::{builtin, cuboid, sheet, star, torus};
 use sim_core::collide::touch::first_touch;
 use sim_core::{Bvh, DVec3, Mesh, Vec3};
 
-use crate::worlds::{DT, mesh_body, run, world};
+use crate::worlds::{DT, run, world};
 
 #[track_caller]
 fn assert_elastic_at_all_speeds_and_phases(first: &Arc<Mesh>, second: &Arc<Mesh>) {

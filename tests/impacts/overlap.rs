@@ -1,9 +1,10 @@
 //! A body that meets two in overlap, beside the case of those two.
 
+use kit::bodies::mesh_body;
 use kit::meshes::cube;
 use sim_core::DVec3;
 
-use crate::worlds::{DT, mesh_body, run, world};
+use crate::worlds::{DT, run, world};
 
 /// A third body bounces off a pair in overlap as off anything.
 #[test]

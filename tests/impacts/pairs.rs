@@ -1,9 +1,10 @@
 //! Two bodies beside each other, beside the cases of two head on.
 
+use kit::bodies::mesh_body;
 use kit::meshes::cube;
 use sim_core::{Body, DVec3};
 
-use crate::worlds::{DT, bits, mesh_body, run, world};
+use crate::worlds::{DT, bits, run, world};
 
 #[test]
 fn bodies_that_nothing_meets_move_as_points_do() {

@@ -4,10 +4,11 @@
 use std::sync::Arc;
 
 use cases::hard_cases::symmetry::{DT, STEPS, scenes};
+use kit::bodies::mesh_body;
 use kit::meshes::builtin;
 use sim_core::{Body, DVec3, Mesh, Shape, Vec3, World};
 
-use crate::worlds::{assert_close, bits, mesh_body, run, world};
+use crate::worlds::{assert_close, bits, run, world};
 
 /// The same shape, its points and lengths as told.
 fn shape_of(shape: &Shape, point: impl Fn(Vec3) -> Vec3, length: f64, is_mirror: bool) -> Shape {

@@ -1,46 +1,21 @@
 //! Worlds as the tests need them, and what they all must keep.
 
-use std::sync::Arc;
-
-use kit::bodies::body;
-use kit::shapes;
-use kit::worlds::world_of;
+use kit::worlds::{self, precise, world_of};
 use sim_core::collide::tree;
-use sim_core::{Body, Bvh, Collision, DVec3, Impact, Mesh, Settings, Shape, World};
+use sim_core::{Body, Bvh, DVec3, Impact, World};
 
 /// From 1 to the next double.
 pub(crate) const ULP: f64 = f64::EPSILON;
 
 pub(crate) const DT: f64 = 1.0 / 60.0;
 
-pub(crate) fn settings(dt: f64) -> Settings {
-    Settings {
-        dt,
-        collision: Collision::Continuous,
-        tolerance: 1e-13,
-        ..Settings::default()
-    }
-}
-
 pub(crate) fn world(dt: f64, bodies: &[Body]) -> World {
-    world_of(settings(dt), bodies)
-}
-
-pub(crate) fn mesh_body(mesh: &Arc<Mesh>, position: DVec3, velocity: DVec3) -> Body {
-    body(&Shape::Mesh(mesh.clone()), position, velocity)
-}
-
-pub(crate) fn ball(radius: f64, position: DVec3, velocity: DVec3) -> Body {
-    body(&shapes::ball(radius), position, velocity)
+    world_of(precise(dt), bodies)
 }
 
 /// Steps, and all impacts on the way.
 pub(crate) fn run(world: &mut World, steps: u64) -> Vec<Impact> {
-    let mut impacts = Vec::new();
-    for _ in 0..steps {
-        world.step_reporting(&mut impacts).expect("a step");
-    }
-    impacts
+    worlds::run(world, steps).expect("a step")
 }
 
 /// Steps, and after each one makes sure that no two meshes meet.
@@ -50,7 +25,7 @@ pub(crate) fn run_apart(world: &mut World, steps: u64) -> Vec<Impact> {
         .collect();
     let mut impacts = Vec::new();
     for _ in 0..steps {
-        world.step_reporting(&mut impacts).expect("a step");
+        impacts.extend(run(world, 1));
         assert_apart(world, &trees);
     }
     impacts

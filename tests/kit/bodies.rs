@@ -1,8 +1,10 @@
 //! Bodies.
 
-use sim_core::{Body, BodyKind, DVec3, Shape};
+use std::sync::Arc;
 
-use crate::shapes::half_space;
+use sim_core::{Body, BodyKind, DVec3, Mesh, Shape};
+
+use crate::shapes::{self, half_space};
 
 /// A body of a shape at a place.
 pub fn at(shape: &Shape, position: DVec3) -> Body {
@@ -17,6 +19,16 @@ pub fn body(shape: &Shape, position: DVec3, velocity: DVec3) -> Body {
         velocity,
         ..Body::default()
     }
+}
+
+/// A ball, or a point, on its way.
+pub fn ball(radius: f64, position: DVec3, velocity: DVec3) -> Body {
+    body(&shapes::ball(radius), position, velocity)
+}
+
+/// A body of a mesh, on its way.
+pub fn mesh_body(mesh: &Arc<Mesh>, position: DVec3, velocity: DVec3) -> Body {
+    body(&Shape::Mesh(mesh.clone()), position, velocity)
 }
 
 /// The same body, which nothing moves.

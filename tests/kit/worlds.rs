@@ -2,7 +2,7 @@
 
 use std::borrow::Borrow;
 
-use sim_core::{Body, DVec3, Force, Settings, Shape, World};
+use sim_core::{Body, Collision, DVec3, Force, Impact, Settings, Shape, StepError, World};
 
 use crate::bodies::at;
 
@@ -16,6 +16,17 @@ pub fn world_of(settings: Settings, bodies: impl IntoIterator<Item = impl Borrow
         world.add(body.borrow().clone()).expect("a body");
     }
     world
+}
+
+/// Settings for impacts that are exact to rounding: the continuous mode and velocity Verlet, which is exact in free
+/// flight; the tolerance is for methods that control their error.
+pub fn precise(dt: f64) -> Settings {
+    Settings {
+        dt,
+        collision: Collision::Continuous,
+        tolerance: 1e-13,
+        ..Settings::default()
+    }
 }
 
 /// A world of bodies with the usual settings.
@@ -44,6 +55,15 @@ pub fn step(world: &mut World, steps: u64) {
     for _ in 0..steps {
         world.step().expect("a step");
     }
+}
+
+/// Makes some steps, and returns their impacts.
+pub fn run(world: &mut World, steps: u64) -> Result<Vec<Impact>, StepError> {
+    let mut impacts = Vec::new();
+    for _ in 0..steps {
+        world.step_reporting(&mut impacts)?;
+    }
+    Ok(impacts)
 }
 
 /// Which shapes meet where bodies are now, by a world in which they are placed afresh.

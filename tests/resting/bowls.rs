@@ -8,6 +8,8 @@ use kit::shapes::{ball, mesh};
 use kit::worlds::{GRAVITY, add_gravity, world};
 use sim_core::{Body, Bvh, Shape, World, collide};
 
+use crate::scenes::conical_pendulum;
+
 const BOWL: f64 = 2.0;
 const RADIUS: f64 = 0.25;
 /// Of the pendulum.
@@ -90,8 +92,7 @@ fn run(world: &mut World, time: f64, mut look: impl FnMut(f64, DVec3)) -> (f64, 
 #[test]
 fn balls_circle_in_bowls_as_on_a_pendulum() {
     let angle: f64 = 0.5;
-    let speed = (GRAVITY * LENGTH * angle.sin() * angle.tan()).sqrt();
-    let period = TAU * LENGTH * angle.sin() / speed;
+    let (speed, period) = conical_pendulum(LENGTH, angle);
     let circled = |sides: u32, restitution: f64| {
         let mut world = in_bowl(sides, angle, speed, restitution);
         let (mut turned, mut last) = (0.0, 0.0);

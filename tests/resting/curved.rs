@@ -7,7 +7,7 @@ use kit::worlds::{GRAVITY, set_rate};
 use sim_core::{Body, DVec3, World};
 
 use crate::meshes::turned;
-use crate::scenes::{fixed, ground, rk4, world};
+use crate::scenes::{conical_pendulum, fixed, ground, rk4, world};
 
 fn at_rate(rate: f64) -> World {
     let mut world = world(rk4());
@@ -49,11 +49,17 @@ fn leave(rate: f64) -> (f64, f64, f64) {
     }
 }
 
-/// At `cos a = 2/3 + v²/(3 g R)`, of the first order in the step.
+/// The horizontal speed, m/s, with which something leaves a circle of a radius, m, on whose top it has had a speed:
+/// it leaves at `cos a = 2/3 + v²/(3 g R)` with `√(g R cos a)`.
+fn speed_off_a_ball(speed: f64, radius: f64) -> f64 {
+    let cosine = 2.0 / 3.0 + speed * speed / (3.0 * GRAVITY * radius);
+    (GRAVITY * radius * cosine).sqrt() * cosine
+}
+
+/// Of the first order in the step.
 #[test]
 fn a_ball_leaves_a_ball_where_it_must() {
-    let cosine = 2.0 / 3.0 + 0.3 * 0.3 / (3.0 * GRAVITY * 1.5);
-    let exact = (GRAVITY * 1.5 * cosine).sqrt() * cosine;
+    let exact = speed_off_a_ball(0.3, 1.5);
     let mut errors = Vec::new();
     for rate in [60.0, 240.0, 960.0, 3840.0] {
         let (speed, gained, lost) = leave(rate);
@@ -122,7 +128,7 @@ fn balls_circle_in_a_bowl() {
     // Put in where it touches, at a small height, with the speed that keeps it there.
     let angle = 0.4_f64;
     let at = length * DVec3::new(angle.sin(), -angle.cos(), 0.0);
-    let speed = (GRAVITY * length * angle.sin() * angle.tan()).sqrt();
+    let (speed, period) = conical_pendulum(length, angle);
     let rider = Body {
         shape: Some(ball(radius)),
         position: at * 0.99,
@@ -132,7 +138,6 @@ fn balls_circle_in_a_bowl() {
     };
     world.add(rider).expect("a rider");
     let mut before = energy(&world, 1);
-    let period = 2.0 * PI * length * angle.sin() / speed;
     let mut turned = 0.0;
     let mut last = 0.0_f64;
     let steps = (2.0 * period * 240.0) as u32;
@@ -183,9 +188,7 @@ fn off_an_edge_a_ball_flies_or_rolls_over_it() {
                 let error = (at - DVec3::new(x, y, 0.0)).length();
                 assert!(error < 1e-9, "{rate}: {error:e}, {at}");
             } else {
-                // It leaves the edge at cos a = 2/3 + v²/(3 g r), with the speed √(g r cos a).
-                let cosine = 2.0 / 3.0 + speed * speed / (3.0 * GRAVITY * radius);
-                let out = (GRAVITY * radius * cosine).sqrt() * cosine;
+                let out = speed_off_a_ball(speed, radius);
                 let error = (world.velocity(1).x - out).abs();
                 assert!(error < 5.0 / rate, "{rate}: {error:e}");
             }

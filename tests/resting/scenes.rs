@@ -1,4 +1,6 @@
-//! Floors, and what lies on them.
+//! Floors, what lies on them, and closed forms of motion in bowls.
+
+use std::f64::consts::TAU;
 
 use kit::bodies::{at, immovable};
 use kit::shapes::half_space;
@@ -18,6 +20,12 @@ pub(crate) fn world(method: &'static Method) -> World {
 
 pub(crate) fn rk4() -> &'static Method {
     Method::named("rk4").expect("a method")
+}
+
+/// Speed, m/s, and period, s, of a conical pendulum of a length, m, at an angle from its lowest point.
+pub(crate) fn conical_pendulum(length: f64, angle: f64) -> (f64, f64) {
+    let speed = (GRAVITY * length * angle.sin() * angle.tan()).sqrt();
+    (speed, TAU * length * angle.sin() / speed)
 }
 
 /// A body that nothing moves.

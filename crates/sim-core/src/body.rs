@@ -1,4 +1,4 @@
-//! What is put into a world.
+//! Bodies as a user describes them to a world.
 
 use glam::{DQuat, DVec3};
 
@@ -8,18 +8,18 @@ use crate::{Groups, Inertia, Shape};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum BodyKind {
-    /// Forces and impulses do.
+    /// Forces and impulses move it.
     #[default]
     Dynamic,
-    /// Nothing: it keeps its velocity until that is set, as a lift or a closing wall does, and what it
-    /// meets gives way.
+    /// Only its velocity moves it, and only a setter changes this velocity, as for a lift or a closing wall. Bodies
+    /// that it meets give way.
     Kinematic,
-    /// Nothing: it stands still, as a floor does.
+    /// It stands still, as a floor does.
     Static,
 }
 
 impl BodyKind {
-    /// Whether forces and impulses change the motion of such a body. Two that are not movable pass through
+    /// Whether forces and impulses change the motion of such a body. Two bodies that are not movable pass through
     /// each other.
     #[inline]
     #[must_use]
@@ -28,9 +28,9 @@ impl BodyKind {
     }
 }
 
-/// A body at the start: where it is, how it moves, what drives it. It translates, and a fixed
-/// orientation and scale are part of its mesh ([`Mesh::transformed`](crate::Mesh::transformed)), unless
-/// it is told to [`turn`](Body::turn).
+/// A body at the start: its place, its motion, and the forces on it. It rotates only if it has a
+/// [`turn`](Body::turn). Otherwise it translates, and a fixed orientation and scale are part of its mesh
+/// ([`Mesh::transformed`](crate::Mesh::transformed)).
 ///
 /// ```
 /// use sim_core::{Body, BodyKind, DVec3, Shape};
@@ -48,9 +48,9 @@ impl BodyKind {
     serde(default, deny_unknown_fields)
 )]
 pub struct Body {
-    /// What collides; `None` is a point, which meets nothing.
+    /// The shape that collides; `None` is a point, which meets no other body.
     pub shape: Option<Shape>,
-    /// What moves it.
+    /// Whether forces, its own velocity, or nothing moves it.
     pub kind: BodyKind,
     /// Place of the shape's origin, m; of a body that turns, of its centre of mass.
     pub position: DVec3,
@@ -60,26 +60,26 @@ pub struct Body {
     pub mass: f64,
     /// Constant resultant of all forces, N. It counts while the body is dynamic.
     pub force: DVec3,
-    /// Part of the approaching speed with which it leaves an impact, 0 to 1. Of two bodies the
-    /// lesser one counts.
+    /// Part of the approaching speed with which it leaves an impact, 0 to 1. The lesser value of two bodies
+    /// counts.
     pub restitution: f64,
     /// Coefficient of Coulomb friction µ: the force along a contact is at most µ times the force
     /// across it, the same in every direction and whether the bodies slide or not. From 0, smooth,
     /// to infinity inclusive, which never slips.
     ///
-    /// Of two bodies the geometric mean `sqrt(µ1 µ2)` counts; where one is smooth it is 0, whatever
-    /// the other is (0 times infinity is 0).
+    /// For two bodies the geometric mean `sqrt(µ1 µ2)` counts. If one of them is smooth it is 0, for any value of
+    /// the other (0 times infinity is 0).
     #[cfg_attr(feature = "serde", serde(with = "crate::serde_number"))]
     pub friction: f64,
-    /// Who it collides with.
+    /// The groups that select the bodies it collides with.
     pub groups: Groups,
-    /// A number for who uses the world, which does not read it.
+    /// A number for the user of the world, which does not read it.
     pub user_data: u64,
-    /// How it is turned and turns; `None` for a body that translates, and pays nothing for this.
+    /// Its rotation; `None` for a body that only translates, and pays nothing for rotations.
     pub turn: Option<Turn>,
 }
 
-/// How a body is turned, how it turns, and what resists.
+/// The rotation of a body, its angular velocity, its torque and its inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -94,13 +94,13 @@ pub struct Turn {
     /// Constant torque about the centre of mass in the world, N m.
     pub torque: DVec3,
     /// Centre of mass, principal moments and axes in the shape's frame. `None` takes those of a body
-    /// that is the same everywhere within its closed mesh, or ball; a body that is not dynamic, whose
+    /// of uniform density within its closed mesh, or ball. A body that is not dynamic, whose
     /// spin nothing changes, takes any, about its centre.
     pub inertia: Option<Inertia>,
 }
 
 impl Default for Turn {
-    /// Not turned, and not turning, with the inertia of the shape.
+    /// No rotation, no spin, and the inertia of the shape.
     fn default() -> Turn {
         Turn {
             rotation: DQuat::IDENTITY,

@@ -1,7 +1,7 @@
 //! Frame time into whole steps.
 //!
-//! Frames last as long as they last; a step is always `dt`. Elapsed time is added to what was
-//! left over, whole steps are taken from it, and the rest waits for the next frame (Fiedler 2004,
+//! Frames have any duration; a step is always `dt`. The clock adds elapsed time to the remainder of the
+//! last frame, takes whole steps from the sum, and keeps the rest for the next frame (Fiedler 2004,
 //! "Fix your timestep!").
 
 use core::{ops::RangeInclusive, time::Duration};
@@ -76,7 +76,7 @@ impl FixedStep {
         })
     }
 
-    /// Adds the time since the last call. What exceeds the catch-up limit is dropped and
+    /// Adds the time since the last call. Time beyond the catch-up limit is dropped and
     /// returned, so that one stall does not turn into ever longer frames.
     pub fn advance(&mut self, elapsed: Duration) -> Duration {
         let total_ns = elapsed.as_nanos();
@@ -87,7 +87,7 @@ impl FixedStep {
         self.give_up(excess, total_ns - counted_ns)
     }
 
-    /// Takes one step from the time that is waiting, if it is long enough.
+    /// Takes one step from the waiting time, if it is long enough.
     pub fn take(&mut self) -> bool {
         let due = self.waiting >= self.step;
         if due {
@@ -101,7 +101,7 @@ impl FixedStep {
         self.give_up(self.waiting / self.step, 0)
     }
 
-    /// What is left over, in steps: 0 draws the previous state, 1 the current one.
+    /// The remaining time, in steps: 0 draws the previous state, 1 the current one.
     pub fn fraction(&self) -> f64 {
         // Below one step the ratio is below 1, but its rounding may not be.
         (self.waiting as f64 / self.step as f64).min(1.0 - f64::EPSILON / 2.0)

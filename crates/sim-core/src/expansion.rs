@@ -1,6 +1,6 @@
 //! Exact sums and products of f64.
 //!
-//! A number is kept as a sum of f64 that do not overlap, the smallest first (Shewchuk 1997,
+//! A number is stored as a sum of f64 that do not overlap, the smallest first (Shewchuk 1997,
 //! "Adaptive precision floating-point arithmetic and fast robust geometric predicates", sec. 2).
 
 use core::cmp::Ordering;

@@ -1,9 +1,9 @@
 //! Forces on bodies, as data.
 //!
-//! Every force but [`Force::Gravity`] is a law of one of two kinds: of the motion of one body
-//! ([`BodyLaw`]), or of the relative motion of two ([`PairLaw`]), on which it acts with opposite
-//! signs, so that momentum stays. Both have analytic Jacobians, for implicit methods, and an energy
-//! where they have a potential. A law from outside is a type that implements one of the traits.
+//! Every force except [`Force::Gravity`] is a law of one of two kinds. A [`BodyLaw`] depends on the motion of one
+//! body. A [`PairLaw`] depends on the relative motion of two bodies and acts on them with opposite signs, so that
+//! momentum is conserved. Both have analytic Jacobians, for implicit methods, and an energy if they have a potential.
+//! A law from outside is a type that implements one of the traits.
 
 mod laws;
 #[cfg(test)]

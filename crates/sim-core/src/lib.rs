@@ -1,36 +1,37 @@
-//! Rigid triangle meshes, and spheres and half-spaces, that move and collide.
+//! Rigid triangle meshes, spheres and half-spaces that move and collide.
 //!
-//! `no_std` with `alloc`, no I/O, no clock, no threads but with feature `rayon`; `unsafe` only around vector instructions
-//! and a stack that is not zeroed. Quantities are in SI units. State is `f64`, geometry `f32`;
-//! decisions about geometry are exact.
+//! The crate is `no_std` with `alloc`. It has no I/O and no clock, and threads only with the feature `rayon`.
+//! `unsafe` is used only for vector instructions and for a stack that is not zeroed. Quantities are in SI units. The
+//! state is `f64`, geometry is `f32`, and decisions about geometry are exact.
 //!
 //! # A step, in the order in which it happens
 //!
 //! 1. [`FixedStep`] turns the time since the last frame into whole steps of `dt`.
 //! 2. [`World::step`] keeps the state as the previous one and moves every [`Body`] under its
 //!    [`Force`]s by a [`Method`] of the table [`METHODS`], or by one of your own.
-//! 3. With [`Collision::Continuous`], the default, each pair whose swept boxes meet is asked when it
-//!    has its first impact on its way: [`collide::touch`] finds it exactly for meshes that
-//!    translate, with the feature that touches and its normal. The earliest is answered
-//!    ([`impulse::between`], [`impulse::reflect`] where several happen at once), the two go on with
-//!    the rest of the step, and so on until none is left.
-//!    With [`Collision::Bvh`] and [`Collision::Naive`], as in the course, bodies that meet at the end
-//!    of the step exchange an impulse and go back to where it began.
-//! 4. Whether two meshes meet, [`collide::naive`] finds by every edge against every triangle,
-//!    [`collide::tree`] through a [`Bvh`] of each. Both rest on the exact [`collide::predicates`]
-//!    and always agree. No two surfaces are left crossing at the end of a step.
-//!    Bodies that are put into each other are no error: [`World::overlaps`] tells how deep they are,
-//!    they are kept from getting deeper, and [`World::separate`] moves them apart.
-//! 5. What comes to rest on something stays in contact with it, from step to step
-//!    ([`World::contacts`], [`World::contact_features`]): forces press, friction
-//!    ([`Body::friction`]) slows and holds, and what lies still sleeps. Where many contacts of a heap
-//!    come and go within a step, they are solved at once, and [`World::bundled`] tells what that costs.
+//! 3. With [`Collision::Continuous`], the default, the broad phase finds the pairs whose swept boxes meet, and the
+//!    impact search finds the first time of impact of each pair on their trajectories. For meshes that translate,
+//!    [`collide::touch`] finds it exactly, with the feature that touches and its normal. The step resolves the earliest
+//!    impact ([`impulse::between`], or [`impulse::reflect`] for several at the same time), both bodies continue for the
+//!    rest of the step, and so on until no impact is left.
+//!    With [`Collision::Bvh`] and [`Collision::Naive`], the discrete modes of the course, bodies that meet at the end
+//!    of the step exchange an impulse and go back to where the step began.
+//! 4. [`collide::naive`] decides whether two meshes meet by testing every edge against every triangle,
+//!    [`collide::tree`] by a [`Bvh`] of each mesh. Both use the exact [`collide::predicates`]
+//!    and always agree. No step ends with two surfaces crossing.
+//!    Bodies may be placed in overlap: [`World::overlaps`] reports their depth,
+//!    the step keeps them from getting deeper, and [`World::separate`] moves them apart.
+//! 5. A body that comes to rest on another stays in contact with it from step to step
+//!    ([`World::contacts`], [`World::contact_features`]): contact forces press on both, friction
+//!    ([`Body::friction`]) slows and holds them, and bodies that lie still sleep. If many contacts of a heap
+//!    begin and end within a step, they are solved at once, and [`World::bundled`] tells what that costs.
 //! 6. [`World::impacts`] counts impacts, [`World::step_reporting`] lists them, and
-//!    [`World::interpolated`] gives positions between the last two states to draw;
-//!    [`World::contact_events`] tells who has begun and ended to touch whom, and by what impulse.
+//!    [`World::interpolated`] gives positions between the last two states, for drawing.
+//!    [`World::contact_events`] lists the contacts that begin, persist and end, with their impulses.
 //!
-//! Between steps, and without a world, module [`query`] answers questions about shapes: do they meet, how far
-//! apart are they, when do they hit, what does a ray hit? [`World::cast_ray`] and its like ask all bodies.
+//! The module [`query`] answers queries about shapes without a world: do they meet, how far apart are they, when do
+//! they hit (a shape cast), what does a ray hit? [`World::cast_ray`] and its like answer them for all bodies of a
+//! world, between steps.
 //!
 //! ```
 //! use core::time::Duration;
@@ -58,43 +59,42 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Without bodies: a [`Stepper`] lets any method step any [`System`] `x'' = a(t, x, v)`, and
+//! Two parts need no bodies: a [`Stepper`] lets any method step any [`System`] `x'' = a(t, x, v)`, and
 //! [`Dopri5`] and [`Dop853`] solve `y' = f(t, y)` to a tolerance.
 //!
 //! # Bodies
 //!
-//! A body is dynamic, kinematic or static ([`BodyKind`]); groups and pairs tell who collides with whom
-//! ([`Groups`], [`World::ignore_pair`]). [`World::bodies`] shows all of each ([`BodyView`]).
-//! Bodies are named by index; where some are removed ([`World::remove`]) a [`BodyHandle`] goes on
-//! naming the same one.
+//! A body is dynamic, kinematic or static ([`BodyKind`]). Collision groups and ignored pairs select which bodies
+//! collide ([`Groups`], [`World::ignore_pair`]). [`World::bodies`] gives all that a world knows of each body
+//! ([`BodyView`]). Bodies are named by index. [`World::remove`] changes indices; a [`BodyHandle`] names the same body
+//! before and after.
 //!
 //! # Features
 //!
 //! | Feature | What it brings |
 //! |---|---|
 //! | `std` | Asks the processor at run time for wider vectors than the crate was compiled for. |
-//! | `rayon` | Seeks impacts on many threads; the same bits at any number of them. Needs `std`. |
-//! | `serde` | Writes and reads [`Body`], [`Settings`], [`Mesh`], [`Force`] and a whole [`World`], which goes on to the bit. |
+//! | `rayon` | Searches for impacts on many threads, with the same bits at any number of threads. Needs `std`. |
+//! | `serde` | Writes and reads [`Body`], [`Settings`], [`Mesh`], [`Force`] and a whole [`World`], which continues to the same bits. |
 //!
-//! None is on by default. None changes a result.
+//! No feature is on by default. No feature changes a result.
 //!
 //! # Limits
 //!
-//! - Bodies turn where they have a [`Turn`], without friction. Methods turn them at their own order where forces act at
-//!   points of them, and exactly else; there methods that are not symplectic refuse a step of half a turn. In contact they are pushed by forces that are constant
-//!   for what is left of a step or a part of it: what slides on its faces is exact, what tips or spins there loses
-//!   energy to second order. What touches too often in a step stands still for the rest of it. Turning
-//!   bodies that are put into each other pass through each other until they are apart.
-//! - Ways that bend under forces are searched along chords. A graze shallower than a thousandth of
-//!   the smaller body may be missed within a step; never an overlap at its end.
-//! - In a heap whose contacts are solved at once, contacts close ahead of their time by up to a step,
-//!   flights of less than a step are none, and friction acts at the step's start: errors that shrink
-//!   with the step.
-//! - In the discrete modes a body that is through another within one step is not seen, and one that
-//!   is put back loses the rest of its step. Under a force the work done in that step stays in its
-//!   velocity: a bouncing body keeps its height under symplectic and backward Euler, and gains some
-//!   at each bounce under forward Euler and RK4.
-//! - Where several faces touch at a corner at once, one of them gives the normal.
+//! - A body rotates only if it has a [`Turn`], and then has no friction. Methods integrate a rotation at their own
+//!   order if forces act at points of the body, and exactly otherwise; in the first case methods that are not
+//!   symplectic refuse a step of half a turn. In contact, turning bodies are pushed by forces that are constant for
+//!   the rest of a step or a part of it: a body that slides on its faces moves exactly, a body that tips or spins in
+//!   contact loses energy to second order. A body that touches others too often in a step stands still for the rest
+//!   of it. Turning bodies that are placed in overlap pass through each other until they are apart.
+//! - The impact search follows trajectories that curve under forces along chords. It may miss a graze shallower than a
+//!   thousandth of the smaller body within a step, but never an overlap at its end.
+//! - In a heap whose contacts are solved at once, contacts close ahead of their time by up to a step, there are no
+//!   flights shorter than a step, and friction acts at the start of the step. These errors shrink with the step.
+//! - The discrete modes do not see a body that tunnels through another within one step, and a body that is put back
+//!   loses the rest of its step. Under a force the work of that step stays in its velocity: a bouncing body keeps its
+//!   height under symplectic and backward Euler, and gains some at each bounce under forward Euler and RK4.
+//! - If several faces touch at a corner at once, one of them gives the normal.
 #![no_std]
 #![deny(unsafe_code)]
 
@@ -126,8 +126,6 @@ mod serde_number;
 mod shape;
 #[cfg(test)]
 mod test_meshes;
-#[cfg(test)]
-mod test_numbers;
 #[cfg(test)]
 mod test_random;
 mod world;

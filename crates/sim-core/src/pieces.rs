@@ -1,22 +1,22 @@
-//! What hangs together with what.
+//! Connected components, by union-find.
 
 use alloc::vec::Vec;
 
-/// Pieces of a whole, joined two by two (Galler, Fischer 1964, "An improved equivalence algorithm"), with
-/// paths halved on the way (Tarjan, van Leeuwen 1984).
+/// Union-find (Galler, Fischer 1964, "An improved equivalence algorithm") with path halving (Tarjan, van
+/// Leeuwen 1984).
 pub(crate) struct Pieces {
     parent: Vec<u32>,
 }
 
 impl Pieces {
-    /// So many, each on its own.
+    /// As many components as elements.
     pub(crate) fn new(count: usize) -> Pieces {
         Pieces {
             parent: (0..count as u32).collect(),
         }
     }
 
-    /// The first one of all that one hangs together with.
+    /// The first element in the component of an element.
     pub(crate) fn first(&mut self, of: usize) -> usize {
         let (parent, mut at) = (&mut self.parent, of);
         while parent[at] as usize != at {
@@ -26,7 +26,7 @@ impl Pieces {
         at
     }
 
-    /// Joins two, and tells whether they were apart.
+    /// Joins the components of two elements, and tells whether these were different.
     pub(crate) fn join(&mut self, one: usize, other: usize) -> bool {
         let (one, other) = (self.first(one), self.first(other));
         self.parent[one.max(other)] = one.min(other) as u32;
@@ -34,7 +34,7 @@ impl Pieces {
     }
 }
 
-/// For each pair a number that those have in common which movable bodies tie together.
+/// For each pair of bodies a number; pairs that movable bodies connect have the same number.
 pub(crate) fn ties(
     pairs: impl Iterator<Item = (usize, usize)> + Clone,
     bodies: usize,

@@ -1,4 +1,4 @@
-//! Numbers that may be infinite, in formats that know no infinite ones.
+//! Numbers that may be infinite, for formats without infinite numbers.
 
 use core::fmt;
 use serde::{Deserializer, Serializer, de};

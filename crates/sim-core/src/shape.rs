@@ -1,4 +1,4 @@
-//! What a body is, to others that it meets.
+//! The shapes of bodies.
 
 use alloc::sync::Arc;
 use glam::DVec3;

@@ -5,7 +5,6 @@ use std::sync::{Arc, Mutex};
 
 use egui_wgpu::wgpu;
 
-use crate::number;
 use crate::picture::Picture;
 use crate::render::{self, Renderer};
 
@@ -99,7 +98,12 @@ impl Canvas {
             .lock()
             .ok()
             .and_then(|mut slot| slot.take());
-        of_driver.or_else(|| Some(in_part(cut.last()?)))
+        of_driver.or_else(|| {
+            Some(format!(
+                "The graphics adapter {}. All of them collide.",
+                cut.last()?.told("a mesh")
+            ))
+        })
     }
 
     /// Takes in textures of the control panel. egui sends each once, so that none may be left out even
@@ -178,14 +182,6 @@ impl Canvas {
             self.picture_id,
         );
     }
-}
-
-fn in_part(cut: &render::Cut) -> String {
-    let [drawn, all] =
-        [cut.drawn, cut.mesh.triangles().len()].map(|count| number::count(count as f64));
-    format!(
-        "The graphics adapter has room for {drawn} of the {all} triangles of a mesh, and draws no more. All of them collide."
-    )
 }
 
 /// What is to be told once there has been another error. What is missing for want of memory causes more of them.

@@ -11,7 +11,6 @@ use sim_core::{Mesh, Shape};
 use crate::cli::{Depth, ShotArgs};
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
-use crate::number;
 use crate::picture;
 use crate::render::Cut;
 use crate::render::offscreen::{Offscreen, ShotError};
@@ -110,12 +109,10 @@ fn in_part(session: &Session, cut: &Cut) -> String {
     };
     let body = (0..session.world().len()).find(is_its);
     let name = body.map(|body| format!(" of {}", shown::name(&session.scene().bodies[body].name)));
-    let [drawn, all] =
-        [cut.drawn, cut.mesh.triangles().len()].map(|count| number::count(count as f64));
+    let mesh = format!("the mesh{}", name.unwrap_or_default());
     format!(
-        "the graphics adapter has room for {drawn} of the {all} triangles of the mesh{}, and draws no more (all of \
-         them collide): use a coarser mesh, or another adapter",
-        name.unwrap_or_default()
+        "the graphics adapter {} (all of them collide): use a coarser mesh, or another adapter",
+        cut.told(&mesh)
     )
 }
 

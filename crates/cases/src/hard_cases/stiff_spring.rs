@@ -3,22 +3,19 @@
 use sim_core::{Body, DVec3, Force, Method, StepError, World, WorldError};
 
 use super::{Finding, Tried};
+use crate::problems::stiff_spring::{C, G, K};
 use crate::worlds;
 
-/// Stiffness, N/m, and damping, kg/s, of 1 kg.
-const SPRING: [f64; 2] = [1e6, 1e3];
-
 /// Where it rests, m.
-const REST: f64 = -9.81e-6;
+const REST: f64 = -G / K;
 
 pub(super) fn test(method: &'static Method) -> Tried {
-    let [k, c] = SPRING;
     // Worked out by hand where that is possible: from |1 + z λ| ≤ 1 and the like.
     let limit = match method.name {
         "forward-euler" => 1e-3,
         "symplectic-euler" => (5f64.sqrt() - 1.0) * 1e-3,
         "rk4" => 2.622_542e-3,
-        _ => method.stable_dt(k, c),
+        _ => method.stable_dt(K, C),
     };
     match limit.is_finite() {
         true => limited(method, limit),
@@ -28,18 +25,17 @@ pub(super) fn test(method: &'static Method) -> Tried {
 
 /// The spring at its start, in a world.
 pub fn world(method: &'static Method, dt: f64) -> Result<World, WorldError> {
-    let [k, c] = SPRING;
     let body = Body {
         position: DVec3::X,
         ..Body::default()
     };
     let weight = Force::Gravity {
-        acceleration: -9.81 * DVec3::X,
+        acceleration: -G * DVec3::X,
     };
     worlds::under(
         worlds::settings(method, dt),
         [body],
-        &[worlds::spring_to_origin(k, c), weight],
+        &[worlds::spring_to_origin(K, C), weight],
     )
 }
 

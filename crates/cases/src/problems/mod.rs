@@ -10,7 +10,7 @@ pub mod kepler;
 mod oscillator;
 pub mod pleiades;
 mod stiff_linear;
-mod stiff_spring;
+pub(crate) mod stiff_spring;
 
 use sim_core::{DVec3, Method, Stepper, System};
 

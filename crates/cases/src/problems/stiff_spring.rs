@@ -9,11 +9,11 @@ use super::{Card, FirstOrder, Problem};
 pub(super) struct StiffSpring;
 
 /// Stiffness per mass, 1/s².
-const K: f64 = 1e6;
+pub(crate) const K: f64 = 1e6;
 /// Damping per mass, 1/s.
-const C: f64 = 1e3;
+pub(crate) const C: f64 = 1e3;
 /// Weight per mass, m/s².
-const G: f64 = 9.81;
+pub(crate) const G: f64 = 9.81;
 
 pub(super) fn problem() -> Problem<StiffSpring, 2> {
     Problem {

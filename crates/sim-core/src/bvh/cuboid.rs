@@ -1,4 +1,4 @@
-//! Meshes that are the boxes around them.
+//! Meshes that are axis-aligned boxes.
 
 use glam::DVec3;
 

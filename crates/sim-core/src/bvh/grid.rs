@@ -1,7 +1,7 @@
 //! Triangles sorted into the cells of a grid by their centres.
 //!
-//! The upper levels of a tree are built over cells rather than over triangles, ten times fewer
-//! (Pantaleoni, Luebke 2010, "HLBVH", sec. 3: there the cells are of a space filling curve).
+//! The builder makes the upper levels of a tree over cells rather than over triangles, ten times fewer
+//! (Pantaleoni, Luebke 2010, "HLBVH", sec. 3; there the cells follow a space-filling curve).
 
 use alloc::{vec, vec::Vec};
 use glam::{Vec3, Vec4};

@@ -157,6 +157,7 @@ impl Bvh {
 mod tests {
     use super::*;
     use crate::test_meshes::{cube, sphere};
+    use crate::test_random::Random;
     use alloc::vec;
     use glam::{DQuat, DVec3, Vec3};
 
@@ -346,14 +347,10 @@ mod tests {
     /// Of four below each node a tree has half of the levels, so it has fewer boxes to meet.
     #[test]
     fn trees_are_as_good_as_slowly_built_ones() {
-        let mut state = 1_u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1 << 24) as f32
-        };
+        let mut random = Random(1);
         // Long thin triangles in any direction.
         let needles = soup((0..5000).map(|_| {
-            let [at, along, across] = [0; 3].map(|_| Vec3::new(random(), random(), random()));
+            let [at, along, across] = [0; 3].map(|_| random.in_unit_cube().as_vec3());
             [at, at + 0.3 * (along - 0.5), at + 0.01 * (across - 0.5)]
         }));
         for (mesh, factor) in [(sphere(60), 0.68), (needles, 0.72)] {

@@ -1,4 +1,4 @@
-//! Nodes and leaves: four boxes side by side, and what is in them.
+//! Nodes and leaves: four boxes side by side, and their contents.
 
 use glam::{Vec3, Vec3A};
 

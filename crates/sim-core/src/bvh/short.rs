@@ -1,4 +1,4 @@
-//! Cutting runs of a few triangles, by sorting them: the surface area heuristic makes nothing better
+//! Splits runs of a few triangles by sorting them: the surface area heuristic makes nothing better
 //! of so few.
 
 use core::array;

@@ -1,9 +1,9 @@
 //! Oriented slabs beside the boxes.
 //!
-//! What a node holds is as a rule a patch of a surface, flat the more the smaller it is. A slab
-//! along the patch's normal is thin where a box is not, so two surfaces that run side by side,
-//! which boxes tell apart only at the size of their distance, come apart at the size of the square
-//! root of it (Gottschalk, Lin, Manocha 1996, "OBBTree", sec. 5, on boxes of any orientation; here
+//! The triangles of a node are as a rule a patch of a surface; the smaller the patch, the flatter it is. A
+//! slab along the patch's normal is thin where a box is not. Boxes separate two surfaces that run side by
+//! side only at patches of the size of their distance; slabs separate them at patches of the size of the
+//! square root of it (Gottschalk, Lin, Manocha 1996, "OBBTree", sec. 5, on boxes of any orientation; here
 //! it is a box and one slab).
 
 use glam::{BVec4A, Vec4};

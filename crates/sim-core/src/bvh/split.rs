@@ -1,5 +1,5 @@
-//! Cutting runs of boxes in two by the binned surface area heuristic (Wald 2007, "On fast
-//! construction of SAH-based bounding volume hierarchies"), and those again until there are four
+//! Splits runs of boxes in two by the binned surface area heuristic (Wald 2007, "On fast
+//! construction of SAH-based bounding volume hierarchies"), and splits these again until there are four
 //! (Wald, Benthin, Boulos 2008, "Getting rid of packets").
 
 use alloc::vec::Vec;

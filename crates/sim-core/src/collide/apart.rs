@@ -1,9 +1,9 @@
-//! Which triangles of two leaves are apart, at a glance.
+//! A quick test that separates triangles of two leaves.
 //!
-//! Two triangles are apart if one lies on one side of the other's plane. Sixteen pairs are looked
-//! at in f32, with a bound of everything that rounding can do; pairs that the bound leaves open
-//! are for exact arithmetic. Nearly every pair that is apart is found so, and of nearly every other
-//! one it is known which corners lie above which plane, which spares exact arithmetic the most.
+//! Two triangles are apart if one lies on one side of the other's plane. The test computes sixteen pairs
+//! in f32, with a bound on all rounding errors; exact arithmetic decides the pairs that the bound leaves
+//! open. The test finds nearly every pair that is apart. Of nearly every other pair it knows which corners
+//! lie above which plane, which spares exact arithmetic the most.
 //!
 //! The bound. A height `h = n·w` above a plane through corner `a`, with `n = u × v` and
 //! `w = p - a`, is a determinant whose rows are differences of corners. Computed from exact
@@ -11,10 +11,10 @@
 //! sec. 4.3), here `16 e`. Three more errors: `w` has a placed corner, which f32 misses by `d`,
 //! whence `|n|·d`; `u` and `v` of the second mesh are taken before placing, which moves them by
 //! at most `q`, whence `dn·|w|` with `dn_x = q (|u_y| + |v_y| + |u_z| + |v_z| + 2 q)` and so on;
-//! and products below the range of f32 vanish, whence a small constant. As boxes meet, no
+//! and products below the range of f32 vanish, whence a small constant. The boxes meet, so no
 //! component of `w` exceeds twice the sum of the half extents and the margin of their comparison.
-//! The greatest of each leaf are taken for these, so that there are errors of four triangles to
-//! compute and not of sixteen pairs. Sizes are such that no product overflows
+//! The bound uses the greatest of these in each leaf, which needs errors of four triangles
+//! instead of sixteen pairs. Sizes are such that no product overflows
 //! ([`Reach::has_planes`]).
 
 use super::pairs::{Lanes, Meshes, Reach, dot0, splat};

@@ -1,9 +1,9 @@
 //! A ball against one mesh.
 //!
 //! The distance of a moving point from a triangle is a convex function of time, so Newton's method
-//! from before the contact never goes past it: a tangent lies below the function. One loop does for
-//! faces, edges and vertices, and a point is a ball of radius zero. All in f64: distances are computed
-//! to within 2^-49 times the sum of the magnitudes of coordinates, radius and motion, but for
+//! from before the contact never goes past it: a tangent lies below the function. One loop serves
+//! faces, edges and vertices, and a point is a ball of radius zero. All arithmetic is f64: distances are
+//! right to within 2^-49 times the sum of the magnitudes of coordinates, radius and motion, except for
 //! triangles with angles as small as that.
 
 use core::ops::ControlFlow;

@@ -1,9 +1,9 @@
 //! Whether the surfaces of a box along the axes and of a mesh meet.
 //!
-//! The box tells inside from outside, so one descent of the mesh's tree is enough: what is
-//! strictly inside or outside is done with, and a triangle with a corner strictly inside and one
-//! that is not meets the surface, whatever its plane. So does all of a mesh that hangs together.
-//! Only triangles whose corners are all outside have to be compared with those of the box.
+//! The inside of the box is known, so one descent of the mesh's tree is enough. A subtree strictly inside or
+//! strictly outside needs no more tests. A triangle with one corner strictly inside and another one not
+//! strictly inside meets the surface, whatever its plane; so does a connected part of the mesh with such corners. Only
+//! triangles whose corners are all outside are tested against the triangles of the box.
 
 use glam::{DVec3, Vec3A, Vec4};
 

@@ -1,10 +1,10 @@
 //! The first contact of two boxes that translate.
 //!
-//! Along each axis two boxes come to overlap at one time and cease to at another. They touch when
-//! the last axis comes to overlap, if no other one has ceased to by then. So much is told in a few
-//! hundred instructions. To their triangles, face against face is the worst that can happen, since
-//! most features touch at once. The answers are those of [`super::sweep`] to the last bit, but for
-//! axes whose times are two that round to one: here the first of them counts.
+//! Along each axis two boxes begin to overlap at one time and cease at another. They touch when
+//! the last axis begins to overlap, if no other axis has ceased by then. This takes a few
+//! hundred instructions. For their triangles, face against face is the worst case, since
+//! most features touch at once. The answers are those of [`super::sweep`] to the last bit, except for
+//! axes whose two times round to one: here the first of these axes counts.
 
 use core::cmp::Ordering::{self, Equal, Greater, Less};
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! Whether meshes are so deep in each other that no small translation takes them apart.
+//! Proves that two meshes overlap so deeply that no small translation parts them.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -134,15 +134,14 @@ mod tests {
     use crate::{
         collide::tree::intersect,
         test_meshes::{cube, sphere},
-        test_numbers::signed,
+        test_random::Random,
     };
 
     #[test]
     fn what_stays_in_each_other_meets_wherever_it_is_moved() {
         let meshes = [cube(), sphere(8), sphere(13)].map(|mesh| Bvh::build(&mesh));
-        let mut state = 1;
-        let mut number = || signed(&mut state);
-        let mut next = || DVec3::new(number(), number(), number());
+        let mut random = Random(1);
+        let mut next = || random.in_cube();
         let mut told = [0; 2];
         for (i, first) in meshes.iter().enumerate() {
             for second in &meshes[i..] {
@@ -171,9 +170,8 @@ mod tests {
     #[test]
     fn what_is_turned_in_each_other_meets_wherever_it_is_moved() {
         let meshes = [cube(), sphere(9)].map(|mesh| Bvh::build(&mesh));
-        let mut state = 1;
-        let mut number = || signed(&mut state);
-        let mut next = || DVec3::new(number(), number(), number());
+        let mut random = Random(1);
+        let mut next = || random.in_cube();
         let mut told = [0; 2];
         for (first, second) in [(0, 0), (0, 1), (1, 1)].map(|(i, j)| (&meshes[i], &meshes[j])) {
             for _ in 0..200 {

@@ -1,4 +1,4 @@
-//! Two shapes, whichever they are: do they meet, and where do they touch first?
+//! Two shapes of any kind: do they meet, and where do they touch first?
 //!
 //! Meshes against meshes are exact ([`tree`], [`touch`]). Spheres and half-spaces have closed
 //! forms, whose times are rounded like any quotient. With the second shape at `r` and moving by
@@ -177,8 +177,8 @@ pub(crate) fn parting_normals(first: Form<'_>, second: Form<'_>, offset: DVec3) 
     }
 }
 
-/// Normals looked at where meshes touch, at most.
-const MOST_NORMALS: usize = 32;
+/// Normals that are tried at most to part two meshes.
+pub(crate) const MOST_NORMALS: usize = 32;
 
 /// How far a shape extends against `normal`, and where.
 pub(crate) fn reach(shape: Form<'_>, normal: DVec3) -> (f64, DVec3) {

@@ -1,4 +1,4 @@
-//! An edge of one mesh in a triangle of the other.
+//! A hit: an edge of one mesh meets a triangle of the other.
 
 use glam::DVec3;
 

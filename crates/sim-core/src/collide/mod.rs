@@ -1,6 +1,6 @@
 //! Do two meshes meet, where, and which features touch first?
 //!
-//! All of it is about two meshes, the second one placed in the first one's frame ([`Placement`]),
+//! All functions take two meshes, the second one placed in the first one's frame ([`Placement`]),
 //! and every decision is exact for the placed vertices.
 
 mod apart;
@@ -32,7 +32,9 @@ pub(crate) use broad::{BoxTree, Broad, Front, Swept};
 pub use closest::Part;
 pub(crate) use closest::{Closest, closest, closest_to_point};
 pub(crate) use deep::stay_in_each_other;
-pub(crate) use form::{Contact, Form, first_contact, is_turned, meet, parting_normals, reach};
+pub(crate) use form::{
+    Contact, Form, MOST_NORMALS, first_contact, is_turned, meet, parting_normals, reach,
+};
 pub use hit::{Hit, Side};
 pub use pairs::Level;
 pub(crate) use parabola::{Parabola, first_on_parabola, has_roots};

@@ -1,15 +1,15 @@
 //! When moving points and edges meet triangles and edges: exact decisions, times rounded down.
 //!
 //! The motion is a translation from time 0 to time 1, so every time of contact is a quotient of two
-//! determinants of differences of points (see [`super::touch`]), and whether features meet is
-//! decided by signs of such determinants: in f64 where a bound of the error allows it, else in exact
+//! determinants of differences of points (see [`super::touch`]), and the signs of such determinants
+//! decide whether features meet: in f64 if a bound on the error allows it, else in exact
 //! arithmetic (Shewchuk 1997). Sets are closed, so touching is meeting, and features that touch at
-//! the start meet at time 0. Every time is the greatest f64 that is not above the exact one, but for
-//! coordinates so large or small that exact products leave the range of f64, where it is at most
+//! the start meet at time 0. Every time is the greatest f64 that is not above the exact one. If
+//! coordinates are so large or small that exact products leave the range of f64, it is at most
 //! eight units in the last place less.
 //!
-//! Coordinates must be multiples of 2^-340, as in [`super::predicates`]. What is no number or beyond
-//! ±1e100 meets nothing, the motion included, whose components below 2^-250 count as zero.
+//! Coordinates must be multiples of 2^-340, as in [`super::predicates`]. Features with a coordinate or a
+//! motion that is not a number or beyond ±1e100 meet nothing. Components of the motion below 2^-250 count as zero.
 
 use core::cmp::Ordering;
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! The plain way: every edge of one mesh against every triangle of the other, both ways.
+//! The naive search: every edge of one mesh against every triangle of the other, both ways.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;

@@ -1,10 +1,10 @@
-//! The first contact of two shapes that have no triangles, or one of which is a half-space, on a way
-//! that is a parabola.
+//! The first contact of two shapes that have no triangles, or one of which is a half-space, on a
+//! trajectory that is a parabola.
 //!
-//! Above a half-space the height is a quadratic function of time. Between spheres it is the square
-//! of the distance that is a polynomial, of degree four; in Bernstein's basis it has no root where
-//! all of its coefficients are positive, and is halved where they are not (Lane, Riesenfeld 1981,
-//! "Bounds on a polynomial"). So nothing is passed over, however shallow it is.
+//! Above a half-space the height is a quadratic function of time. Between spheres the square
+//! of the distance is a polynomial of degree four. In Bernstein's basis it has no root if
+//! all of its coefficients are positive; otherwise its interval is halved (Lane, Riesenfeld 1981,
+//! "Bounds on a polynomial"). So the search misses no contact, however shallow.
 
 use glam::DVec3;
 
@@ -258,6 +258,7 @@ fn first_root_in<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_random::Random;
 
     fn way(offset: DVec3, velocity: DVec3, acceleration: DVec3) -> Parabola {
         Parabola {
@@ -277,9 +278,8 @@ mod tests {
 
     #[test]
     fn roots_are_those_of_small_steps() {
-        let mut state = 9_u64;
-        let mut random = || crate::test_numbers::signed(&mut state);
-        let mut vector = move || DVec3::new(random(), random(), random());
+        let mut random = Random(9);
+        let mut vector = || random.in_cube();
         let (mut hits, mut misses) = (0, 0);
         for _ in 0..2000 {
             let way = way(2.0 * vector(), 2.0 * vector(), 8.0 * vector());

@@ -1,4 +1,4 @@
-//! Where the second mesh is in the first one's frame.
+//! The relative pose of two meshes: the second one in the first one's frame.
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 

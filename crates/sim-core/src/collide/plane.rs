@@ -1,4 +1,4 @@
-//! Cross and triple products in f64 with bounds of their errors, and a quick look at which side of
+//! Cross and triple products in f64 with bounds on their errors, and a quick test on which side of
 //! a triangle's plane points are.
 
 use core::cmp::Ordering;

@@ -2,8 +2,8 @@
 //!
 //! Every decision is the sign of a determinant, computed exactly (Shewchuk 1997, "Adaptive
 //! precision floating-point arithmetic and fast robust geometric predicates", sec. 4). Sets are
-//! closed: what touches, meets. No tolerance exists, so two triangles that share an edge never
-//! disagree about it, and nothing slips between them.
+//! closed: sets that touch also meet. There is no tolerance, so two triangles that share an edge never
+//! disagree about it, and no point slips between them.
 //!
 //! Coordinates must lie within ±1e100 and be multiples of 2^-340, as those of placed vertices are
 //! ([`super`]), so that products of three differences neither overflow nor underflow.

@@ -1,8 +1,8 @@
 //! The feature of two moving meshes that touches first, and the contact normal that it gives.
 //!
 //! An impulse needs one normal where many edges and faces meet. The normal is that of the feature
-//! that touches first along the relative motion of the step, because it is what stops the bodies;
-//! what overlaps at the end of the step depends on the length of the step instead.
+//! that touches first along the relative motion of the step, because this feature stops the bodies;
+//! the features that overlap at the end of the step depend on the length of the step instead.
 //!
 //! - A vertex in a face gives the face's normal, two crossing edges give their common
 //!   perpendicular; it is turned to point from the first mesh to the second, against the motion.
@@ -10,9 +10,8 @@
 //!   a face goes before two edges, since a face has a tangent plane of its own where the
 //!   perpendicular of two edges that end there may point anywhere. Of those left the one that
 //!   opposes the motion most goes first, then the one that comes first in the meshes.
-//! - Edges that are parallel but for the rounding of placed vertices cross where that leads them, and
-//!   their perpendicular says nothing: of the faces beside them the normal that opposes the motion
-//!   most stands for it.
+//! - Edges that are parallel up to the rounding of placed vertices cross at a place that depends on this rounding, and
+//!   their perpendicular has no meaning. The normal of the adjacent face that opposes the motion most replaces it.
 //!
 //! So a cube that meets a cube face-on gets the face's normal and bounces straight back, though
 //! four corners, and edges with edges, touch at once.

@@ -1,4 +1,4 @@
-//! Through two hierarchies: only triangles whose boxes meet are tested.
+//! Queries through two hierarchies: only triangles whose boxes meet are tested.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;

@@ -1,8 +1,8 @@
-//! Several contacts at the same instant between bodies that turn.
+//! Several simultaneous contacts between turning bodies.
 //!
 //! As in [`super::together`], with velocities of six components: a contact at the arms `r1`, `r2` from the
-//! centres of mass opens at `n·(v2 + ω2×r2 - v1 - ω1×r1)`. Contacts are few, so that the matrix
-//! `N M⁻¹ Nᵀ` is a dense one.
+//! centres of mass opens at `n·(v2 + ω2×r2 - v1 - ω1×r1)`. Contacts are few, so the Delassus operator
+//! `N M⁻¹ Nᵀ` is a dense matrix.
 
 use alloc::{vec, vec::Vec};
 use glam::{DMat3, DVec3};
@@ -374,6 +374,7 @@ pub(crate) fn reflect(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_random::Random;
 
     /// Columns of cubes that stand on one floor, by corners.
     fn columns(count: usize) -> (Vec<Arms>, Vec<Yielding>) {
@@ -435,11 +436,8 @@ mod tests {
             mass: 0.5,
             inertia: DMat3::from_diagonal(DVec3::new(3.0, 2.0, 5.0)),
         };
-        let mut state = 5_u64;
-        let mut number = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1);
-            (state >> 33) as f64 / (1_u64 << 30) as f64 - 1.0
-        };
+        let mut random = Random(5);
+        let mut number = || random.signed();
         for round in 0..2000 {
             let count = 3 + round % 10;
             let contacts: Vec<Arms> = (0..count)

@@ -1,4 +1,4 @@
-//! Friction of contacts: impulses across their normals.
+//! Friction: impulses of contacts across their normals.
 
 use alloc::{vec, vec::Vec};
 use glam::DVec3;

@@ -1,16 +1,16 @@
-//! Several contacts at the same instant.
+//! Several simultaneous contacts.
 //!
-//! Velocities are allowed if no contact closes: `N v >= 0`, with a row for each contact that takes
-//! the speed at which it opens. Of allowed velocities, those nearest to the given ones, in the norm
-//! of kinetic energy, are the *projection*: Gauss' principle, contacts that give and take nothing.
-//! Elastic contacts *reflect*: they go as far beyond the projection as it is away, which keeps the
-//! energy and treats equal contacts equally; contacts that close after that are reflected again
+//! Velocities are allowed if no contact closes: `N v >= 0`, with a row for each contact that gives
+//! the speed at which it opens. The *projection* is the allowed velocity nearest to the given one in the norm
+//! of kinetic energy (Gauss' principle); its contacts neither give nor take energy.
+//! The *reflection*, of elastic contacts, lies as far beyond the projection as the given velocity lies before it. It
+//! keeps the energy and treats equal contacts equally; contacts that close after that are reflected again
 //! (Smith, Kaufman, Vouga, Tamstorf, Grinspun 2012, "Reflections on simultaneous impact", sec. 5,
 //! generalized reflections).
 //!
-//! The projection is `v + M⁻¹ Nᵀ λ` with `0 <= λ`, `0 <= N (v + M⁻¹ Nᵀ λ)`, each `λ` times its
-//! speed zero. Sums are taken in an order that depends on their terms alone, so that bodies in
-//! another order, and mirror images, give the same bits; but for heaps of more than 8 contacts.
+//! The projection is `v + M⁻¹ Nᵀ λ` with `0 <= λ`, `0 <= N (v + M⁻¹ Nᵀ λ)`, and each `λ` times its
+//! speed zero. The order of sums depends only on their terms, so that bodies in
+//! another order, and mirror images, give the same bits, except for heaps of more than 8 contacts.
 
 use alloc::{vec, vec::Vec};
 use glam::DVec3;
@@ -235,18 +235,16 @@ fn two(wanted: &[f64], [a, b]: [f64; 2], shared: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_numbers::signed as random;
+    use crate::test_random::Random;
 
     /// Random bodies, most of them near the first few, so that contacts share bodies.
     fn scene(seed: u64, bodies: usize, count: usize) -> (Vec<Joined>, Vec<f64>, Vec<DVec3>) {
-        let mut state = seed;
-        let vector = |state: &mut u64| DVec3::new(random(state), random(state), random(state));
+        let mut random = Random(seed);
         let mut contacts = Vec::new();
         while contacts.len() < count {
-            let pick = |state: &mut u64| ((random(state) + 1.0) * 0.5 * bodies as f64) as usize;
-            let (i, j) = (pick(&mut state), pick(&mut state));
+            let (i, j) = (random.below(bodies), random.below(bodies));
             if i != j {
-                let normal = vector(&mut state).normalize();
+                let normal = random.in_cube().normalize();
                 contacts.push(Joined {
                     bodies: (i, j),
                     normal,
@@ -258,7 +256,7 @@ mod tests {
                 if i == 0 {
                     0.0
                 } else {
-                    libm::exp(random(&mut state))
+                    libm::exp(random.signed())
                 }
             })
             .collect();
@@ -267,7 +265,7 @@ mod tests {
                 if i == 0 {
                     DVec3::ZERO
                 } else {
-                    vector(&mut state)
+                    random.in_cube()
                 }
             })
             .collect();

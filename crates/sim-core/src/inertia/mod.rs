@@ -1,4 +1,4 @@
-//! How mass lies in a body that turns: centre, principal moments, principal axes.
+//! The mass properties of a turning body: centre of mass, principal moments, principal axes.
 //!
 //! A solid is the sum of the signed tetrahedra between a point and its triangles. Over a
 //! tetrahedron from the origin with corners `a, b, c`, `D = a·(b×c)` and `s = a + b + c`,
@@ -7,9 +7,9 @@
 //! ∫ dV = D/6,   ∫ x dV = D s/24,   ∫ x xᵀ dV = D (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/120
 //! ```
 //!
-//! exactly. Sums are compensated, and second moments are taken about the centre of mass, where
-//! nothing is to be subtracted from them. All of it scales with powers of two to the bit, from
-//! the least size that f32 has to the greatest: fifth powers of them are numbers of f64.
+//! exactly. Sums are compensated, and second moments are computed about the centre of mass, so that
+//! no parallel-axis term is subtracted from them. All results scale with powers of two to the bit, from
+//! the least size in f32 to the greatest, because the fifth powers of these are in the range of f64.
 
 mod eigen;
 

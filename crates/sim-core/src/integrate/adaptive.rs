@@ -1,7 +1,7 @@
-//! A solver that chooses its steps, at work within one `dt`.
+//! A solver with error control within one `dt`.
 //!
-//! Each `dt` is a problem of its own, begun with the attempt to do it in one step: nothing but the
-//! motion goes from one to the next, so that a body may be moved in between.
+//! Each `dt` is a problem of its own, and begins with the attempt to take it in one step. Only the
+//! motion passes from one `dt` to the next, so that a body may be moved in between.
 
 use bytemuck::{cast_slice, cast_slice_mut};
 use core::slice;

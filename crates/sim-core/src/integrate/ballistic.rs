@@ -1,4 +1,4 @@
-//! Bodies under a constant acceleration, whatever the method.
+//! Bodies under a constant acceleration, for all methods.
 
 use glam::DVec3;
 

@@ -1,16 +1,15 @@
-//! The equation that every implicit method here comes down to.
+//! The equation that every implicit method here solves.
 //!
 //! ```text
 //! w = v + h a(t, x + d w, w)
 //! ```
 //!
 //! for the velocities `w`. Backward Euler has `d = h = dt`; the implicit midpoint rule has half of
-//! that; a kick by a
-//! force that depends on the velocity has `d = 0`.
+//! that; a kick by a force that depends on the velocity has `d = 0`.
 //!
 //! Newton's method solves it: `(1 - h ∂a/∂v - h d ∂a/∂x) δ = w - v - h a`, then `w - δ`, until `δ`
-//! is below [`TOLERANCE`]. Bodies that no force couples have a 3×3 matrix each; coupled ones are
-//! left to a Krylov method, which needs products with the matrix only.
+//! is below [`TOLERANCE`]. A body that no force couples to others has a 3×3 matrix of its own. Coupled bodies
+//! use a Krylov method, which needs only products with the matrix.
 
 use glam::{DMat3, DVec3};
 

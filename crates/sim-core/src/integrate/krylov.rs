@@ -2,8 +2,8 @@
 //!
 //! BiCGSTAB (van der Vorst 1992, "Bi-CGSTAB: a fast and smoothly converging variant of Bi-CG",
 //! SIAM J. Sci. Stat. Comput. 13(2), p. 635), preconditioned from the right by the inverted
-//! blocks of single bodies on the diagonal. Dampers make the matrices unsymmetric, which conjugate gradients do not
-//! allow, and its memory is a few columns, unlike that of GMRES.
+//! blocks of single bodies on the diagonal. Dampers make the matrices unsymmetric, which excludes conjugate
+//! gradients. BiCGSTAB needs a few columns of memory; GMRES needs more.
 
 use glam::DVec3;
 

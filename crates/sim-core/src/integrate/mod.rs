@@ -1,8 +1,8 @@
 //! Time integration: one step from a state to the next.
 //!
-//! A [`Method`] is a value in the table [`METHODS`]. A new one is a file here and a line there;
-//! tests, benchmarks, scene files and the control panel go through the table. A method from
-//! outside is the same value, given to [`Settings`](crate::Settings) without an entry.
+//! A [`Method`] is a value in the table [`METHODS`]. A new method is a file in this module and a line in the
+//! table; tests, benchmarks, scene files and the control panel read the table. A method from outside the crate is
+//! the same kind of value, given to [`Settings`](crate::Settings) without an entry.
 
 pub(crate) mod adaptive;
 mod backward_euler;
@@ -54,9 +54,9 @@ pub struct Method {
     pub reversible: bool,
     /// Whether it takes as many steps within `dt` as [`Step::tolerance`] asks for.
     pub adaptive: bool,
-    /// What a constant acceleration `a` does to a position: a step is then
-    /// `x + dt v + fall dt² a`, `v + dt a`, and bodies on which nothing else acts are moved by
-    /// that, without [`Method::step`]. With `None` it is always called.
+    /// The coefficient of a constant acceleration `a`: a step is then
+    /// `x + dt v + fall dt² a`, `v + dt a`, and bodies under no other force are moved by
+    /// this formula, without [`Method::step`]. With `None` that is always called.
     pub fall: Option<f64>,
     /// Writes the motion at the end of a step.
     pub step: fn(&dyn System, Step<'_>) -> Result<(), Failure>,
@@ -66,8 +66,8 @@ pub struct Method {
 ///
 /// All keep their order for forces that depend on velocities. Symplectic Euler takes such a force
 /// at the old velocity; the other splitting methods partly at the new one, for which they solve an
-/// equation. None is symplectic then, since nothing is; the implicit midpoint rule and those made
-/// of drifts and kicks, symplectic Euler aside, stay reversible.
+/// equation. No method is symplectic for such forces; the implicit midpoint rule and the methods made
+/// of drifts and kicks, except symplectic Euler, stay reversible.
 pub static METHODS: [&Method; 11] = [
     &forward_euler::METHOD,
     &backward_euler::METHOD,
@@ -100,7 +100,7 @@ impl PartialEq for Method {
     }
 }
 
-/// One step of a system: what is known, and where to write what is not. All columns have the
+/// One step of a system: the columns to read and the columns to write. All columns have the
 /// length of the system.
 #[derive(Debug)]
 pub struct Step<'a> {
@@ -118,20 +118,20 @@ pub struct Step<'a> {
     pub new_position: &'a mut [DVec3],
     /// Velocities at the end, m/s, to be written.
     pub new_velocity: &'a mut [DVec3],
-    /// Room for intermediate results, kept from step to step.
+    /// Memory for intermediate results, kept from step to step.
     pub scratch: &'a mut Scratch,
-    /// Who an adaptive method tells the steps that it takes.
+    /// Receives the steps that an adaptive method takes.
     pub watch: Option<Watch<'a>>,
 }
 
-/// Is told each step that an adaptive method takes within `dt`, and may stop it there.
+/// Receives each step that an adaptive method takes within `dt`, and may stop it there.
 pub struct Watch<'a>(&'a mut Ask<'a>);
 
-/// A function that is asked after each step.
+/// A function that is called after each step.
 pub type Ask<'a> = dyn FnMut(f64, &[DVec3], &[DVec3]) -> bool + 'a;
 
 impl<'a> Watch<'a> {
-    /// Asks a function, with the time after a step, s from the start of `dt`, and all positions before
+    /// Calls a function with the time after a step, s from the start of `dt`, and all positions before
     /// and after it, m.
     pub fn new(ask: &'a mut Ask<'a>) -> Watch<'a> {
         Watch(ask)

@@ -11,7 +11,7 @@
 //! method where one does.
 //!
 //! Chosen against SDIRK 4 (the same book, eq. IV.6.16; five 3×3 equations a step, of stage order
-//! one): on a spring of 1e6 N/m that is led along a sine, at 60 Hz, the error after a second is
+//! one): on a spring of 1e6 N/m whose end moves along a sine, at 60 Hz, the error after a second is
 //! 5e-11 m here and 5e-6 m there. One body costs the same, a chain of coupled ones three times more.
 
 use glam::{DMat3, DVec3};

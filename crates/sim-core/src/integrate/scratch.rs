@@ -1,4 +1,4 @@
-//! Room for intermediate results.
+//! Memory for intermediate results.
 
 use alloc::{boxed::Box, vec::Vec};
 use glam::DVec3;

@@ -5,11 +5,11 @@
 //!
 //! Forces that depend on the velocity have no such half. A sequence of drifts `a_i` and kicks
 //! `b_i` is also one of symplectic Euler steps and their adjoints, of lengths
-//! `α_1 = a_1, α_2 = b_1 - α_1, α_3 = a_2 - α_2, ...`, and keeps its order for whatever such a pair of
-//! methods of order one is put in (McLachlan 1995, "On the numerical integration of ordinary
+//! `α_1 = a_1, α_2 = b_1 - α_1, α_3 = a_2 - α_2, ...`, and keeps its order with any other pair of a method of order
+//! one and its adjoint (McLachlan 1995, "On the numerical integration of ordinary
 //! differential equations by symmetric composition methods", SIAM J. Sci. Comput. 16, p. 151). So
-//! a kick is taken in two parts, `v += α_2i-1 h a(t, x, v)` with the velocity before and
-//! `v += α_2i h a(t, x, v)` with the velocity after it. Order and reversibility stay;
+//! a kick has two parts, `v += α_2i-1 h a(t, x, v)` with the velocity before and
+//! `v += α_2i h a(t, x, v)` with the velocity after it. Order and reversibility remain;
 //! symplecticity is not defined for such forces.
 
 use glam::DVec3;

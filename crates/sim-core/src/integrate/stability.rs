@@ -1,7 +1,7 @@
-//! How long a step may be before a method blows up.
+//! The longest stable step of a method.
 //!
 //! A motion near equilibrium is a sum of oscillators `x'' = -k x - c x'`, and on each of them every
-//! fixed-step method is a 2×2 matrix, found by letting it step from (1, 0) and (0, 1). It is stable
+//! fixed-step method is a 2×2 matrix, found from its steps from (1, 0) and (0, 1). The method is stable
 //! as long as no eigenvalue is outside the unit circle (Hairer, Wanner 1996, sec. IV.2).
 
 use alloc::{vec, vec::Vec};

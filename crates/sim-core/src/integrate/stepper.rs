@@ -1,4 +1,4 @@
-//! A method at work on a system, without a world.
+//! A method that steps a system without a world.
 
 use alloc::{vec, vec::Vec};
 use core::mem::swap;

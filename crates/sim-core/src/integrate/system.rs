@@ -1,4 +1,4 @@
-//! What a method integrates: accelerations, and how they change with the motion.
+//! The system that a method integrates: accelerations, and their derivatives by the motion.
 
 use alloc::vec;
 use glam::{DMat3, DVec3};

@@ -1,4 +1,4 @@
-//! What the methods of the table claim, measured.
+//! Measures what the table says of each method.
 
 use alloc::{vec, vec::Vec};
 use core::f64::consts::PI;

@@ -1,4 +1,4 @@
-//! Meshes as data: vertices and triangles. What is read is checked as any other mesh is.
+//! Meshes as data: vertices and triangles. Reading one checks it as any other mesh is checked.
 
 use alloc::{sync::Arc, vec::Vec};
 use glam::Vec3;

@@ -1,4 +1,4 @@
-//! Making a clean mesh of what files hold.
+//! Repairs of meshes from files.
 
 use alloc::{vec, vec::Vec};
 use glam::Vec3;

@@ -1,4 +1,4 @@
-//! Which edges there are, and how the triangles hang together on them.
+//! The edges of a mesh, and how they connect its triangles.
 
 use alloc::{vec, vec::Vec};
 

@@ -1,9 +1,9 @@
 //! Explicit Runge-Kutta solvers of `y' = f(t, y)` that choose their steps.
 //!
-//! [`Dopri5`] and [`Dop853`] are one [`Solver`] with two embedded pairs. The step is controlled as
-//! by Hairer, Nørsett, Wanner 1993, Solving Ordinary Differential Equations I, sec. II.4: a step is
-//! accepted if its error, estimated with a second method and weighed by the tolerance, is at most
-//! 1, and the next one is as long as keeps it there.
+//! [`Dopri5`] and [`Dop853`] are one [`Solver`] with two embedded pairs. Step control follows
+//! Hairer, Nørsett, Wanner 1993, Solving Ordinary Differential Equations I, sec. II.4: a step is
+//! accepted if its error, estimated with a second method and divided by the tolerance, is at most
+//! 1, and the length of the next step keeps the error at most 1.
 
 mod dop853;
 mod dop853_table;

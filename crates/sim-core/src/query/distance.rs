@@ -1,4 +1,4 @@
-//! How far two shapes are apart, and where they are closest.
+//! The distance of two shapes, and their closest points.
 
 use core::ops::ControlFlow;
 use glam::DVec3;

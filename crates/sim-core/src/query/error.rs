@@ -1,4 +1,4 @@
-//! What questions refuse.
+//! Errors of queries.
 
 use glam::DVec3;
 

@@ -1,9 +1,9 @@
-//! Questions about placed shapes: do they meet, how far apart are they, when do they hit each other, where is a
-//! point, what does a ray hit?
+//! Queries about placed shapes: do they meet, how far apart are they, when do they hit each other (a shape cast), where
+//! is a point, what does a ray hit?
 //!
-//! A [`Placed`] is a mesh, sphere or half-space at a position. A mesh is a surface, so that a sphere deep inside
-//! a closed mesh does not meet it; [`locate`] alone knows the inside of a mesh. Spheres and half-spaces are
-//! solid. Nothing here allocates. Worlds answer the same about all of their bodies:
+//! A [`Placed`] is a mesh, sphere or half-space at a position. A mesh is a surface, so a sphere deep inside
+//! a closed mesh does not meet it; only [`locate`] knows the inside of a mesh. Spheres and half-spaces are
+//! solid. No query allocates. A world answers the same queries about all of its bodies:
 //! [`World::cast_ray`](crate::World::cast_ray), [`World::cast_shape`](crate::World::cast_shape),
 //! [`World::bodies_meeting`](crate::World::bodies_meeting), [`World::nearest`](crate::World::nearest).
 //!
@@ -41,21 +41,21 @@ pub use placed::Placed;
 pub use ray::ray;
 pub(crate) use ray::{Ray, ray_hit};
 
-/// Where two shapes are closest, or touch; of a ray the first shape is what it hits, and the second one the ray.
+/// Where two shapes are closest, or touch. For a ray cast the first shape is the one hit, the second one the ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Hit {
-    /// When: as a part of the motion, 0 to 1; on a ray in lengths of its direction; 0 where nothing moves.
+    /// The time: as a part of the motion, 0 to 1; on a ray in lengths of its direction; 0 if neither shape moves.
     pub time: f64,
-    /// How far the shapes are apart then, m: 0 where they meet.
+    /// The distance of the shapes at that time, m: 0 if they meet.
     pub distance: f64,
-    /// The points of the first and of the second shape that are closest then, m; the same where they meet.
+    /// The closest points of the first and of the second shape at that time, m; the same if they meet.
     pub points: [DVec3; 2],
-    /// Unit normal, from the first shape to the second. Zero where there is none: of shapes that share a point
-    /// and are not moved into each other.
+    /// Unit normal, from the first shape to the second. Zero if there is none: for shapes that share a point
+    /// and do not move into each other.
     pub normal: DVec3,
-    /// What is closest of the first and of the second mesh; `None` of other shapes, and where it is not known
-    /// (of a mesh against a half-space, and of shapes that share more than a point).
+    /// The closest part of the first and of the second mesh; `None` for other shapes, and if it is not known
+    /// (for a mesh against a half-space, and for shapes that share more than a point).
     pub parts: [Option<Part>; 2],
 }
 
@@ -83,7 +83,7 @@ impl Hit {
     }
 }
 
-/// Whether two shapes share a point; two half-spaces are never asked, and do not.
+/// Whether two shapes share a point; for two half-spaces the answer is no.
 ///
 /// Exact for meshes: for the vertices of one placed in the frame of the other, each of which is rounded once
 /// ([`collide::Placement`]). For others up to rounding in sums of products.
@@ -91,13 +91,13 @@ pub fn intersects(first: Placed<'_>, second: Placed<'_>) -> bool {
     collide::meet(first.form, second.form, first.offset_to(second))
 }
 
-/// When the second of two shapes, moving by `motion` (m) while the first stands, first hits it; `None` if it does
-/// not on this way, and for two half-spaces. Of shapes that both move, `motion` is that of the second less that
-/// of the first, and the points are those where the first stands.
+/// The shape cast: when the second shape, which moves by `motion` (m), first hits the first shape, which stands. `None`
+/// if it does not, and for two half-spaces. If both shapes move, `motion` is that of the second less that
+/// of the first, and the points are relative to the place of the first.
 ///
 /// - Shapes that share a point at the start hit at time 0. The normal is zero unless the motion leads into the
 ///   contact.
-/// - Otherwise it is the first contact that the motion leads into: to slide along a surface is no hit. Between
+/// - Otherwise it is the first contact that the motion leads into; sliding along a surface is not a hit. Between
 ///   meshes it is decided exactly, and its time is the greatest f64 that is not above the exact one
 ///   ([`collide::touch`]); with a sphere it is early by at most 2^-48 of all lengths at the normal speed
 ///   ([`collide::ball_touch`]).

@@ -13,7 +13,7 @@ use crate::{
     expansion::Expansion,
 };
 
-/// A shape at a position: what questions are asked about. It borrows the tree of a mesh, and is small to copy.
+/// A shape at a position, for queries. It borrows the tree of a mesh, and is cheap to copy.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed<'a> {
     pub(crate) form: Form<'a>,
@@ -49,7 +49,7 @@ impl<'a> Placed<'a> {
         })
     }
 
-    /// All on one side of a plane through `position`, m; the normal points out of it, and is of any length but 0.
+    /// The half-space behind a plane through `position`, m. The normal points out of it, and has any length but 0.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! What a ray hits.
+//! Ray casts.
 
 use glam::DVec3;
 

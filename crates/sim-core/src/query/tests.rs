@@ -1,4 +1,4 @@
-//! Spheres, half-spaces and rays, and what is refused; meshes are in the tests across crates.
+//! Spheres, half-spaces and rays, and refused input; the tests across crates have meshes.
 
 use alloc::vec::Vec;
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! Rotations near one of them as vectors, so that a method for `x'' = a(t, x, v)` can step them.
+//! Rotations near a base rotation as vectors, so that a method for `x'' = a(t, x, v)` can step them.
 //!
 //! A rotation is `base · exp(θ)` with a *rotation vector* `θ` in the body, rad, whose length is the angle. With
 //! `s = |θ|²` the angular velocity in the body `Ω` belongs to its rate `θ'` by
@@ -8,9 +8,9 @@
 //! θ' = Ω + ½ θ×Ω + c θ×(θ×Ω)         c = (1 - ½|θ| cot ½|θ|)/s
 //! ```
 //!
-//! and `θ''` to `Ω'` by the derivative of the latter (Iserles, Munthe-Kaas, Nørsett, Zanna 2000, "Lie-group
-//! methods", Acta Numerica 9, p. 215, app. B; the signs are those of rotations that act from the right). These
-//! hold for angles below a whole turn; a step ends within half of one.
+//! and `θ''` follows from `Ω'` by the derivative of the second equation (Iserles, Munthe-Kaas, Nørsett, Zanna 2000,
+//! "Lie-group methods", Acta Numerica 9, p. 215, app. B; the signs are those of rotations that act from the right).
+//! These equations hold for angles below a whole turn; a step ends within half a turn.
 
 use glam::{DQuat, DVec3};
 

@@ -1,4 +1,4 @@
-//! The way of a rotation under no torque, or under a constant one.
+//! The trajectory of a rotation under no torque, or under a constant one.
 
 use alloc::vec::Vec;
 use glam::{DQuat, DVec3};

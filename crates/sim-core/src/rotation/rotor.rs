@@ -1,4 +1,4 @@
-//! A body that turns, among those that a method steps.
+//! A turning body in the system that a method steps.
 
 use core::f64::consts::PI;
 use glam::{DQuat, DVec3};

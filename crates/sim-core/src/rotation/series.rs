@@ -7,7 +7,7 @@
 //! δ' = ½ δ Ω,   Ω' = I⁻¹(IΩ × Ω + g),   g' = g × Ω
 //! ```
 //!
-//! are products, so that each coefficient is a sum over those before it.
+//! have products on their right-hand sides, so each coefficient is a sum over those before it.
 
 use glam::{DQuat, DVec3};
 

@@ -1,4 +1,4 @@
-//! What bodies are: masses, materials and shapes, in columns. Steps read them and change none.
+//! The properties of bodies: masses, materials and shapes, in columns. A step reads them and changes none.
 
 use alloc::{boxed::Box, collections::BTreeMap, sync::Arc, vec::Vec};
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! All that a world knows of a body, in one place.
+//! All properties and the motion of one body.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! A value of each body that most worlds have the same of for all.
+//! A column of a value that is the same for all bodies in most worlds.
 
 use alloc::vec::Vec;
 

@@ -1,4 +1,4 @@
-//! Which vertices, edges and faces touch in a contact: found when somebody asks, not in the step.
+//! Which vertices, edges and faces touch in a contact: computed on request, not in the step.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use core::ops::ControlFlow;

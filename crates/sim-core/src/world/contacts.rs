@@ -1,4 +1,4 @@
-//! Which bodies stay in contact, and what it costs in accuracy to solve many contacts at once.
+//! Lasting contacts of bodies, and the cost in accuracy of solving many contacts at once.
 
 use glam::DVec3;
 
@@ -24,11 +24,11 @@ pub struct RestingContact {
     pub is_overlap: bool,
 }
 
-/// What solving the contacts of heaps once a step, with their gaps, has changed in the last step.
+/// The error of the last step from solving the contacts of heaps once a step, with their gaps.
 ///
-/// Where bodies come to rest on each other again and again within a step, all that they lie with is
-/// solved at once: contacts stop closing before their gaps are closed, and flights of less than a step
-/// are none. Distances shrink with the step: from 60 to 960 Hz by a factor of 12 to 70 in `wall`, `funnel` and `bin`
+/// If bodies come to rest on each other again and again within a step, the contacts of all bodies that lie together
+/// with them are solved at once: contacts stop closing before their gaps are closed, and there are no flights shorter
+/// than a step. Distances shrink with the step: from 60 to 960 Hz by a factor of 12 to 70 in `wall`, `funnel` and `bin`
 /// of the gallery (example `heap_energy` of the crate `scene`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -36,15 +36,15 @@ pub struct RestingContact {
 pub struct Bundled {
     /// Bodies concerned.
     pub bodies: usize,
-    /// Kinetic energy that contacts have taken from them, J: more than bundling costs, as it holds what
-    /// impacts without restitution take in any case.
+    /// Kinetic energy that contacts have taken from them, J. It is more than the cost of bundling, because it includes
+    /// the energy that impacts without restitution take in any case.
     pub energy: f64,
     /// The farthest that a contact was closed ahead of its time, or that a body was kept from flying, m.
     pub distance: f64,
 }
 
 impl World {
-    /// The contacts that last, as the last step has left them; none outside of
+    /// The lasting contacts at the end of the last step; none outside of
     /// [`Collision::Continuous`](super::Collision::Continuous).
     pub fn contacts(&self) -> impl Iterator<Item = RestingContact> {
         self.contacts.all().iter().map(|contact| {
@@ -67,7 +67,7 @@ impl World {
         self.record.contact_steps
     }
 
-    /// What bundling the contacts of heaps has changed in the last step.
+    /// The error of the last step from bundling the contacts of heaps.
     pub fn bundled(&self) -> Bundled {
         self.continuous.bundled
     }

@@ -1,13 +1,13 @@
-//! Collisions as in the course: found where a step ends, and nothing in between.
+//! The discrete modes, as in the course: collisions at the end of a step only.
 //!
 //! Bodies that meet exchange an impulse along the contact normal and go back to where the step began.
-//! Putting one back may make it meet a third, so this goes on until none meets. It ends, because each
-//! round puts back at least one body more, and at the beginning of the step nothing met. It leaves
-//! the invariant that the next step relies on: no two bodies meet, but for pairs that were put into
-//! the world in overlap.
+//! A body that goes back may meet a third one, so this repeats until no two bodies meet. It ends, because each
+//! round puts back at least one more body, and no bodies met at the start of the step. It restores
+//! the invariant that the next step relies on: no two bodies meet, except pairs that were placed
+//! in overlap.
 //!
-//! Those that touch first on the way go first, and those that touch at the same time go together. So
-//! the order of bodies has no say in it. `turning` has what is different where bodies turn.
+//! Pairs that touch first on their trajectories go first, and pairs that touch at the same time go together. So
+//! the result does not depend on the order of bodies. `turning` has the differences for turning bodies.
 
 mod turning;
 

@@ -1,4 +1,4 @@
-//! How many steps have been done, and what time that makes.
+//! The number of steps so far, and their time.
 
 use super::Settings;
 

@@ -1,4 +1,4 @@
-//! What a world refuses.
+//! Errors of worlds.
 
 use alloc::{format, string::String};
 use glam::DVec3;
@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::BodyHandle;
 use crate::{Body, BodyKind, Force, Shape, force::ForceError};
 
-/// What a world refuses.
+/// Why a world refuses a value or a call.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldError {
@@ -28,7 +28,7 @@ pub enum WorldError {
         /// The value refused, kg.
         value: f64,
     },
-    /// A static body that is to move.
+    /// A static body with a velocity.
     #[error(
         "velocity of body {body} is {value}: a static body has none; one that keeps it is kinematic"
     )]
@@ -38,7 +38,7 @@ pub enum WorldError {
         /// The velocity refused, m/s.
         value: DVec3,
     },
-    /// A restitution that is no part of a speed.
+    /// A restitution below 0 or above 1.
     #[error("restitution of body {body} is {value}: it must be between 0 and 1")]
     Restitution {
         /// Index of the body.
@@ -54,7 +54,7 @@ pub enum WorldError {
         /// The value refused.
         value: f64,
     },
-    /// A sphere of no possible size.
+    /// A sphere whose radius is negative, NaN or huge.
     #[error("radius of body {body} is {value} m: it must be between 0 and 1e100")]
     Radius {
         /// Index of the body.
@@ -62,7 +62,7 @@ pub enum WorldError {
         /// The value refused, m.
         value: f64,
     },
-    /// A half-space that faces nowhere.
+    /// A half-space whose normal is zero.
     #[error("normal of body {body} is {value}: it must have a direction")]
     Normal {
         /// Index of the body.
@@ -70,13 +70,13 @@ pub enum WorldError {
         /// The value refused.
         value: DVec3,
     },
-    /// A rotation that is none.
+    /// A rotation that is not a unit quaternion.
     #[error("rotation of body {body} must be a quaternion of unit length")]
     Rotation {
         /// Index of the body.
         body: usize,
     },
-    /// A body that cannot turn, as it has no inertia.
+    /// A body that cannot turn, because it has no inertia.
     #[error("body {body} cannot turn: {error}")]
     Inertia {
         /// Index of the body.

@@ -1,44 +1,44 @@
-//! Contacts that have begun, persisted or ended in a step, by pairs of bodies.
+//! Contacts that begin, persist or end in a step, by pairs of bodies.
 
 use alloc::{boxed::Box, vec::Vec};
 use glam::DVec3;
 
 use super::{Impact, World};
 
-/// What has become of the contact of two bodies in a step.
+/// A change of the contact of two bodies in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ContactEvent {
-    /// What has happened.
+    /// Whether the contact begins, persists or ends.
     pub kind: ContactEventKind,
     /// The bodies, the lower index first.
     pub bodies: (usize, usize),
-    /// Unit normal, from the first body to the second: of several contacts that of the one with the greatest
+    /// Unit normal, from the first body to the second; for several contacts that of the one with the greatest
     /// impulse.
     pub normal: DVec3,
-    /// Where they touch, or have touched last, m.
+    /// The point where they touch, or touched last, m.
     pub point: DVec3,
-    /// What the second body has got from the first in the step, N s: the impulses of impacts along their normals,
-    /// those that have stopped bodies in contact, and the force of contacts that last
-    /// ([`RestingContact::force`](super::RestingContact::force)), friction with it, times how long they have lasted in
-    /// the step. Friction in an impact is not in it, and where forces change within a step it is that of the last
-    /// solution. Of two events of the same bodies in a step the first has all of it.
+    /// Impulse on the second body from the first in the step, N s. It is the sum of the impulses of impacts along their
+    /// normals, of those that have stopped bodies in contact, and of the force of lasting contacts
+    /// ([`RestingContact::force`](super::RestingContact::force)), with friction, times their duration in
+    /// the step. It does not include friction in an impact, and if forces change within a step it uses the force of the
+    /// last solution. If two events in a step have the same bodies, the first has the whole impulse.
     pub impulse: DVec3,
 }
 
-/// What can become of a contact.
+/// How a contact can change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactEventKind {
-    /// The bodies were not in contact when the step began, and have been since: they had an impact, or came to
+    /// The bodies were not in contact when the step began, and came into contact in it: they had an impact, or came to
     /// rest on each other.
     Begun,
-    /// They were in contact when the step began, and are.
+    /// They were in contact when the step began, and still are.
     Persisting,
-    /// They have been in contact, and are no more. Bodies that bounce have both begun and ended.
+    /// They were in contact, and no longer are. A bounce both begins and ends a contact.
     Ended,
 }
 
-/// The events of the last step, and what they are made from.
+/// The events of the last step, and the data for those of the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Events {
     /// Impacts since the step began.
@@ -55,7 +55,7 @@ pub(super) struct Events {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Push {
     bodies: (usize, usize),
-    /// Its place in the order of what has happened.
+    /// Its place in the order of events.
     order: usize,
     /// When, s.
     time: f64,
@@ -68,7 +68,7 @@ pub(super) struct Push {
 }
 
 impl Events {
-    /// Forgets what a step has noted that has failed.
+    /// Forgets the notes of a step that has failed.
     pub(super) fn begin(&mut self) {
         self.impacts.clear();
     }
@@ -175,8 +175,8 @@ fn take<'a>(list: &mut &'a [Push], bodies: (usize, usize)) -> &'a [Push] {
 }
 
 impl World {
-    /// Lists the contacts that begin, persist and end, from the next step on, or no more. Contacts that there are
-    /// now persist. Steps do the same whether they are listed or not.
+    /// Starts or stops the list of contacts that begin, persist and end, from the next step on. Contacts that exist
+    /// now persist. The list does not change the results of steps.
     pub fn list_contact_events(&mut self, is_listed: bool) {
         let is_known = self.record.events.is_some();
         if !is_listed {
@@ -190,12 +190,12 @@ impl World {
         }
     }
 
-    /// What has become of contacts in the last step, by pairs in order of their indices, as long as
-    /// [`World::list_contact_events`] is on; of a pair that has touched and parted in the step first that it has begun.
+    /// The contact events of the last step, by pairs in order of their indices, as long as
+    /// [`World::list_contact_events`] is on. If a pair touched and parted in the step, its begin comes first.
     /// Outside of [`Collision::Continuous`](super::Collision::Continuous) no contact lasts.
     ///
-    /// As many contacts have begun and not ended as [`World::contacts`] has pairs of bodies. Once there is room for
-    /// as many events as a step has, none is allocated.
+    /// The number of contacts that have begun and not ended is the number of pairs in [`World::contacts`]. Events
+    /// allocate only until there is room for those of a step.
     ///
     /// ```
     /// # use sim_core::{Body, ContactEventKind, DVec3, Settings, Shape, World};

@@ -1,4 +1,4 @@
-//! What two bodies that meet exchange.
+//! The impulse that two bodies exchange.
 
 use glam::{DQuat, DVec3};
 

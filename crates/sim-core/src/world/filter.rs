@@ -1,12 +1,12 @@
-//! Who never collides with whom: groups of bodies, and single pairs.
+//! Collision filters: groups of bodies, and single pairs that never collide.
 
 use alloc::{boxed::Box, collections::BTreeSet};
 
 use super::{World, WorldError, bodies::Bodies, column::Column};
 
-/// Which groups a body is in, and with those of which it collides, a bit a group.
+/// The groups that a body is in, and the groups with which it collides, a bit a group.
 ///
-/// Two bodies collide if each is in a group with which the other one does. Unless told otherwise a
+/// Two bodies collide if each is in a group with which the other one collides. By default a
 /// body is in all groups and collides with all.
 ///
 /// ```
@@ -33,7 +33,7 @@ impl Groups {
         member_of: u32::MAX,
         collides_with: u32::MAX,
     };
-    /// In no group: a body that meets nothing.
+    /// In no group: the body meets no other body.
     pub const NONE: Groups = Groups {
         member_of: 0,
         collides_with: 0,
@@ -52,7 +52,7 @@ impl Default for Groups {
     }
 }
 
-/// What keeps bodies from colliding.
+/// The groups and pairs that keep bodies from colliding.
 #[derive(Clone, Debug)]
 pub(super) struct Filter {
     groups: Column<Groups>,
@@ -131,7 +131,7 @@ impl Bodies {
 }
 
 impl World {
-    /// The groups of a body: who it collides with.
+    /// The groups of a body, which select the bodies that it collides with.
     ///
     /// # Panics
     ///
@@ -142,8 +142,8 @@ impl World {
         self.bodies.groups(body)
     }
 
-    /// Puts a body into groups. Contacts with those that it no longer collides with end; where it is in
-    /// others with which it collides from now on, the two are in overlap, as if it had been placed there.
+    /// Puts a body into groups. Contacts with bodies that it no longer collides with end. If it overlaps bodies
+    /// with which it collides from now on, they count as placed in overlap.
     ///
     /// # Errors
     ///

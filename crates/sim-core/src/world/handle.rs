@@ -1,4 +1,4 @@
-//! Names of bodies that outlast the removal of others.
+//! Handles: names of bodies that remain valid when other bodies are removed.
 
 use alloc::vec::Vec;
 

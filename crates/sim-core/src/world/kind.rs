@@ -1,4 +1,4 @@
-//! What moves a body, and how heavy it is.
+//! The kind and the mass of a body.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Where bodies are, and what of that is rounding.
+//! The places of bodies, and the rounding of these places.
 
 use glam::{DQuat, DVec3};
 

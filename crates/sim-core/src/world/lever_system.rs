@@ -1,12 +1,12 @@
-//! Bodies on which forces act at points, with how they turn, as equations of motion.
+//! Equations of motion of bodies with forces at points, including their rotations.
 //!
-//! To the bodies of a [`Part`] come those of them that turn once more, as *rotors*: their places are rotation vectors
-//! from how they are turned where the step begins ([`crate::rotation::chart`]), their velocities the rates of
-//! these. So every method that steps places steps rotations, at its own order.
+//! The turning bodies of a [`Part`] appear in the system a second time, as *rotors*. The position of a rotor is the
+//! rotation vector from the rotation at the start of the step ([`crate::rotation::chart`]); its velocity is the rate
+//! of this vector. So every method that steps positions steps rotations too, at its own order.
 //!
-//! Methods made of drifts and kicks take them apart otherwise: the drift is the flight of a body by itself, exact
-//! however far, and only torques kick. That is the same splitting into two parts of the energy, so what such a
-//! method keeps it keeps here.
+//! Methods made of drifts and kicks are split in another way: the drift is the free flight of a body, exact
+//! for any time, and only torques kick. This splits the energy into the same two parts, so such a
+//! method conserves for rotations what it conserves for positions.
 
 use alloc::vec::Vec;
 use glam::{DQuat, DVec3};

@@ -1,4 +1,4 @@
-//! What a motion was before it grew.
+//! States of a motion while it grows, for the error of an unstable step.
 
 use alloc::vec::Vec;
 use core::ops::Range;

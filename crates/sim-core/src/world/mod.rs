@@ -1,4 +1,4 @@
-//! The running state of a scene.
+//! The world: the state of a scene, and its step.
 
 mod bodies;
 mod body_view;
@@ -69,11 +69,11 @@ pub use separate::SeparateError;
 use state::State;
 use stepping::{Cause, Integrator, Way};
 
-/// Bodies, their motion, and how it goes on.
+/// Bodies, their motion, and their steps.
 ///
 /// Bodies are named by the index that [`World::add`] returned. Methods that read one panic on an
-/// index that does not exist, as slices do; methods that change one return an error. Where bodies are
-/// removed ([`World::remove`]) indices change, and a [`BodyHandle`] goes on naming the same body.
+/// index that does not exist, as slices do; methods that change one return an error. Indices
+/// change when bodies are removed ([`World::remove`]); a [`BodyHandle`] names the same body before and after.
 ///
 /// ```
 /// use sim_core::{Body, DVec3, Settings, World};
@@ -108,14 +108,14 @@ pub struct World {
     earlier: State,
     /// Pairs that were placed in overlap.
     overlaps: Overlaps,
-    /// Who is in touch, and along which normals.
+    /// The pairs in contact, and their normals.
     contacts: ContactSet,
     record: Record,
-    // What phases of a step keep to save time.
+    // Caches of the phases of a step.
     integrator: Integrator,
     continuous: Continuous,
     discrete: Discrete,
-    /// For questions about bodies where they are.
+    /// For queries about bodies at their places.
     index: query::Index,
 }
 
@@ -139,7 +139,7 @@ pub struct Settings {
     pub tolerance: f64,
 }
 
-/// How collisions are found, and what follows.
+/// How collisions are found and resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -152,7 +152,7 @@ pub enum Collision {
     Naive,
     /// The same through bounding volume hierarchies, with the same answers.
     Bvh,
-    /// At the time of impact, wherever it is within the step: bodies go on with the rest of it.
+    /// At the time of impact within the step: bodies continue with the rest of the step.
     Continuous,
 }
 
@@ -164,7 +164,7 @@ impl Settings {
 impl Default for Settings {
     /// 60 Hz, velocity Verlet, continuous collisions; a tolerance of 1e-9.
     ///
-    /// Verlet costs what symplectic Euler does in free fall, and is exact there.
+    /// In free fall Verlet costs as much as symplectic Euler, and is exact.
     fn default() -> Settings {
         Settings {
             dt: 1.0 / 60.0,
@@ -204,11 +204,11 @@ impl World {
     }
 
     /// Adds a body and returns its index: the number of bodies before. [`World::handle`] gives a name
-    /// that stays its own when others are removed.
+    /// that remains valid when other bodies are removed.
     ///
     /// # Errors
     ///
-    /// A field out of the range that [`Body`] tells, by its name; the world stays as it was.
+    /// Names a field that is out of the range given at [`Body`]; the world stays as it was.
     pub fn add(&mut self, mut body: Body) -> Result<usize, WorldError> {
         let index = self.len();
         error::check_body(index, &body)?;
@@ -236,8 +236,8 @@ impl World {
         self.note_placed(index);
     }
 
-    /// Steps by `dt`: moves every body, and lets those that meet bounce, as [`Settings::collision`]
-    /// has it.
+    /// Steps by `dt`: moves every body, and resolves the collisions as [`Settings::collision`]
+    /// selects.
     ///
     /// On an error the world stays as it was before the step, to the bit.
     pub fn step(&mut self) -> Result<(), StepError> {
@@ -247,7 +247,7 @@ impl World {
         }
         self.seek_overlaps();
         self.make_plan();
-        // What was before is kept until nothing can fail any more.
+        // The earlier state is kept until the step can no longer fail.
         core::mem::swap(&mut self.earlier, &mut self.previous);
         core::mem::swap(&mut self.previous, &mut self.current);
         self.current.match_len(&self.previous);
@@ -260,7 +260,7 @@ impl World {
         Ok(())
     }
 
-    /// Moves every body as if nothing met.
+    /// Moves every body as if there were no contacts.
     fn integrate(&mut self) -> Result<(), (usize, Cause)> {
         let way = Way {
             contacts: &self.contacts,
@@ -270,7 +270,7 @@ impl World {
         self.integrator.integrate(scene!(self), way)
     }
 
-    /// Lets bodies that meet bounce, and those that stay in contact be where contact lets them be.
+    /// Resolves impacts, and the contacts that last.
     fn collide(&mut self) -> Result<(), (usize, Cause)> {
         if self.bodies.solid.len() < 2 {
             return self.turn_freely();
@@ -297,12 +297,12 @@ impl World {
         outcome
     }
 
-    /// How many bodies there are.
+    /// The number of bodies.
     pub fn len(&self) -> usize {
         self.bodies.mass.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no bodies.
     pub fn is_empty(&self) -> bool {
         self.bodies.mass.is_empty()
     }
@@ -353,17 +353,17 @@ impl World {
         self.bodies.force[body]
     }
 
-    /// Part of the approaching speed with which a body leaves an impact; of two the lesser counts.
+    /// Part of the approaching speed with which a body leaves an impact; the lesser value of two bodies counts.
     pub fn restitution(&self, body: usize) -> f64 {
         self.bodies.restitution(body)
     }
 
-    /// Coefficient of friction of a body ([`Body::friction`]); of two the geometric mean counts.
+    /// Coefficient of friction of a body ([`Body::friction`]); for two bodies the geometric mean counts.
     pub fn friction(&self, body: usize) -> f64 {
         self.bodies.friction(body)
     }
 
-    /// Shape of a body, unless it is a point that meets nothing.
+    /// Shape of a body; `None` for a point, which meets no other body.
     pub fn shape(&self, body: usize) -> Option<&Shape> {
         self.bodies.shape(body)
     }
@@ -373,13 +373,13 @@ impl World {
         self.shape(body).and_then(Shape::mesh)
     }
 
-    /// Tree over a body's mesh, if one has been needed so far.
+    /// Tree over a body's mesh, if a step or query has built it.
     pub fn bvh(&self, body: usize) -> Option<&Bvh> {
         self.bodies.bvh(body)
     }
 
-    /// Pairs of bodies that meet now, though they were not put into the world so, by the exact test and in
-    /// order: after a step there is none. For checks; it takes a box test for each pair that is near.
+    /// Pairs of bodies that meet now by the exact test and were not placed in overlap, in order. There are none
+    /// after a step. For checks; it takes a box test for each pair that is near.
     pub fn meeting(&self) -> Vec<(usize, usize)> {
         let at = &self.current.position;
         let mut near = self.bodies.near_pairs(at, |_| 0.0);
@@ -390,7 +390,7 @@ impl World {
         near
     }
 
-    /// Builds the trees that no step has needed yet, to look at them or to aim rays.
+    /// Builds the trees that no step has needed yet, to show them or to cast rays.
     pub fn build_bvhs(&mut self) {
         for body in 0..self.len() {
             self.bodies.need_bvh(body);
@@ -489,7 +489,7 @@ impl World {
         Ok(())
     }
 
-    /// Bodies where they are.
+    /// Bodies at their current places.
     fn layout(&self) -> Layout<'_> {
         Layout {
             bodies: &self.bodies,

@@ -1,4 +1,4 @@
-//! Who may be near whom: boxes of bodies on straight ways, and pairs of which these meet.
+//! Near pairs: swept boxes of bodies on straight trajectories, and the pairs whose boxes meet.
 
 use alloc::vec::Vec;
 use glam::DVec3;

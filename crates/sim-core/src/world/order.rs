@@ -1,4 +1,4 @@
-//! An order of bodies that comes from their motion, whatever their places in the columns are.
+//! An order of bodies that depends on their motion, not on their places in the columns.
 
 use alloc::vec::Vec;
 use glam::DVec3;

@@ -1,7 +1,7 @@
-//! Pairs of bodies that are in overlap where they have been placed.
+//! Pairs of bodies that were placed in overlap.
 //!
-//! They are sought once for all bodies that have been placed, before the next step or when somebody
-//! asks: one by one, each new body would have to be compared with all before it.
+//! One search finds them for all newly placed bodies, before the next step or on request. A search for each
+//! new body alone would compare it with all bodies before it.
 
 use alloc::{boxed::Box, collections::BTreeMap, vec::Vec};
 use once_cell::race::OnceBox;

@@ -1,9 +1,9 @@
-//! How deep bodies are in each other, and which way is out.
+//! The depth of overlapping bodies, and the translation that parts them.
 //!
-//! Of spheres and of half-spaces the least translation that parts a pair has a closed form. Of other
-//! pairs it is sought: lengths are doubled, or halved, until one of many directions parts the pair at one
-//! and none at half of it, by the exact test; the directions that do are bisected; and from where the best of them parts the pair, the
-//! surface that it then touches gives the next direction, as long as that is a shorter way.
+//! For spheres and half-spaces the least translation that parts a pair has a closed form. For other pairs
+//! it is searched. The length is doubled or halved until, by the exact test, one of many directions parts the pair
+//! at this length and none at half of it. The lengths along these directions are bisected. The surface that
+//! touches at the end of the best translation gives the next direction, as long as this makes the translation shorter.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -18,39 +18,39 @@ use crate::{
 const HALVINGS: usize = 40;
 /// Rounds in which the surface that is touched gives the next direction; of faces one is enough.
 const TURNS: usize = 16;
-/// Roundings of the f32 of vertices that what is meant to be flush may miss by.
+/// Roundings of f32 vertices by which bodies that are meant to be flush may overlap.
 const FLUSH_ROUNDINGS: f64 = 4.0;
 /// Gaps of bodies in contact that it may miss by.
 const FLUSH_GAPS: f64 = 16.0;
 
-/// Two bodies that are in each other, deeper than by rounding.
+/// Two bodies that overlap more deeply than by rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Overlap {
     /// The bodies, the lower index first.
     pub bodies: (usize, usize),
-    /// The shortest way out that is known for the second body, a unit vector; the first one's is against
-    /// it.
+    /// The direction of the shortest known translation that moves the second body out of the first, a unit vector; the
+    /// first body moves out the opposite way.
     pub normal: DVec3,
-    /// How far that way is, m: moved by it against each other, the bodies touch.
+    /// The length of that translation, m: after it the bodies touch.
     ///
-    /// A mesh is a surface, open or closed, so the way out may lead into what it encloses.
+    /// A mesh is a surface, open or closed, so the translation may lead into the space that it encloses.
     pub depth: f64,
-    /// Whether no translation that parts them is shorter, but for rounding.
+    /// Whether no translation that parts them is shorter, except for rounding.
     ///
-    /// It is known for spheres and half-spaces, for spheres that no edge or second face of a mesh is in
-    /// the way of, and for two boxes of which neither fits into the other. Otherwise `depth` is an upper
-    /// bound: that of the shortest of the ways out along the normals of up to 32 faces that are met, the
-    /// line of the centres, and the 26 directions to the faces, edges and corners of a cube, bettered
-    /// by the surfaces that are met on the way. Of two bodies of which one turns it is that of the line of
-    /// the centres and of 26 such directions in the world and in the frame of each that turns.
+    /// This is known for spheres and half-spaces, for a sphere and a mesh if no edge or second face blocks the
+    /// translation, and for two boxes of which neither fits into the other. Otherwise `depth` is an upper
+    /// bound: that of the shortest translation along the normals of up to 32 faces that meet, the
+    /// line of the centres, and the 26 directions to the faces, edges and corners of a cube, improved
+    /// by the surfaces that are met on the way. If one of two bodies turns, the directions are the line of
+    /// the centres and 26 such directions in the world and in the frame of each turning body.
     pub is_least: bool,
 }
 
-/// A way out of an overlap.
+/// A translation out of an overlap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Penetration {
-    /// Where the second body goes.
+    /// The direction of the second body.
     pub(super) normal: DVec3,
     /// How far, m.
     pub(super) depth: f64,
@@ -58,16 +58,15 @@ pub(super) struct Penetration {
 }
 
 impl World {
-    /// The pairs of bodies that are in each other, one of which may move, in order: those that were put
-    /// into the world so, and have not parted since.
+    /// The pairs of overlapping bodies of which one is movable, in order: those that were placed
+    /// in overlap and have not parted since.
     ///
-    /// No start is refused: bodies in overlap are held as they are, get no deeper and gain no energy; those of
-    /// which one turns pass through each other until they are apart; two
-    /// that are immovable touch nothing of each other, and what is wholly inside a closed mesh does not
-    /// overlap it, as a mesh is a surface and its inside a room. [`World::separate`] moves overlaps apart.
+    /// No start is refused. Bodies in overlap get no deeper and gain no energy. If one of them turns, they
+    /// pass through each other until they are apart. Two immovable bodies never touch each other. A mesh is a surface,
+    /// so a body wholly inside a closed mesh does not overlap it. [`World::separate`] moves overlapping bodies apart.
     ///
-    /// What is less deep than [`World::flush`] allows for is no overlap but a contact. Depths are
-    /// measured where the bodies are now, which takes some hundred exact tests for a pair of meshes.
+    /// An overlap less deep than [`World::flush`] counts as a contact. Depths are
+    /// measured at the current places of the bodies, which takes some hundred exact tests for a pair of meshes.
     pub fn overlaps(&self) -> Vec<Overlap> {
         let layout = self.layout();
         let mut last: Option<((usize, usize), Option<Overlap>)> = None;
@@ -105,13 +104,13 @@ impl World {
         })
     }
 
-    /// How deep two bodies may be in each other along a normal, or along up to three at once, m, and still
-    /// be meant to touch: four times what the `f32` of their vertices, radii and distances from their
-    /// origins are rounded by together, and 16 of the gaps at which bodies in contact are kept, 1024
+    /// The depth, m, along a normal, or along up to three at once, up to which overlapping bodies count as
+    /// touching: four times the rounding of the `f32` of their vertices, radii and distances from their
+    /// origins together, and 16 of the gaps at which bodies in contact are kept, 1024
     /// units in the last place of their coordinates.
     ///
-    /// Positions that are computed for bodies to lie flush, on a slope or by turned meshes, are wrong by
-    /// as much. Such bodies are moved apart when the next step begins, and then touch.
+    /// Positions that are computed for bodies to lie flush, on a slope or by turned meshes, have errors of this
+    /// size. The next step moves such bodies apart when it begins, and then they touch.
     pub fn flush(&self, i: usize, j: usize) -> f64 {
         self.layout().flush(i, j)
     }

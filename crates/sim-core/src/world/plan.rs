@@ -1,10 +1,10 @@
 //! Which bodies must be stepped together.
 //!
-//! Bodies on which nothing but a constant force acts appear in no section. Forces of single
-//! bodies make sections that can be cut anywhere; forces between bodies make sections that hold
-//! every body they reach, and all between them in the columns. In these, bodies that forces tie
-//! together are a group, which is stepped by itself and in an order that is its own: sums over
-//! bodies round, and what is rounded must not depend on places in the columns.
+//! Bodies with only constant forces belong to no section. Forces on single
+//! bodies make sections that can be cut anywhere. Forces between bodies make sections that contain
+//! every body they reach, and all between these in the columns. In such a section, bodies connected by forces
+//! are a group, which is stepped by itself and in an order of its own: sums over
+//! bodies round, and their rounding must not depend on places in the columns.
 
 use alloc::{vec, vec::Vec};
 use core::ops::Range;

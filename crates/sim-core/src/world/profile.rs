@@ -1,4 +1,4 @@
-//! What a step spends its time on, for who asks.
+//! The time of each phase of a step, on request.
 
 use alloc::vec::Vec;
 

@@ -1,5 +1,5 @@
-//! Questions about all bodies of a world where they are: what a ray or a shape hits, what is in a place, what is
-//! nearest.
+//! Queries about all bodies of a world at their places: ray and shape casts, bodies that meet a shape, the nearest
+//! body.
 
 use alloc::{boxed::Box, vec::Vec};
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -117,8 +117,8 @@ impl Best {
 }
 
 impl World {
-    /// The shape of a body where it is now, to ask [`query`] about it; `None` of a point that meets nothing. The
-    /// tree of a mesh is built when it is first needed.
+    /// The shape of a body at its current place, for the functions of [`query`]; `None` for a point without a shape.
+    /// The tree of a mesh is built when it is first needed.
     pub fn placed(&self, body: usize) -> Option<Placed<'_>> {
         self.bodies.need_bvh(body);
         let form = self.bodies.form(body)?;
@@ -128,12 +128,12 @@ impl World {
         })
     }
 
-    /// The body that a ray from `origin` (m) along `direction` (of any length but 0) hits first, of those for
-    /// which `among` holds, and where ([`query::ray`]): at `origin + time · direction`. Surfaces are hit from
-    /// either side. Of several that are hit at the same time it is the body of the lowest index.
+    /// The body that a ray from `origin` (m) along `direction` (of any length but 0) hits first, among those for
+    /// which `among` holds, and where ([`query::ray`]): at `origin + time · direction`. A ray hits surfaces from
+    /// either side. Of several bodies hit at the same time the result is the one of the lowest index.
     ///
-    /// Takes a box test for each body, and where a world of many is asked more than a few times between two steps
-    /// a tree of their boxes, made once.
+    /// Takes a box test for each body. A world of many bodies that is queried more than a few times between two steps
+    /// builds a tree of their boxes once.
     ///
     /// ```
     /// # use sim_core::{Body, DVec3, Settings, Shape, World};
@@ -166,9 +166,9 @@ impl World {
         Ok(best.found)
     }
 
-    /// The body that a shape hits first on a straight way by `motion`, m, of those for which `among` holds, and
-    /// how ([`query::time_of_impact`]; the body is the first shape). Bodies stand where they are. Of several that
-    /// are hit at the same time it is the body of the lowest index.
+    /// The shape cast: the body that a shape hits first on a straight line by `motion`, m, among those for which
+    /// `among` holds, and the hit ([`query::time_of_impact`]; the body is the first shape). Bodies stay at their
+    /// places. Of several bodies hit at the same time the result is the one of the lowest index.
     ///
     /// # Errors
     ///
@@ -208,8 +208,8 @@ impl World {
         Ok(best.found)
     }
 
-    /// The bodies that share a point with a shape, in order of their indices ([`query::intersects`]): none where
-    /// a place is free for it.
+    /// The bodies that share a point with a shape, in order of their indices ([`query::intersects`]): none if
+    /// its place is free.
     pub fn bodies_meeting(&self, shape: Placed<'_>) -> Vec<usize> {
         let mut found = Vec::new();
         let own = shape.bounds().map(|[low, high]| {
@@ -238,10 +238,10 @@ impl World {
         found
     }
 
-    /// The body whose shape is nearest to a point, m, of those for which `among` holds, and how far it is
+    /// The body whose shape is nearest to a point, m, among those for which `among` holds, and its distance
     /// ([`query::distance`]; the body is the first shape, the point the second). Meshes are surfaces: from
-    /// inside of one the distance is that to its surface. Of several that are as near it is the body of the lowest
-    /// index.
+    /// inside of one the distance is that to its surface. Of several bodies at the same distance the result is the
+    /// one of the lowest index.
     ///
     /// # Errors
     ///

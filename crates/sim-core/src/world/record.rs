@@ -1,4 +1,4 @@
-//! What steps have done, for who asks.
+//! What steps have done, kept on request.
 
 use alloc::{boxed::Box, vec::Vec};
 

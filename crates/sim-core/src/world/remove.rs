@@ -1,4 +1,4 @@
-//! Bodies that leave the world.
+//! Removal of bodies.
 
 use super::{World, WorldError, continuous::Continuous, discrete::Discrete};
 use crate::Body;

@@ -1,4 +1,4 @@
-//! What a step reads and does not change.
+//! The data that a step reads and does not change.
 
 use super::{
     Settings,

@@ -1,11 +1,11 @@
-//! Moving bodies in overlap out of each other.
+//! Moving overlapping bodies apart.
 //!
-//! First all together, by as little as can be: each pair that meets has a plane across its shortest way
-//! out, and bodies move to the nearest places, in the norm of their masses, on the far sides of all
-//! planes; who meets there gets a new plane, and so on until nobody meets. Where the planes have no
-//! such place, as those of a body between two immovable ones that face each other, bodies are placed
-//! one after the other, heavy ones first: each goes the shortest way along one of many directions to
-//! where it meets none that is there.
+//! First all bodies move together, by as little as possible. Each pair that meets has a plane across the
+//! shortest translation that parts it, and bodies move to the nearest places, in the norm of their masses, on
+//! the far sides of all planes. Pairs that meet at these places get a new plane, and so on until no two bodies
+//! meet. If the planes allow no such place, as for a body between two immovable ones that face each other,
+//! bodies are placed one after the other, heavy ones first: each takes the shortest of many directions to
+//! a place where it meets no body placed before it.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use glam::DVec3;
@@ -63,13 +63,13 @@ struct Plane {
 }
 
 impl World {
-    /// Moves bodies in overlap out of each other, so that none overlap, and tells which ones were moved,
-    /// in order. Velocities stay as they are; bodies that were not in overlap are moved only where others
-    /// are moved into them.
+    /// Moves overlapping bodies apart, so that none overlap, and returns the bodies that were moved,
+    /// in order. Velocities do not change; a body that did not overlap moves only if others
+    /// are moved into it.
     ///
-    /// Of two bodies the lighter one goes farther, by the ratio of their masses, and immovable ones stay:
-    /// the sum of mass times square of the way is the least that moves all of them along their shortest
-    /// ways out ([`World::overlaps`]). What is moved out touches afterwards, as if placed face to face.
+    /// The lighter one of two bodies moves farther, by the ratio of their masses, and immovable bodies stay:
+    /// the sum of mass times square of the distance is the least that moves all of them along their shortest
+    /// translations ([`World::overlaps`]). Afterwards these bodies touch, as if placed face to face.
     ///
     /// On an error the world stays as it was.
     pub fn separate(&mut self) -> Result<Vec<usize>, SeparateError> {
@@ -99,7 +99,7 @@ impl World {
     }
 }
 
-/// Bodies that are moved out of each other.
+/// Overlapping bodies that are moved apart.
 struct Separation<'a> {
     layout: Layout<'a>,
 }

@@ -1,6 +1,6 @@
-//! A world as data, from which it goes on to the bit.
+//! A world as data, from which it continues to the same bits.
 //!
-//! What is kept only to save time is not in it. Meshes that bodies share are in it once.
+//! The data has no caches. It has each mesh once, however many bodies share it.
 
 mod read;
 

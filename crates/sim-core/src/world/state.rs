@@ -1,4 +1,4 @@
-//! Motion in columns.
+//! The motion of bodies, in columns.
 
 use alloc::vec::Vec;
 use core::ops::Range;

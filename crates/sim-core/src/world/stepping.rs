@@ -1,8 +1,8 @@
-//! From the previous state to the current one, without regard to contact.
+//! Integration: from the previous state to the current one, without contacts.
 //!
-//! Bodies under constant forces alone go through one loop over their columns, a pass that also
-//! checks the range. The others are stepped by the method, in blocks small enough for the
-//! processor's first cache where nothing couples them.
+//! Bodies under constant forces alone go through one loop over their columns, which also
+//! checks the range. The method steps the others, in blocks small enough for the
+//! processor's first cache if no force couples them.
 
 use alloc::vec::Vec;
 use core::{mem, ops::Range};

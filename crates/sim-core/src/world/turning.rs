@@ -1,5 +1,5 @@
-//! Bodies that turn: what resists, and how they are turned. Columns are by slot, and empty where nothing
-//! turns.
+//! The inertia and rotation of turning bodies. Columns are by slot, and empty in a world without turning
+//! bodies.
 
 use alloc::vec::Vec;
 use glam::{DMat3, DQuat, DVec3};

@@ -1,22 +1,23 @@
 //! Turning bodies that touch where they have been placed.
 //!
-//! To touch is to meet, for the exact test. A turning body that is placed on another one is moved off it by
-//! the least that does it, along the normal of what touches: no more than the `f32` of vertices is rounded.
-//! What is deeper is an overlap: the two pass through each other until they are apart.
+//! For the exact test, bodies that touch meet. A turning body that is placed in touch with another one is moved off
+//! it by the least translation along the normal of the contact, no more than the rounding of `f32` vertices.
+//! A deeper overlap stays: the two pass through each other until they are apart.
 
 use alloc::vec::Vec;
 use glam::DVec3;
 
 use super::{World, bodies::Bodies, state::State};
 use crate::{
-    collide::turning::{Turning, normals_within},
+    collide::{
+        MOST_NORMALS,
+        turning::{Turning, normals_within},
+    },
     impulse::{Joined, project},
 };
 
 /// Rounds in which one that is moved off another one may come to meet a third.
 const ROUNDS: usize = 16;
-/// Normals along which a pair may be moved apart, at most.
-const MOST_NORMALS: usize = 32;
 /// Halvings of what bodies may be moved by to the least.
 const HALVINGS: i32 = 24;
 

@@ -12,6 +12,7 @@ use super::growing::Growing;
 use super::linear;
 use super::normals::Vertex;
 use super::triangles::Triangles;
+use crate::number;
 use crate::picture::{Ghost, Model};
 
 /// One place a mesh is drawn at, as `shaders/surface.wgsl` has it.
@@ -110,6 +111,15 @@ pub struct Cut {
     pub mesh: Arc<Mesh>,
     /// How many of them are drawn.
     pub drawn: usize,
+}
+
+impl Cut {
+    /// What the graphics adapter does, for a message; `mesh` names the geometry there.
+    pub fn told(&self, mesh: &str) -> String {
+        let [drawn, all] =
+            [self.drawn, self.mesh.triangles().len()].map(|count| number::count(count as f64));
+        format!("has room for {drawn} of the {all} triangles of {mesh}, and draws no more")
+    }
 }
 
 impl Meshes {

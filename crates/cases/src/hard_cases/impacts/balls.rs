@@ -1,17 +1,17 @@
 //! Cases 18, 19, 27: balls and cubes on floors, under gravity.
 
-use kit::bodies::{immovable, wall};
+use kit::bodies::{ball, immovable, mesh_body, wall};
 use kit::meshes::{boxes, cube};
-use kit::worlds::{GRAVITY, add_gravity, world_of};
+use kit::worlds::{GRAVITY, add_gravity, precise, run, world_of};
 use sim_core::{Body, DVec3, Method, Settings, Vec3, World};
 
-use super::{DT, Finding, Tried, ball, mesh, run, settings, worst};
+use super::{DT, Finding, Tried, worst};
 
 /// A body above a floor, under gravity.
 pub fn on_floor(method: &'static Method, dt: f64, body: Body, floor: Body) -> World {
     let settings = Settings {
         method,
-        ..settings(dt)
+        ..precise(dt)
     };
     let mut world = world_of(settings, [floor, body]);
     add_gravity(&mut world, -GRAVITY * DVec3::Y);
@@ -90,9 +90,9 @@ pub(crate) fn elastic(method: &'static Method) -> Tried {
 
 /// Greatest way from where it lay, m, or gain of energy, J, over 1,000 s.
 pub(crate) fn resting(method: &'static Method) -> Tried {
-    let cube = mesh(&cube(0.5), 0.5 * DVec3::Y, DVec3::ZERO);
+    let cube = mesh_body(&cube(0.5), 0.5 * DVec3::Y, DVec3::ZERO);
     let slab = boxes(&[[Vec3::new(-8.0, -1.0, -8.0), Vec3::new(8.0, 0.0, 8.0)]]);
-    let slab = immovable(mesh(&slab, DVec3::ZERO, DVec3::ZERO));
+    let slab = immovable(mesh_body(&slab, DVec3::ZERO, DVec3::ZERO));
     let (mut moved, mut gained): (f64, f64) = (0.0, 0.0);
     for (floor, seconds) in [(floor(), 1000), (slab, 100)] {
         let mut world = on_floor(method, DT, cube.clone(), floor);

@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use kit::bodies::wall;
-use kit::worlds::world_of;
+use kit::bodies::{ball, wall};
+use kit::worlds::{precise, run, world_of};
 use sim_core::{Body, DVec3, World};
 
-use super::{DT, Finding, Tried, ULP, ball, lost, motions, run, settings, worst};
+use super::{DT, Finding, Tried, ULP, lost, motions, worst};
 
 /// A wall, a block at rest, and one of 100^k times its mass that comes; of a radius, m.
 pub fn galperin(k: i32, radius: f64) -> World {
@@ -16,7 +16,7 @@ pub fn galperin(k: i32, radius: f64) -> World {
     };
     let light = ball(radius, DVec3::X, DVec3::ZERO);
     let wall = wall(DVec3::X, DVec3::ZERO, DVec3::ZERO);
-    world_of(settings(DT), [wall, light, heavy])
+    world_of(precise(DT), [wall, light, heavy])
 }
 
 /// Steps in which the blocks part for good, and the wrong count of impacts and the error of energy after them.
@@ -56,7 +56,7 @@ pub fn closing_walls(dt: f64) -> World {
         wall(-DVec3::X, DVec3::X, -DVec3::X),
         ball(0.0, DVec3::ZERO, 10.0 * DVec3::X),
     ];
-    world_of(settings(dt), bodies)
+    world_of(precise(dt), bodies)
 }
 
 pub(crate) fn walls() -> Tried {
@@ -97,7 +97,7 @@ pub fn cradle(gap: f64, arriving: usize) -> World {
         let x = start + i as f64 * (1.0 + gap);
         ball(0.5, x * DVec3::X, speed * DVec3::X)
     });
-    world_of(settings(DT), balls)
+    world_of(precise(DT), balls)
 }
 
 /// As many leave as arrive, and a symmetric break is its own mirror image.
@@ -135,7 +135,7 @@ fn broken_mirrors() -> anyhow::Result<u32> {
                 ball(radius, apart * DVec3::Y, DVec3::ZERO),
                 ball(radius, -apart * DVec3::Y, DVec3::ZERO),
             ];
-            let mut world = world_of(settings(DT), order.map(|i| balls[i].clone()));
+            let mut world = world_of(precise(DT), order.map(|i| balls[i].clone()));
             let start = world.clone();
             run(&mut world, 240)?;
             let motions = motions(&world);

@@ -1,10 +1,11 @@
 //! Cases 24, 26: what a hit puts back; a hundred cubes in a box.
 
+use kit::bodies::mesh_body;
 use kit::meshes::{builtin, cube, star};
-use kit::worlds::world_of;
+use kit::worlds::{precise, world_of};
 use sim_core::{Collision, DVec3, Settings};
 
-use super::{DT, Finding, PHASES, Tried, mesh, settings, worst};
+use super::{DT, Finding, PHASES, Tried, worst};
 use crate::scenes::{Form, HALF, continuous, crowd};
 
 /// Steps with a hit are lost whole, and no others.
@@ -20,12 +21,12 @@ pub(crate) fn rollback() -> Tried {
         for phase in 0..PHASES {
             let x = -3.0 - 2.0 * DT * f64::from(phase) / f64::from(PHASES);
             let bodies = [
-                mesh(&still, DVec3::ZERO, DVec3::ZERO),
-                mesh(&cube, DVec3::new(x, 0.25, 0.0), 2.0 * DVec3::X),
+                mesh_body(&still, DVec3::ZERO, DVec3::ZERO),
+                mesh_body(&cube, DVec3::new(x, 0.25, 0.0), 2.0 * DVec3::X),
             ];
             let settings = Settings {
                 collision,
-                ..settings(DT)
+                ..precise(DT)
             };
             let mut world = world_of(settings, bodies);
             let mut moves = 0;

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use kit::bodies::wall;
+use kit::bodies::{ball, mesh_body, wall};
 use kit::meshes::{boxes, builtin, cube, cuboid, star, torus};
-use kit::worlds::world_of;
+use kit::worlds::{precise, run, world_of};
 use sim_core::collide::{touch::first_touch, tree};
 use sim_core::{Body, Bvh, DVec3, Impact, Mesh, Vec3, World};
 
-use super::{DT, Finding, PHASES, Tried, ball, lost, mesh, motions, run, settings, worst};
+use super::{DT, Finding, PHASES, Tried, lost, motions, worst};
 
 /// Two meshes that touch when the second one, coming along a way, is at a place.
 struct Encounter {
@@ -51,10 +51,10 @@ impl Encounter {
         let hit = (3.0 + f64::from(phase) / f64::from(PHASES)) * DT;
         let v = [-0.25, 0.75].map(|part| part * speed * self.way);
         let bodies = [
-            mesh(&self.meshes[0], -v[0] * hit, v[0]),
-            mesh(&self.meshes[1], self.touching - v[1] * hit, v[1]),
+            mesh_body(&self.meshes[0], -v[0] * hit, v[0]),
+            mesh_body(&self.meshes[1], self.touching - v[1] * hit, v[1]),
         ];
-        let mut world = world_of(settings(DT), bodies);
+        let mut world = world_of(precise(DT), bodies);
         let start = world.clone();
         let mut impacts: Vec<Impact> = Vec::new();
         for _ in 0..8 {
@@ -141,10 +141,10 @@ pub(crate) fn concavity() -> Tried {
             let peg = cuboid(Vec3::new(0.5 - clearance, 0.4, 0.5));
             let velocity = speed * DVec3::Z;
             let bodies = [
-                mesh(&channel, DVec3::ZERO, DVec3::ZERO),
-                mesh(&peg, -6.0 * DVec3::Z, velocity),
+                mesh_body(&channel, DVec3::ZERO, DVec3::ZERO),
+                mesh_body(&peg, -6.0 * DVec3::Z, velocity),
             ];
-            let mut world = world_of(settings(DT), bodies);
+            let mut world = world_of(precise(DT), bodies);
             run(&mut world, (12.0 / speed / DT).ceil() as u64)?;
             let is_untouched = world.velocity(1) == velocity && world.impacts() == 0;
             match clearance > 0.0 {
@@ -168,14 +168,14 @@ fn passing(body: &Body, aside: DVec3, velocity: DVec3) -> World {
         ..body.clone()
     };
     let end = wall(-DVec3::X, 6.0 * DVec3::X, DVec3::ZERO);
-    world_of(settings(DT), [body.clone(), mover, end])
+    world_of(precise(DT), [body.clone(), mover, end])
 }
 
 /// Faces on faces, edges on edges, a vertex on a vertex, exactly: no contact is documented for
 /// motion along surfaces, any for the others; what comes out is a number, does not depend on the
 /// order of the bodies, and the wall behind is not missed.
 fn ties() -> anyhow::Result<[u32; 2]> {
-    let at_rest = |m: Arc<Mesh>| mesh(&m, DVec3::ZERO, DVec3::ZERO);
+    let at_rest = |m: Arc<Mesh>| mesh_body(&m, DVec3::ZERO, DVec3::ZERO);
     let (cube, star) = (at_rest(cube(0.5)), at_rest(star(1.0, 0.25)));
     let straight = 5.0 * DVec3::X;
     // Faces along each other twice, edges along and on each other, vertices on each other; of the
@@ -198,7 +198,7 @@ fn ties() -> anyhow::Result<[u32; 2]> {
     for (body, aside, velocity) in &ties {
         let mut in_order = passing(body, *aside, *velocity);
         let bodies = [1, 2, 0].map(|i| in_order.body(i).to_body());
-        let mut reordered = world_of(settings(DT), bodies);
+        let mut reordered = world_of(precise(DT), bodies);
         let energy = in_order.kinetic_energy();
         let impacts = run(&mut in_order, 240)?;
         run(&mut reordered, 240)?;
@@ -214,7 +214,7 @@ fn ties() -> anyhow::Result<[u32; 2]> {
 }
 
 pub(crate) fn grazing() -> Tried {
-    let cube = mesh(&cube(0.5), DVec3::ZERO, DVec3::ZERO);
+    let cube = mesh_body(&cube(0.5), DVec3::ZERO, DVec3::ZERO);
     let sphere = ball(0.5, DVec3::ZERO, DVec3::ZERO);
     let mut wrong = 0;
     for body in [&cube, &sphere] {
@@ -244,7 +244,7 @@ pub(crate) fn grazing() -> Tried {
 
 /// Pairs, the second one displaced along x by nine tenths of what would part them.
 fn overlapping() -> [([Body; 2], f64); 6] {
-    let of = |m: &Arc<Mesh>| mesh(m, DVec3::ZERO, DVec3::ZERO);
+    let of = |m: &Arc<Mesh>| mesh_body(m, DVec3::ZERO, DVec3::ZERO);
     let sphere = ball(0.5, DVec3::ZERO, DVec3::ZERO);
     let cow = builtin("cow.obj");
     let width = f64::from(cow.bounds().max.x - cow.bounds().min.x);
@@ -269,7 +269,7 @@ pub(crate) fn overlap() -> Tried {
             let mut bodies = bodies.clone();
             bodies[1].position = 0.9 * reach * DVec3::X;
             bodies[1].velocity = DVec3::new(speed, 0.0, 0.1 * speed);
-            let mut world = world_of(settings(DT), bodies);
+            let mut world = world_of(precise(DT), bodies);
             wrong += u32::from(world.overlapping() != [(0, 1)]);
             let start = world.kinetic_energy();
             for _ in 0..120 {

@@ -7,43 +7,13 @@ pub mod meshes;
 pub(super) mod pairs;
 pub mod symmetry;
 
-use std::sync::Arc;
-
-use kit::bodies::body;
-use kit::shapes;
-use sim_core::{Body, Collision, DVec3, Impact, Mesh, Settings, Shape, StepError, World};
+use sim_core::{DVec3, World};
 
 use super::{Finding, Tried};
 
 const ULP: f64 = f64::EPSILON;
 const DT: f64 = 1.0 / 60.0;
 const PHASES: u32 = 16;
-
-fn settings(dt: f64) -> Settings {
-    Settings {
-        dt,
-        collision: Collision::Continuous,
-        tolerance: 1e-13,
-        // Velocity Verlet is exact in flight.
-        ..Settings::default()
-    }
-}
-
-fn run(world: &mut World, steps: u64) -> Result<Vec<Impact>, StepError> {
-    let mut impacts = Vec::new();
-    for _ in 0..steps {
-        world.step_reporting(&mut impacts)?;
-    }
-    Ok(impacts)
-}
-
-fn ball(radius: f64, position: DVec3, velocity: DVec3) -> Body {
-    body(&shapes::ball(radius), position, velocity)
-}
-
-fn mesh(mesh: &Arc<Mesh>, position: DVec3, velocity: DVec3) -> Body {
-    body(&Shape::Mesh(mesh.clone()), position, velocity)
-}
 
 /// The greatest of some figures; a figure that is none is the greatest.
 fn worst(figures: impl IntoIterator<Item = f64>) -> f64 {

@@ -3,10 +3,10 @@
 use kit::bodies::{body, immovable, wall};
 use kit::meshes::{cube, cuboid, sheet};
 use kit::shapes::ball;
-use kit::worlds::world_of;
+use kit::worlds::{precise, run, world_of};
 use sim_core::{Body, DVec3, Shape, Vec3};
 
-use super::{DT, Finding, PHASES, Tried, ULP, apart, motions, run, settings, worst};
+use super::{DT, Finding, PHASES, Tried, ULP, apart, motions, worst};
 
 const STEPS: u64 = 8;
 
@@ -56,7 +56,7 @@ impl HeadOn {
                 bodies[i].position = DVec3::X * places[i];
                 bodies[i].velocity = DVec3::X * self.speeds[i];
             }
-            let mut world = world_of(settings(DT), bodies);
+            let mut world = world_of(precise(DT), bodies);
             let impacts = run(&mut world, STEPS)?;
             errors.tried += 1;
             errors.wrong += u32::from(impacts.len() != 1);
@@ -215,7 +215,7 @@ pub(crate) fn far_away() -> Tried {
             let at = |far: DVec3| -> anyhow::Result<_> {
                 let moving = |x: DVec3, v: f64| body(&shape, x, DVec3::X * v);
                 let bodies = [moving(far + DVec3::X * start, 60.0), moving(far, 0.0)];
-                let mut world = world_of(settings(DT), bodies);
+                let mut world = world_of(precise(DT), bodies);
                 let impacts = run(&mut world, 4)?.len();
                 let back = |(x, v): (DVec3, DVec3)| (x - far, v);
                 let ends: Vec<_> = motions(&world).into_iter().map(back).collect();

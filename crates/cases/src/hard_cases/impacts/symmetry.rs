@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use kit::bodies::{immovable, wall};
+use kit::bodies::{ball, immovable, mesh_body, wall};
 use kit::meshes::{builtin, cube, star};
-use kit::worlds::world_of;
+use kit::worlds::{precise, run, world_of};
 use sim_core::{Body, DVec3, Impact, Mesh, Shape, Vec3};
 
-use super::{Finding, Tried, apart, ball, mesh, motions, run, settings, worst};
+use super::{Finding, Tried, apart, motions, worst};
 
 /// Steps to the end.
 pub const STEPS: u64 = 96;
@@ -27,16 +27,22 @@ pub fn scenes() -> [(&'static str, Vec<Body>); 3] {
         of(0.7, ball(0.25, v(2.4, 0.3, -0.1), v(-3.0, -0.1, 0.2))),
     ];
     let cows = vec![
-        immovable(mesh(&cube, v(5.0, 0.2, 0.1), DVec3::ZERO)),
-        mesh(&cube, v(-4.0, 0.3, 0.1), v(4.0, 0.1, 0.3)),
-        of(3.0, mesh(&cow, v(0.3, 0.0, 0.2), v(-1.0, 0.2, -0.1))),
-        of(0.7, mesh(&cube, v(3.2, 0.35, -0.1), v(-3.0, -0.1, 0.2))),
+        immovable(mesh_body(&cube, v(5.0, 0.2, 0.1), DVec3::ZERO)),
+        mesh_body(&cube, v(-4.0, 0.3, 0.1), v(4.0, 0.1, 0.3)),
+        of(3.0, mesh_body(&cow, v(0.3, 0.0, 0.2), v(-1.0, 0.2, -0.1))),
+        of(
+            0.7,
+            mesh_body(&cube, v(3.2, 0.35, -0.1), v(-3.0, -0.1, 0.2)),
+        ),
     ];
     let stars = vec![
-        immovable(mesh(&cube, v(4.0, 0.2, 0.1), DVec3::ZERO)),
-        mesh(&cube, v(-2.5, 0.3, 0.1), v(4.0, 0.1, 0.3)),
-        of(3.0, mesh(&star, v(0.3, 0.0, 0.2), v(-1.0, 0.2, -0.1))),
-        of(0.7, mesh(&star, v(2.4, 0.35, -0.1), v(-3.0, -0.1, 0.2))),
+        immovable(mesh_body(&cube, v(4.0, 0.2, 0.1), DVec3::ZERO)),
+        mesh_body(&cube, v(-2.5, 0.3, 0.1), v(4.0, 0.1, 0.3)),
+        of(3.0, mesh_body(&star, v(0.3, 0.0, 0.2), v(-1.0, 0.2, -0.1))),
+        of(
+            0.7,
+            mesh_body(&star, v(2.4, 0.35, -0.1), v(-3.0, -0.1, 0.2)),
+        ),
     ];
     [
         ("balls", balls),
@@ -48,7 +54,7 @@ pub fn scenes() -> [(&'static str, Vec<Body>); 3] {
 type Ends = Vec<(DVec3, DVec3)>;
 
 fn ends(bodies: &[Body]) -> anyhow::Result<Ends> {
-    let mut world = world_of(settings(DT), bodies);
+    let mut world = world_of(precise(DT), bodies);
     let impacts = run(&mut world, STEPS)?.len();
     anyhow::ensure!(impacts >= 2, "{impacts} impacts are too few");
     Ok(motions(&world))
@@ -145,7 +151,7 @@ pub(crate) fn symmetries() -> Tried {
             .map(|&(x, v)| (x - way, v - wind))
             .collect();
         let moved = apart(&found, &base) / way.x;
-        let mut world = world_of(settings(DT), bodies);
+        let mut world = world_of(precise(DT), bodies);
         let there = run(&mut world, STEPS)?.len();
         for i in 0..world.len() {
             world.set_velocity(i, -world.velocity(i))?;
@@ -168,7 +174,7 @@ pub(crate) fn any_dt() -> Tried {
     for (_, bodies) in scenes() {
         let mut base = None;
         for steps in [1, 2, 10, 60, 1_000, 10_000] {
-            let mut world = world_of(settings(1.0 / steps as f64), &bodies);
+            let mut world = world_of(precise(1.0 / steps as f64), &bodies);
             let impacts = run(&mut world, steps)?;
             let (first, ends) = base.get_or_insert_with(|| (impacts.clone(), motions(&world)));
             let pairs = |impacts: &[Impact]| impacts.iter().map(|i| i.bodies).collect::<Vec<_>>();

@@ -1,10 +1,10 @@
-//! Which of many boxes meet.
+//! The broad phase: which of many boxes meet.
 //!
-//! What sweeps little of its own size in a step keeps its *neighbours* for some steps (Verlet 1967,
-//! "Computer experiments on classical fluids", sec. II): they are those whose boxes meet when all
-//! are made wider by what bodies move in a few steps, and as long as a box stays within its wide
-//! one, no other one need be looked at. Boxes that have left theirs are sought among all
-//! ([`rows`]), and once they are many, all wide boxes are made anew.
+//! A body that sweeps little of its own size in a step keeps its *neighbours* for some steps (Verlet 1967,
+//! "Computer experiments on classical fluids", sec. II). Neighbours are the bodies whose fat AABBs meet: boxes
+//! widened by the motion of bodies in a few steps. As long as a box stays within its fat AABB, no other body
+//! need be tested. Boxes that have left theirs are tested against all ([`rows`]); once there are many of
+//! them, all fat AABBs and neighbours are built anew.
 
 mod near;
 mod neighbours;
@@ -295,28 +295,13 @@ impl Wall {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_random::Random;
     use alloc::vec;
 
-    struct Random(u64);
-
-    impl Random {
-        fn unit(&mut self) -> f64 {
-            self.0 = self
-                .0
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        }
-
-        fn vector(&mut self) -> DVec3 {
-            DVec3::new(self.unit(), self.unit(), self.unit())
-        }
-
-        fn swept(&mut self, body: usize) -> Swept {
-            let (min, size) = (10.0 * self.vector(), 2.0 * self.vector());
-            let max = min + size * size;
-            Swept { min, max, body }
-        }
+    fn swept(random: &mut Random, body: usize) -> Swept {
+        let (min, size) = (10.0 * random.in_unit_cube(), 2.0 * random.in_unit_cube());
+        let max = min + size * size;
+        Swept { min, max, body }
     }
 
     /// All that may be asked, against brute force.
@@ -357,10 +342,10 @@ mod tests {
             let bodies: Vec<usize> = (0..count + 2).collect();
             let mut random = Random(7 + count as u64);
             let mut broad = Broad::default();
-            let mut all: Vec<Swept> = (0..count).map(|body| random.swept(body)).collect();
+            let mut all: Vec<Swept> = (0..count).map(|body| swept(&mut random, body)).collect();
             let velocity: Vec<_> = (0..count)
                 .map(|body| match body % moving {
-                    0 => random.vector() - random.vector(),
+                    0 => random.in_unit_cube() - random.in_unit_cube(),
                     _ => DVec3::ZERO,
                 })
                 .collect();
@@ -397,9 +382,9 @@ mod tests {
                     .chain([0; 2])
                     .filter(|&body| body < count)
                 {
-                    let shift = 0.05 * (random.vector() - random.vector());
+                    let shift = 0.05 * (random.in_unit_cube() - random.in_unit_cube());
                     new[body] = match body % 2 {
-                        0 => random.swept(body),
+                        0 => swept(&mut random, body),
                         _ => Swept {
                             min: new[body].min + shift,
                             max: new[body].max + shift,

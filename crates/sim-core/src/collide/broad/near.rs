@@ -1,4 +1,4 @@
-//! Boxes of bodies that stand where they are, to be asked many times.
+//! Boxes of bodies at rest, for many queries.
 
 use super::{rows::Rows, volume::Swept};
 

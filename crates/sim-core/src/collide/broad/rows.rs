@@ -1,9 +1,9 @@
 //! Boxes in order, and boxes around those.
 //!
-//! Boxes are sorted along a curve that keeps neighbours together (Morton 1966, "A computer oriented
-//! geodetic data base and a new technique in file sequencing"). Eight in a row have a box around them,
-//! eight of these another, and so on: a tree without a pointer, made afresh in less time than it takes
-//! to ask it. A box that is replaced after that widens those around it.
+//! The rows sort boxes along a curve that keeps neighbours together (Morton 1966, "A computer oriented
+//! geodetic data base and a new technique in file sequencing"). Eight boxes in a row have a box around them,
+//! eight of these another, and so on: a tree without a pointer, which takes less time to build than to query.
+//! Replacing a box later widens the boxes around it.
 
 use alloc::vec::Vec;
 use glam::DVec3;

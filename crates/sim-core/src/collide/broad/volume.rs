@@ -1,4 +1,4 @@
-//! What bodies may come to in a step: boxes, planes, and boxes in rows of eight.
+//! Volumes that bodies may reach in a step: boxes, planes, and boxes in rows of eight.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Numbers of twice the digits of f64, as a rounded number and what rounding took (Dekker 1971, "A
+//! Numbers with twice the digits of f64, stored as a rounded number and its rounding error (Dekker 1971, "A
 //! floating-point technique for extending the available precision"): for determinants that cancel.
 
 use core::ops::{Add, Mul, Sub};

@@ -1,10 +1,10 @@
 //! The closest features of two triangles that share no point: a vertex and a face, two edges, or a vertex
-//! and what is on an edge.
+//! and a vertex or edge.
 //!
 //! Distances from vertices to edges and vertices are differences of points. The others are quotients
-//! `det / |n|`, and where triangles are needles or edges nearly parallel all digits of `n` and of the
-//! determinant may cancel. So f64 only says, with bounds on its rounding, which of these cannot be closest;
-//! what is left is computed with twice the digits.
+//! `det / |n|`; if triangles are needles or edges are nearly parallel, all digits of `n` and of the
+//! determinant may cancel. So f64 only excludes, with bounds on its rounding, features that cannot be closest;
+//! the others are computed with twice the digits.
 
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
-//! How far two meshes are apart, or a point and a mesh, and where they are closest.
+//! The distance of two meshes, or of a point and a mesh, and their closest points.
 //!
-//! Branch and bound: pairs of nodes wait with the distance of their boxes, the nearest one on top, and what is
-//! no nearer than the closest triangles so far is left out.
+//! Branch and bound: a priority queue holds pairs of nodes by the distance of their boxes. The search skips
+//! pairs that are no nearer than the closest triangles so far.
 
 mod double;
 mod features;

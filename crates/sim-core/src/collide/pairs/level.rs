@@ -1,4 +1,4 @@
-//! Which instructions lanes use.
+//! The vector instructions that lanes use.
 
 #[cfg(target_arch = "x86_64")]
 use super::simd;

@@ -1,10 +1,9 @@
 //! The descent through two hierarchies at once.
 //!
 //! A *tile* is a pair of nodes or leaves: the four boxes of one against the four of the other,
-//! sixteen pairs at once. Pairs of children that may meet go on a stack, to be tiles in their turn;
-//! at first the one that promises most is next. A leaf against a node goes down on the node's side
-//! only, and where two leaves have come together the pairs of triangles whose boxes meet are handed
-//! over.
+//! sixteen pairs at once. Pairs of children that may meet go on a stack and become tiles in their turn;
+//! at first the most promising pair is next. A leaf against a node descends on the node's side
+//! only. For two leaves, the descent hands over the pairs of triangles whose boxes meet.
 
 mod lanes;
 mod level;

@@ -1,4 +1,4 @@
-//! A placement as comparisons in f32 see it.
+//! A relative pose as comparisons in f32 use it.
 
 use super::Lanes;
 use crate::bvh::{Boxes, Bvh, Slabs};

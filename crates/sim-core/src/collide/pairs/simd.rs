@@ -1,7 +1,7 @@
 //! Lanes in 256- and 512-bit vectors of x86-64.
 //!
-//! The `unsafe` here says no more than that instructions which have been found to exist may be
-//! executed: no pointer is made or followed but in loads and stores of whole arrays.
+//! The `unsafe` here only asserts that the processor has the instructions: no pointer is made or followed
+//! except in loads and stores of whole arrays.
 #![allow(unsafe_code)]
 
 use core::arch::x86_64::*;

@@ -1,9 +1,8 @@
-//! Pairs that are still to be looked at.
+//! A stack of pairs that the descent has still to visit.
 //!
-//! The only other `unsafe` of the crate besides that around vector instructions. The stack has
-//! thirty-two kilobytes for the deepest of trees, of which a query touches a few hundred bytes: set
-//! to zero each time, they would cost more than the query. Here they stay as they are until
-//! written.
+//! This is the only `unsafe` of the crate besides that of vector instructions. The stack has
+//! thirty-two kilobytes, enough for the deepest trees, of which a query uses a few hundred bytes: to set all
+//! of them to zero each time would cost more than the query. So they stay uninitialised until written.
 #![allow(unsafe_code)]
 
 use core::mem::MaybeUninit;

@@ -1,18 +1,17 @@
-//! Contacts at the borders of faces, at the ends of edges and at the start: whether they block the
-//! motion.
+//! Whether contacts at the borders of faces, at the ends of edges and at the start block the motion.
 //!
-//! Inside a face, and where edges cross, what touches is stopped. At a border it may slip past, which
-//! [`slips_past`] decides for all triangles at the point together, and at the start it may part.
+//! A contact inside a face, and of edges that cross, blocks the motion. At a border the surfaces may slip past
+//! each other, which [`slips_past`] decides for all triangles at the point together. At the start they may part.
 //!
-//! No point where nothing slips past is without a contact that has a normal. If surfaces touch for the
-//! first time, they do so in a point with a vertex of one of them, or with edges that cross
-//! ([`time_of_impact`]); where they share more than a point and nothing slips past, nothing does at a
-//! corner of what they share. A vertex and a triangle that the motion leads through are a contact, and so
-//! are two edges whose common plane it leads through. If there are none, then one of the surfaces has
-//! a vertex there and the other one triangles along the motion alone, and so has the first one, since
-//! a triangle that the motion leads through has two edges there that are not parallel, seen along it,
-//! and one of them would be a contact with an edge of the other surface. Both are then seen as rays,
-//! on one line, and slip past each other.
+//! Every point at which the surfaces cannot slip past each other has a contact with a normal. Surfaces touch for the
+//! first time at a point that is a vertex of one of them or a crossing of edges ([`time_of_impact`]). If
+//! they share more than a point and cannot slip past each other, they cannot at a corner of the shared set
+//! either. A vertex and a triangle that the motion crosses are a contact, and so are two edges whose common
+//! plane the motion crosses. Suppose there is no such contact. Then one surface has a vertex at the point, and
+//! the other has only triangles parallel to the motion. The first one has only such triangles too: a triangle
+//! that the motion crosses has two edges at the point that are not parallel in the projection along the motion, and
+//! one of them would be a contact with an edge of the other surface. So both surfaces project to rays on one
+//! line, and slip past each other.
 //!
 //! [`time_of_impact`]: crate::collide::touch::time_of_impact
 

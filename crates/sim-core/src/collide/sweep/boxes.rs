@@ -1,4 +1,4 @@
-//! When the boxes of two trees begin to meet, one of which moves.
+//! The time when the boxes of two trees, one of which moves, begin to meet.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Contacts that may be the first, and the order of those at one time.
+//! Candidates for the first contact, and their order at equal times.
 
 use core::cmp::Ordering;
 use glam::DVec3;

@@ -1,9 +1,9 @@
 //! The search for the first contact of two trees, one of which moves.
 //!
-//! Pairs of boxes are looked at in the order in which they meet ([`boxes`]), and no longer once that
-//! is after the first contact so far. Pairs of triangles that come together give contacts of
-//! features ([`features`]), in exact arithmetic where f64 leaves a doubt; of those at one time the
-//! first one counts ([`candidate`]), and at the borders of faces those that block ([`border`]).
+//! The search visits pairs of boxes in the order in which they meet ([`boxes`]), until that time is after
+//! the first contact so far. Pairs of triangles give contacts of features ([`features`]), in exact
+//! arithmetic if f64 leaves a doubt. Of contacts at one time the first one in order counts
+//! ([`candidate`]), and at the borders of faces only those that block the motion ([`border`]).
 
 mod border;
 mod boxes;

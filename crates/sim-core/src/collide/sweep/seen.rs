@@ -1,4 +1,4 @@
-//! Triangles about a point of contact, seen along the motion.
+//! Triangles around a point of contact, projected along the motion.
 
 use alloc::vec::Vec;
 use core::cmp::Ordering;

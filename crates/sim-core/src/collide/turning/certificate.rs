@@ -1,7 +1,7 @@
-//! How long boxes, and balls about centres of mass, are apart.
+//! Certificates of boxes, and of balls about centres of mass: how long they are apart.
 //!
-//! With the gap `s` along a direction, its derivative `w`, and all that is known of its second derivative
-//! being that it is at least `q`, the gap is at least `s + w t + q t²/2`.
+//! Let `s` be the gap along a direction, `w` its derivative, and `q` a lower bound on its second derivative.
+//! Then the gap is at least `s + w t + q t²/2`.
 //!
 //! Rounding: with `S` all lengths together, placed coordinates are right to 16 roundings of `S`, so `s` is
 //! lowered by 32, and `w` by 32 of all speeds, `q` by 64 of all accelerations.

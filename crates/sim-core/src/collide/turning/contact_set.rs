@@ -1,7 +1,7 @@
 //! All features of two shapes that touch at one time: corners in faces, and edges that cross.
 //!
-//! One pair of nearest points is not enough for what happens at an impact: a cube that lands on its face
-//! touches with four corners, and does not turn.
+//! An impact needs more than one pair of nearest points: a cube that lands on its face
+//! touches with four corners, and does not start to rotate.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use core::ops::ControlFlow;
@@ -378,15 +378,13 @@ fn hull(mut touches: Vec<ContactPoint>, normal: DVec3) -> Vec<ContactPoint> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_random::Random;
 
     #[test]
     fn of_many_touches_the_same_are_left_as_of_few() {
         let reach = 1e-3;
-        let mut state = 7_u64;
-        let mut digit = |most: u64| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1);
-            ((state >> 33) % most) as f64
-        };
+        let mut random = Random(7);
+        let mut digit = |count: usize| random.below(count) as f64;
         let touches: Vec<ContactPoint> = (0..2000)
             .map(|_| {
                 // On both sides of the borders of cells, and of what is one place.

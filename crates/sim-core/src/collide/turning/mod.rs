@@ -1,4 +1,4 @@
-//! When do two shapes that move and turn come together first? Never told too late.
+//! The time of impact of two shapes that move and turn, never too late.
 //!
 //! A *certificate* is a direction that keeps two sets of points apart for some time: let `s` be the gap
 //! along it now, `w` how fast that changes, and the second derivative of every point's place be bounded;
@@ -6,15 +6,15 @@
 //! their hulls, which a rigid motion moves with their points). `certificate` has the parabolas for
 //! boxes; `separation` has directions for sets of points: triangles, points, and boxes as a whole.
 //!
-//! A queue holds pairs of boxes and of triangles, each with the time until which it is certified. The
-//! pair with the least time is looked at: boxes are split into pairs of what is in them, triangles are
-//! certified anew from where they are then. Every two triangles are below one pair in the queue, or below
-//! one that was certified to the end. So no contact is before the least time in the queue: **a time that is
-//! told is never later than the first contact, and that there is none is proven.** Triangles nearer than
+//! A priority queue holds pairs of boxes and of triangles, each with the time until which it is certified. The
+//! search takes the pair with the least time: it splits boxes into pairs of their children, and certifies triangles
+//! anew from their places at that time. Every two triangles belong to one pair in the queue, or to
+//! one that was certified to the end. So no contact is before the least time in the queue: **a time of impact
+//! is never later than the first contact, and the answer "no contact" is proven.** Triangles nearer than
 //! [`NEAR`] roundings that neither move apart nor are certified to the end are a contact.
 //!
 //! Times come from poses at one time (`View`), in a frame at rest that then has the first shape's axes.
-//! All bounds are relative: no length or time is in here.
+//! All bounds are relative: the module has no constant length or time.
 
 mod certificate;
 mod contact_set;

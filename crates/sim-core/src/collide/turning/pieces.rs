@@ -1,4 +1,4 @@
-//! What trees hold, as seen from the centre of mass: boxes, and sets of points that are apart from others if
+//! The contents of trees relative to the centre of mass: boxes, and sets of points that are apart from others if
 //! their hulls are.
 
 use glam::DVec3;

@@ -1,17 +1,17 @@
 //! How long a direction keeps the hulls of two sets of points apart.
 //!
-//! A direction may stay, turn with one of both as the normal of its face does, or stay across an edge of
-//! each: then what lies in a face, or rolls on an edge, is kept apart for as long as it is. Along a direction
-//! `n` every point has a height `n·p`. With its first two derivatives and a bound `J` on the third of what is
-//! between two of them, the gap between the lowest point of the one set and the highest of the other is at
-//! least
+//! A direction may be constant, turn with one shape as the normal of its face does, or stay perpendicular to an edge of
+//! each: then it separates points that lie in a face, or roll on an edge, for as long as they are apart. Along a
+//! direction `n` every point has a height `n·p`. With its first two derivatives, and a bound `J` on the third
+//! derivative of the difference of two heights, the gap between the lowest point of the one set and the highest of
+//! the other is at least
 //!
 //! `min (h + v t + (c - k) t²/2) - max (h + v t + (c - k) t²/2) - J t³/6`,
 //!
 //! for any `k`, and where each `c - k` is cut at 0 to be no greater below and no less above, this is concave:
 //! where it is positive it has been so since the start. The same holds for bounds on the second derivatives
 //! in place of the second derivatives themselves and of `J`. So the root of one function tells for how long a
-//! direction serves for all pairs of points, which costs what one sum over the points does.
+//! direction separates all pairs of points, at the cost of one sum over the points.
 
 use glam::DVec3;
 

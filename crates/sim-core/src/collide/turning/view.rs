@@ -1,4 +1,4 @@
-//! Two shapes at one time, and bounds on how they go on.
+//! The poses of two shapes at one time, and bounds on their further motion.
 
 use glam::{DMat3, DQuat, DVec3};
 

@@ -1,8 +1,8 @@
-//! `L Lᵀ` of a symmetric matrix of 3 × 3 blocks, one row of them a body, most of them zero.
+//! The Cholesky factor `L` of a sparse symmetric matrix `L Lᵀ` of 3 × 3 blocks, one row of blocks a body.
 //!
 //! Rows are eliminated in the order of least degree (Tinney, Walker 1967, "Direct solutions of sparse
-//! network equations by optimally ordered triangular factorization", scheme 2), so that little of
-//! `L` fills up; columns are made one after the other from those to their left (George, Liu 1981,
+//! network equations by optimally ordered triangular factorization", scheme 2), so that `L` has little
+//! fill-in. Each column is computed from those to its left (George, Liu 1981,
 //! "Computer solution of large sparse positive definite systems", sec. 5).
 
 use alloc::{vec, vec::Vec};

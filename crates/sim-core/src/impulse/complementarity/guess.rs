@@ -1,4 +1,4 @@
-//! Which contacts push, by guess.
+//! Which contacts push, found from a guess.
 
 use super::{FEW, Few, Matrix, ROUNDING, sum};
 

@@ -1,4 +1,4 @@
-//! Impulses of contacts that push or do not: a linear complementarity problem.
+//! The impulses of contacts as a linear complementarity problem: each contact pushes or opens.
 
 mod cholesky;
 mod guess;

@@ -1,18 +1,18 @@
-//! Which contacts push, and how much, where there are many of them.
+//! The lambdas of many contacts: which contacts push, and how much.
 //!
 //! The multipliers `λ` of contacts that are to open by `w` minimise `½ λᵀ A λ - λᵀ w`, none of them
-//! negative but those of contacts that are held; `A = N M⁻¹ Nᵀ` may be singular, as contacts may share
-//! what they carry in many ways. The proximal point method (Rockafellar 1976, "Augmented Lagrangians and
+//! negative except those of contacts that are held. The Delassus operator `A = N M⁻¹ Nᵀ` may be singular, because
+//! contacts may share a load in many ways. The proximal point method (Rockafellar 1976, "Augmented Lagrangians and
 //! applications of the proximal point algorithm in convex programming") goes to the minimum by steps that
-//! each add `½ (λ' - λ)ᵀ R⁻¹ (λ' - λ)`. With large `R` few are needed, and each is a least of
+//! each add `½ (λ' - λ)ᵀ R⁻¹ (λ' - λ)`. With large `R` few steps are needed, and each is a minimum of
 //!
 //! ```text
 //! ½ dᵀ M d + Σ ½ p² / ρ,    p = λ + ρ (w - N d),  or nothing where that pulls
 //! ```
 //!
-//! over changes of velocity `d`, which has one least, no constraints, and pieces that are quadratic: Newton's
-//! method finds it (Li, Sun, Toh 2018, "A highly efficient semismooth Newton augmented Lagrangian method"), with the
-//! matrix `M + Σ ρ n nᵀ` over contacts that push, 3 × 3 a body. The height of a heap does not make it
+//! over changes of velocity `d`. This function has one minimum, no constraints, and quadratic pieces: Newton's
+//! method finds the minimum (Li, Sun, Toh 2018, "A highly efficient semismooth Newton augmented Lagrangian method"),
+//! with the matrix `M + Σ ρ n nᵀ` over contacts that push, 3 × 3 a body. The height of a heap does not make it
 //! slower, nor do masses up to about 1 : 10^6.
 
 use alloc::{vec, vec::Vec};

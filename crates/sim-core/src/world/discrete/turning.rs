@@ -1,15 +1,15 @@
-//! Bodies that turn, where a step of a discrete mode ends.
+//! Turning bodies at the end of a step of a discrete mode.
 //!
-//! A pair that meets has touched on its way: both centres of mass on straight lines, and about them the flight
-//! of the step. All features that touch where that was first are answered at once, with their arms: restitution
-//! along each normal, no friction. Both bodies go back to where the step began, and as they were turned there.
+//! A pair that meets has touched on its trajectories: both centres of mass move on straight lines, and the rotations
+//! follow the flight of the step. Impulses act at all features of the first contact at once, with lever arms:
+//! restitution along each normal, no friction. Both bodies go back to where the step began, with their rotation there.
 //!
-//! The energy of turning depends on how a body is turned. So a body that goes back with an angular momentum `L`
-//! has there one along `L`, of the length that has the energy which it had at the impact. Of a cube or a
+//! The energy of rotation depends on the rotation of a body. So a body with an angular momentum `L` that goes back
+//! gets an angular momentum along `L` there, of the length that has the energy of the impact. For a cube or a
 //! ball, whose moments are equal, that is `L` itself.
 //!
-//! Where no feature closes, which rounding alone explains, the motion itself is turned back, as that of bodies is
-//! which do not turn: the speed of the two against each other, and their spins. Else the next step would be the same.
+//! If no feature closes, which only rounding explains, the motion itself is reversed, as for bodies
+//! that do not turn: the relative velocity of the two, and their spins. Otherwise the next step would be the same.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use glam::{DMat3, DQuat, DVec3};

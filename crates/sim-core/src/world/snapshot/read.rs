@@ -1,4 +1,4 @@
-//! A snapshot to a world: whatever stands in it, the world is sound, or there is an error.
+//! A world from a snapshot: any input gives a valid world or an error.
 
 use alloc::{collections::BTreeMap, format, string::String, string::ToString, vec::Vec};
 use glam::{DQuat, DVec3};
