@@ -13,6 +13,12 @@ mod levers;
 mod one;
 mod overlap;
 mod pair;
+// For the unit tests of what [`boxes`] takes from sim-core.
+#[cfg(test)]
+#[allow(dead_code, reason = "other unit tests of sim-core use the rest")]
+#[path = "../../crates/sim-core/src/test_random.rs"]
+mod test_random;
+
 #[path = "../collision/table.rs"]
 mod table;
 mod turning;

@@ -427,7 +427,7 @@ fn a_body_that_tumbles_fast_may_have_many_impacts_in_a_step() {
         ..Turn::default()
     });
     let mut world = worlds::world([free.clone()]);
-    let (inertia, dt) = (world.inertia(0).unwrap().clone(), world.settings().dt);
+    let (inertia, dt) = (*world.inertia(0).unwrap(), world.settings().dt);
     let momentum = world.angular_momentum(0);
     let whole = Flight::new(inertia.moments(), inertia.axes(), momentum, DVec3::ZERO, dt);
     worlds::step(&mut world, 1);
