@@ -73,6 +73,14 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// Of what passes or does not.
+    pub(crate) fn of(passes: bool) -> Verdict {
+        match passes {
+            true => Verdict::Pass,
+            false => Verdict::Fail,
+        }
+    }
+
     /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -86,10 +94,7 @@ impl Verdict {
 impl Finding {
     /// Passes if the figure is within the tolerance.
     fn within(figure: f64, tolerance: f64, why: impl Into<String>) -> Finding {
-        let verdict = match figure <= tolerance {
-            true => Verdict::Pass,
-            false => Verdict::Fail,
-        };
+        let verdict = Verdict::of(figure <= tolerance);
         Finding {
             figure: Some(figure),
             tolerance: Some(tolerance),

@@ -80,18 +80,12 @@ pub struct Run {
 impl Family {
     /// What a run comes to.
     pub fn verdict(&self, run: &Run) -> Verdict {
-        match run.error <= self.tolerance {
-            true => Verdict::Pass,
-            false => Verdict::Fail,
-        }
+        Verdict::of(run.error <= self.tolerance)
     }
 
     /// What it must come to.
     pub fn expected(&self, who: Who) -> Verdict {
-        match self.passed_by.contains(&who) {
-            true => Verdict::Pass,
-            false => Verdict::Fail,
-        }
+        Verdict::of(self.passed_by.contains(&who))
     }
 }
 

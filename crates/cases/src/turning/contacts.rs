@@ -326,15 +326,11 @@ pub static CONTACTS: [Contact; 8] = [
 impl Contact {
     /// What an answer comes to, of a meeting with this first contact. Its time decides.
     pub fn verdict(&self, exact: Option<f64>, found: &Found) -> Verdict {
-        let is_right = match (exact, found.time) {
+        Verdict::of(match (exact, found.time) {
             (Some(exact), Some(time)) => (time - exact).abs() <= self.tolerance,
             (None, None) => true,
             _ => false,
-        };
-        match is_right {
-            true => Verdict::Pass,
-            false => Verdict::Fail,
-        }
+        })
     }
 }
 

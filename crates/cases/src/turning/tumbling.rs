@@ -117,18 +117,12 @@ impl Tumbler {
 
     /// What a run comes to.
     pub fn verdict(&self, run: &Tumble) -> Verdict {
-        match worse(worse(run.energy, run.momentum), run.spin) <= self.tolerance {
-            true => Verdict::Pass,
-            false => Verdict::Fail,
-        }
+        Verdict::of(worse(worse(run.energy, run.momentum), run.spin) <= self.tolerance)
     }
 
     /// What it must come to.
     pub fn expected(&self, who: Who) -> Verdict {
-        match self.passed_by.contains(&who) {
-            true => Verdict::Pass,
-            false => Verdict::Fail,
-        }
+        Verdict::of(self.passed_by.contains(&who))
     }
 }
 

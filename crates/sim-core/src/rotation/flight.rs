@@ -35,7 +35,7 @@ pub enum FlightError {
     /// It turns by half a turn or more while forces act at points of it.
     #[error(
         "a body turns by half a turn or more in {duration:e} s while forces act at points of it: take shorter steps, \
-         or a symplectic method"
+         or a symplectic method if this is none"
     )]
     HalfTurn {
         /// In how long, s.

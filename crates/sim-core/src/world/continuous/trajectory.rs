@@ -67,7 +67,7 @@ pub(in crate::world) struct Trajectories {
     pub(super) kicks: Vec<Option<DVec3>>,
     /// By slot, how contacts press a body.
     pub(super) pressed: Vec<Option<Press>>,
-    /// By body, whether its forces are constant from where its trajectory starts ([`ContactSolver::freeze`]); empty where
+    /// By body, whether its forces are constant from where its trajectory starts (`ContactSolver::freeze`); empty where
     /// none are.
     pub(super) frozen: Vec<bool>,
     /// Whether every trajectory is a parabola.
@@ -246,18 +246,15 @@ impl Trajectories {
 
     /// Lets a body turn on from where its trajectory starts.
     fn turn_on(&mut self, scene: &Scene<'_>, slot: usize, body: usize) -> Result<(), FlightError> {
-        let known = self.motion(scene).horizon(body) - self.since[body];
+        let mut length = self.motion(scene).horizon(body) - self.since[body];
         let (start, is_bent) = (
             self.start.turned[slot],
             self.motion(scene).is_turning_bent(body),
         );
         if is_bent {
-            self.applied_torque[slot] = levered::mean_torque(start, self.end.turned[slot], known);
+            self.applied_torque[slot] = levered::mean_torque(start, self.end.turned[slot], length);
+            length = scene.settings.dt - self.since[body];
         }
-        let length = match is_bent {
-            true => scene.settings.dt - self.since[body],
-            false => known,
-        };
         self.flights[slot] = self.flight_from(scene, slot, start, length)?;
         if !is_bent {
             self.turn_to_end(slot, length);

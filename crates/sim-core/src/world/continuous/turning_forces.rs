@@ -25,14 +25,14 @@ use crate::{
     rotation::Flight,
 };
 
-/// Parts of what is left of the step at which bodies are looked at: its start, its end, and times within.
+/// Parts of the time in which forces are constant at which bodies are looked at: its start, its end, and times within.
 pub(super) const PARTS: [f64; 4] = [0.0, 1.0, 0.5, 0.125];
 
 /// Rounds in which forces are found at most. What is left of a gap then is met early.
 pub(super) const ROUNDS: usize = 12;
 
 /// Angle that a body turns by at most while forces are constant, rad.
-const FARTHEST: f64 = 1.0;
+const MOST_TURN: f64 = 1.0;
 
 /// A contact by points of both bodies.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +56,7 @@ pub(super) struct Mover {
     pub(super) velocity: DVec3,
     /// Inverse mass, 1/kg; zero where nothing moves it.
     pub(super) mass: f64,
-    /// How it is turned after [`PARTS`] of what is left, if contacts do not turn it.
+    /// How it is turned after [`PARTS`] of that time, if contacts do not turn it.
     pub(super) rotations: [DQuat; PARTS.len()],
 }
 
@@ -73,7 +73,8 @@ pub(super) struct Turns {
 
 /// Contacts of an island and how its bodies move, without the forces that are sought.
 pub(super) struct Pressing<'a> {
-    pub(super) left: f64,
+    /// How long forces are constant, s.
+    pub(super) length: f64,
     pub(super) movers: Vec<Mover>,
     /// What impulses do to mean velocities.
     pub(super) yielding: Vec<Yielding>,
@@ -86,7 +87,7 @@ pub(super) struct Pressing<'a> {
 
 /// Forces of contacts, with the arms and normals along which they push.
 pub(super) struct Forces {
-    /// Over what is left, N s.
+    /// Over all of that time, N s.
     pub(super) impulse: Vec<f64>,
     pub(super) contacts: Vec<Arms>,
 }
@@ -174,7 +175,7 @@ impl Rates {
 pub(super) struct Course {
     /// By body at the start.
     pub(super) rates: Vec<Rates>,
-    /// By body after [`PARTS`] of what is left.
+    /// By body after [`PARTS`] of the time.
     pub(super) at: Vec<[At; PARTS.len()]>,
     /// By body the angle that it turns by, as a vector: the integral of its spin.
     pub(super) turn: Vec<DVec3>,
@@ -189,8 +190,8 @@ impl Pressing<'_> {
             let (i, j) = contact.bodies;
             pushes[i].0 -= push;
             pushes[j].0 += push;
-            pushes[i].1 -= contact.arms.0.cross(push) / self.left;
-            pushes[j].1 += contact.arms.1.cross(push) / self.left;
+            pushes[i].1 -= contact.arms.0.cross(push) / self.length;
+            pushes[j].1 += contact.arms.1.cross(push) / self.length;
         }
         pushes
     }
@@ -208,7 +209,7 @@ impl Pressing<'_> {
                 position: mover.position,
                 rotation,
             });
-            let times = PARTS.map(|part| part * self.left);
+            let times = PARTS.map(|part| part * self.length);
             let mut turn = DVec3::ZERO;
             let mut rates = Rates::default();
             match &mover.turns {
@@ -220,14 +221,15 @@ impl Pressing<'_> {
                     }
                 }
                 Some(turns) => {
-                    let acceleration = turns.pull + mover.mass / self.left * impulse;
+                    let acceleration = turns.pull + mover.mass / self.length * impulse;
                     let Turned { rotation, momentum } = turns.turned;
                     let torque = turns.torque + torque;
-                    let most = momentum.length() + self.left * torque.length();
-                    if self.left * most > FARTHEST * turns.moments.min_element() {
+                    let most = momentum.length() + self.length * torque.length();
+                    if self.length * most > MOST_TURN * turns.moments.min_element() {
                         return None;
                     }
-                    let flight = Flight::new(turns.moments, rotation, momentum, torque, self.left);
+                    let flight =
+                        Flight::new(turns.moments, rotation, momentum, torque, self.length);
                     let flight = flight.ok()?;
                     let poses = times.map(|t| flight.at(t));
                     for ((at, t), pose) in at.iter_mut().zip(times).zip(&poses) {
@@ -242,7 +244,7 @@ impl Pressing<'_> {
                         turning: start.acceleration,
                     };
                     // Simpson's rule.
-                    turn = self.left / 6.0 * (start.spin + 4.0 * middle.spin + end.spin);
+                    turn = self.length / 6.0 * (start.spin + 4.0 * middle.spin + end.spin);
                 }
             }
             course.rates.push(rates);
@@ -252,13 +254,13 @@ impl Pressing<'_> {
         Some(course)
     }
 
-    /// A contact after a part of what is left.
+    /// A contact after one of [`PARTS`].
     pub(super) fn later(&self, k: usize, course: &Course, part: usize) -> Later {
         let (i, j) = self.contacts[k].bodies;
         self.anchored[k].later([course.at[i][part], course.at[j][part]])
     }
 
-    /// Twice what a gap grows by at first over the square of the time, up to the first part of what is left
+    /// Twice what a gap grows by at first over the square of the time, up to the first part of the time
     /// at which gaps are looked at: its second derivative, and what it opens by.
     pub(super) fn growth(&self, k: usize, course: &Course) -> f64 {
         let contact = &self.contacts[k];
@@ -279,7 +281,7 @@ impl Pressing<'_> {
         };
         let opening = second.0 - first.0;
         let bend = n.dot(second.1 - first.1) + 2.0 * turned.dot(opening);
-        bend + 2.0 * n.dot(opening) / (PARTS[PARTS.len() - 1] * self.left)
+        bend + 2.0 * n.dot(opening) / (PARTS[PARTS.len() - 1] * self.length)
     }
 
     /// Whether neither body of a contact turns: impulses change their velocities at once, and their gap from then on.
@@ -340,7 +342,7 @@ impl Pressing<'_> {
     fn gain(&self, forces: &Forces, course: &Course) -> f64 {
         let pairs = forces.contacts.iter().zip(&forces.impulse).enumerate();
         let given = pairs.map(|(k, (contact, impulse))| {
-            impulse / self.left * (self.gets(contact, course) - self.allowed(k))
+            impulse / self.length * (self.gets(contact, course) - self.allowed(k))
         });
         given.sum()
     }
@@ -398,12 +400,12 @@ impl Pressing<'_> {
         let wanted = (0..self.touching.len())
             .map(|k| {
                 let (missing, room) = match self.is_straight(k) {
-                    true => (-self.left * self.parting(k, course), widest),
+                    true => (-self.length * self.parting(k, course), widest),
                     false => (self.missing(k, course), self.touching[k].room),
                 };
                 let slack = 0.25 * room;
                 is_found &= missing <= slack && (forces.impulse[k] == 0.0 || missing >= -slack);
-                forces.contacts[k].opening(&pushed) + missing / self.left
+                forces.contacts[k].opening(&pushed) + missing / self.length
             })
             .collect();
         (wanted, is_found)
@@ -412,7 +414,7 @@ impl Pressing<'_> {
     /// What a gap lacks at some time, m, as of the end; less than nothing where it is never so small.
     fn missing(&self, k: usize, course: &Course) -> f64 {
         let (from, room) = (self.touching[k].gap.min(self.room[k]), self.room[k]);
-        let at_first = -0.5 * self.left * self.left * self.growth(k, course);
+        let at_first = -0.5 * self.length * self.length * self.growth(k, course);
         let later = PARTS.iter().enumerate().skip(1);
         let later = later.map(|(place, part)| {
             let share = part * part;

@@ -30,8 +30,8 @@ use crate::{
 /// the step.
 const MANY_ROUNDS: u32 = 24;
 
-/// Part of a step for which contacts press at least.
-const SHORTEST: f64 = 1.0 / 512.0;
+/// Part of a step for which constant forces last at least, if the step does.
+const SHORTEST_PRESS: f64 = 1.0 / 512.0;
 
 /// Cosine above which two normals are one.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
@@ -298,7 +298,8 @@ impl ContactSolver<'_> {
         bodies
     }
 
-    /// Lets bodies that touch, and those in contact that touch them, stay in contact for the rest of the step.
+    /// Lets bodies that touch, and those in contact that touch them, stay in contact by constant forces until these have to
+    /// be found anew. Whether they have met something, which counts, or former forces have come to their end.
     pub(super) fn press_all(
         &mut self,
         (seen, is_met): (&[usize], bool),
@@ -338,20 +339,21 @@ impl ContactSolver<'_> {
         let mut length = left;
         loop {
             let pressing = self.pressing(&island, &touching, &pulls, (time, length))?;
-            let is_shortest = length <= SHORTEST * self.scene.settings.dt;
-            let found = pressing
-                .find()
-                .filter(|&(_, is_found)| is_found || is_shortest);
-            let found = found.map(|(forces, _)| forces);
-            if let Some(forces) = found.or_else(|| is_shortest.then(|| pressing.no_forces())) {
-                let until = match length < left {
-                    true => time + length,
-                    false => self.scene.settings.dt,
-                };
-                self.press(&pressing, &forces, until);
-                return Ok(());
-            }
-            length *= 0.5;
+            let is_shortest = length <= SHORTEST_PRESS * self.scene.settings.dt;
+            let forces = match pressing.find() {
+                Some((forces, is_found)) if is_found || is_shortest => forces,
+                _ if is_shortest => pressing.no_forces(),
+                _ => {
+                    length *= 0.5;
+                    continue;
+                }
+            };
+            let until = match length < left {
+                true => time + length,
+                false => self.scene.settings.dt,
+            };
+            self.press(&pressing, &forces, until);
+            return Ok(());
         }
     }
 
@@ -510,7 +512,7 @@ impl ContactSolver<'_> {
         island: &'a ArmIsland,
         touching: &'a [Touching],
         pulls: &[(usize, DVec3)],
-        (time, left): (f64, f64),
+        (time, length): (f64, f64),
     ) -> Result<Pressing<'a>, (usize, Cause)> {
         let all = self.scene.bodies;
         let mut movers = Vec::with_capacity(island.bodies.len());
@@ -542,7 +544,7 @@ impl ContactSolver<'_> {
                 mass,
                 rotations: match is_kept {
                     true => [self.rotation_at(body, time); PARTS.len()],
-                    false => PARTS.map(|part| self.rotation_at(body, time + part * left)),
+                    false => PARTS.map(|part| self.rotation_at(body, time + part * length)),
                 },
             });
         }
@@ -579,7 +581,7 @@ impl ContactSolver<'_> {
             })
             .collect();
         Ok(Pressing {
-            left,
+            length,
             movers,
             yielding,
             touching,
@@ -607,7 +609,7 @@ impl ContactSolver<'_> {
             }
             match &mover.turns {
                 Some(turns) => {
-                    let by_contact = mover.mass / pressing.left * impulse;
+                    let by_contact = mover.mass / pressing.length * impulse;
                     self.paths.acceleration[mover.body] = turns.pull + by_contact;
                     let torque = turns.torque + torque;
                     self.paths.pressed[turns.slot] = Some(Press { torque, until });
