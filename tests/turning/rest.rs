@@ -214,16 +214,17 @@ fn a_lift_carries_what_lies_on_it() {
 /// multiple of it where bodies turn by radians in one. Now they are sought for a time in which they give none.
 #[test]
 fn what_tips_over_another_gains_no_energy() {
-    // Sixteen in a run of all tests.
+    // In the 36th at 20 Hz an edge is left on which a box lay.
     let runs =
-        std::env::var("COWBELL_TURNING_RUNS").map_or(16, |runs| runs.parse().expect("a number"));
+        std::env::var("COWBELL_TURNING_RUNS").map_or(40, |runs| runs.parse().expect("a number"));
     let mut stepped = 0_u32;
-    for (spin, rate) in [
-        (5.0, 60.0),
-        (5.0, 240.0),
-        (30.0, 60.0),
-        (300.0, 60.0),
-        (1000.0, 60.0),
+    for (spin, rate, bound) in [
+        (5.0, 60.0, 1e-6),
+        (5.0, 240.0, 1e-6),
+        (30.0, 20.0, 1e-4),
+        (30.0, 60.0, 1e-6),
+        (300.0, 60.0, 1e-6),
+        (1000.0, 60.0, 1e-6),
     ] {
         let (mut random, mut most) = (Random::splitmix(11), 0.0_f64);
         for _ in 0..runs {
@@ -250,9 +251,9 @@ fn what_tips_over_another_gains_no_energy() {
             assert_eq!(world.meeting(), []);
         }
         println!("{spin} rad/s, {rate} Hz: at most {most:.1e} of the energy in a step");
-        assert!(most < 1e-6, "{most:e}");
+        assert!(most < bound, "{most:e}");
     }
-    assert_eq!(stepped, 720 * runs);
+    assert_eq!(stepped, 750 * runs);
 }
 
 /// A box that falls over on its edge without friction, until its next edge comes down: what it loses on the way shrinks
