@@ -1,8 +1,10 @@
 //! Rays and points against a BVH: picking, line of sight, inside and outside.
 
-use glam::{DVec3, Vec3};
+use core::array;
+use glam::{DVec3, Vec3, Vec4};
 
-use super::{Bvh, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
+use super::{Boxes, Bvh, LEAF, MAX_DEPTH, Triangles, WIDTH};
+use crate::Aabb;
 
 /// Where a ray meets a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,9 +48,10 @@ impl Bvh {
         direction: DVec3,
         (within, any): (f64, bool),
     ) -> Option<(RayHit, [Vec3; 3])> {
-        let ray = Ray::new(origin, direction)?;
+        let ray = Ray::new(origin, direction, self.bounds)?;
         let mut best: Option<(&Triangles, usize)> = None;
         let mut nearest = within / ray.scale;
+        let mut leave = ray.up(nearest);
         let found = |nearest: f64, (triangles, lane): (&Triangles, usize)| {
             let (t, face) = (nearest * ray.scale, triangles.face[lane]);
             (RayHit { t, face }, triangles.corners(lane))
@@ -59,7 +62,7 @@ impl Bvh {
         loop {
             let node = self.node(code);
             if code & LEAF == 0 {
-                let enter = ray.enter(node, nearest);
+                let enter = ray.enter(&node.boxes, leave);
                 let first = top;
                 for lane in node.lanes().filter(|&lane| enter[lane] < f32::INFINITY) {
                     // Farthest first, as the last one is looked at next.
@@ -73,12 +76,16 @@ impl Bvh {
                 }
             } else {
                 let triangles = self.triangles(node);
-                let hits = ray.meet(triangles);
-                for lane in node.lanes() {
-                    if hits[lane] >= nearest {
+                let mut lanes = ray.may_meet(triangles);
+                while lanes != 0 {
+                    let lane = lanes.trailing_zeros() as usize;
+                    lanes &= lanes - 1;
+                    let time = ray.meet(triangles, lane);
+                    if time >= nearest {
                         continue;
                     }
-                    nearest = hits[lane];
+                    nearest = time;
+                    leave = ray.up(nearest);
                     best = Some((triangles, lane));
                     if any {
                         return Some(found(nearest, (triangles, lane)));
@@ -90,7 +97,7 @@ impl Bvh {
                     return Some(found(nearest, best?));
                 }
                 top -= 1;
-                if f64::from(stack[top].1) <= nearest {
+                if stack[top].1 <= leave {
                     code = stack[top].0;
                     break;
                 }
@@ -100,21 +107,30 @@ impl Bvh {
 }
 
 /// A ray whose direction has a largest component of one; `scale` leads back from its times.
+///
+/// Boxes, and most triangles that it misses, it tells apart in f32, from a point `start` that is as near
+/// to the mesh as the mesh is large. What f32 does not decide, f64 does.
 struct Ray {
     origin: DVec3,
-    inverse: DVec3,
     scale: f64,
     /// The largest component is the last axis; the shear that takes the ray to it.
     axes: [usize; 3],
     shear: [f64; 2],
     forward: f64,
+    /// When it is at `near`.
+    start: f64,
+    near: Vec3,
+    inverse: Vec3,
+    /// More than a coordinate, computed in f32 and as seen from `near` or along the ray, is off by.
+    blur: f32,
 }
 
-/// Stands for the inverse of nothing: far beyond all boxes, but no product with it overflows.
-const BEYOND: f64 = 1e200;
+/// Stands for the inverse of next to nothing. What a ray with such a component moves beside a mesh is far
+/// less than `blur`, and `blur` times this is farther than across the mesh.
+const BEYOND: f32 = 1e18;
 
 impl Ray {
-    fn new(origin: DVec3, direction: DVec3) -> Option<Ray> {
+    fn new(origin: DVec3, direction: DVec3, bounds: Aabb) -> Option<Ray> {
         let z = direction.abs().max_position();
         let axes = [(z + 1) % 3, (z + 2) % 3, z];
         let largest = direction[z].abs();
@@ -122,98 +138,139 @@ impl Ray {
             return None;
         }
         let along = direction / largest;
-        let inverse = |d: f64| {
-            if d.abs() > 1.0 / BEYOND {
-                1.0 / d
-            } else {
-                BEYOND
-            }
-        };
         let forward = along[z];
+        let first = if forward > 0.0 {
+            bounds.min[z]
+        } else {
+            bounds.max[z]
+        };
+        let start = ((f64::from(first) - origin[z]) * forward).max(0.0);
+        let near = origin + start * along;
+        // Eight roundings of 2^-24 to bring a coordinate into the frame of the ray, or a plane to a time;
+        // and those of f64, here and in `meet`.
+        let size = f64::from(bounds.min.abs().max(bounds.max.abs()).max_element())
+            + near.abs().max_element();
+        let far = origin.abs().max_element() + start;
+        let blur = f64::from(f32::EPSILON) * 8.0 * size + 16.0 * f64::EPSILON * far + 1e-30;
+        let inverse = |d: f64| {
+            let inverse = 1.0 / d as f32;
+            inverse.clamp(-BEYOND, BEYOND)
+        };
         Some(Ray {
             origin,
-            inverse: DVec3::new(inverse(along.x), inverse(along.y), inverse(along.z)),
             scale: 1.0 / largest,
             axes,
-            shear: [along[axes[0]] / forward, along[axes[1]] / forward],
+            shear: [along[axes[0]] * forward, along[axes[1]] * forward],
             forward,
+            start,
+            near: near.as_vec3(),
+            inverse: Vec3::new(inverse(along.x), inverse(along.y), inverse(along.z)),
+            // Where sums overflow, f32 rules nothing out.
+            blur: if size < 1e37 {
+                blur as f32
+            } else {
+                f32::INFINITY
+            },
         })
     }
 
-    /// Where the ray enters the boxes of a node, rounded down; infinity where it does not before
-    /// `nearest`.
+    /// A time as one from `near` on, rounded up.
     #[inline]
-    fn enter(&self, node: &Node, nearest: f64) -> [f32; WIDTH] {
-        let (mut enter, mut leave) = ([0.0_f64; WIDTH], [nearest; WIDTH]);
+    fn up(&self, time: f64) -> f32 {
+        ((time - self.start) as f32).next_up()
+    }
+
+    /// When the ray enters four boxes, from `near` on and rounded down; infinity where it does not before
+    /// `leave`.
+    #[inline]
+    #[expect(clippy::needless_range_loop, reason = "lanes of several columns")]
+    fn enter(&self, boxes: &Boxes, leave: f32) -> [f32; WIDTH] {
+        let (mut enter, mut leave) = ([0.0_f32; WIDTH], [leave; WIDTH]);
         for axis in 0..3 {
-            let (origin, inverse) = (self.origin[axis], self.inverse[axis]);
+            let (near, inverse) = (self.near[axis], self.inverse[axis]);
             for lane in 0..WIDTH {
-                let centre = f64::from(node.boxes.centre[axis][lane]);
-                let half = f64::from(node.boxes.half[axis][lane]);
-                let middle = (centre - origin) * inverse;
-                // More than the roundings of both, and of the half extent.
-                let slack = 8.0 * f64::EPSILON * (centre.abs() + origin.abs() + half.abs());
-                let reach = (half + slack) * inverse.abs();
-                let (near, far) = (middle - reach, middle + reach);
-                enter[lane] = if near > enter[lane] {
-                    near
+                let middle = (boxes.centre[axis][lane] - near) * inverse;
+                let reach = (boxes.half[axis][lane] + self.blur) * inverse.abs();
+                let (first, last) = (middle - reach, middle + reach);
+                // Beyond the range of f32 these are not numbers, and rule nothing out.
+                enter[lane] = if first > enter[lane] {
+                    first
                 } else {
                     enter[lane]
                 };
-                leave[lane] = if far < leave[lane] { far } else { leave[lane] };
+                leave[lane] = if last < leave[lane] {
+                    last
+                } else {
+                    leave[lane]
+                };
             }
         }
-        let mut down = [f32::INFINITY; WIDTH];
-        for lane in 0..WIDTH {
-            let meets = enter[lane] <= leave[lane];
-            let rounded = (enter[lane] * (1.0 - 1e-7)) as f32;
-            down[lane] = if meets {
-                rounded.min(f32::MAX)
+        array::from_fn(|lane| {
+            if enter[lane] <= leave[lane] {
+                enter[lane].min(f32::MAX)
             } else {
                 f32::INFINITY
-            };
-        }
-        down
+            }
+        })
     }
 
-    /// Where the ray meets four triangles; infinity where it does not.
+    /// The lanes of the triangles that the ray may meet, as bits: all but those that it misses for certain.
     #[inline]
-    #[expect(clippy::needless_range_loop, reason = "lanes of several columns")]
-    fn meet(&self, triangles: &Triangles) -> [f64; WIDTH] {
-        // The ray becomes the z axis: the largest component stays, the others are sheared off.
-        let mut corners = [[0.0; WIDTH]; 9];
+    fn may_meet(&self, triangles: &Triangles) -> u32 {
         let [x, y, z] = self.axes;
-        for k in [0, 3, 6] {
-            for lane in 0..WIDTH {
-                let at =
-                    |axis: usize| f64::from(triangles.corners[k + axis][lane]) - self.origin[axis];
-                let height = at(z);
-                corners[k][lane] = at(x) - self.shear[0] * height;
-                corners[k + 1][lane] = at(y) - self.shear[1] * height;
-                corners[k + 2][lane] = height;
-            }
+        let blur = Vec4::splat(self.blur);
+        let shear = self.shear.map(|shear| Vec4::splat(shear as f32));
+        let corner = |k: usize| {
+            let at = |axis: usize| Vec4::from(triangles.corners[k + axis]) - self.near[axis];
+            let height = at(z);
+            [at(x) - shear[0] * height, at(y) - shear[1] * height]
+        };
+        let [a, b, c] = [0, 3, 6].map(corner);
+        let across = |p: [Vec4; 2], q: [Vec4; 2]| p[0] * q[1] - p[1] * q[0];
+        let (u, v, w) = (across(c, b), across(a, c), across(b, a));
+        let largest = |p: [Vec4; 2]| p[0].abs().max(p[1].abs());
+        // Each factor is off by `blur`, each product by 2^-24, and so is their difference.
+        let r = largest(a).max(largest(b)).max(largest(c)) + blur;
+        let error = r * r * (8.0 * f32::EPSILON) + 6.0 * r * blur + f32::MIN_POSITIVE;
+        let (low, high) = (u.min(v).min(w), u.max(v).max(w));
+        !(low.cmplt(-error) & high.cmpgt(error)).bitmask() & ((1 << WIDTH) - 1)
+    }
+
+    /// When the ray meets a triangle; infinity if it does not.
+    #[inline]
+    fn meet(&self, triangles: &Triangles, lane: usize) -> f64 {
+        // The ray becomes the z axis: the largest component stays, the others are sheared off.
+        let [x, y, z] = self.axes;
+        let corner = |k: usize| {
+            let at = |axis: usize| f64::from(triangles.corners[k + axis][lane]) - self.origin[axis];
+            let height = at(z);
+            [
+                at(x) - self.shear[0] * height,
+                at(y) - self.shear[1] * height,
+                height,
+            ]
+        };
+        let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = [0, 3, 6].map(corner);
+        // The same products for both triangles at an edge, so that they agree about it.
+        let u = cx * by - cy * bx;
+        let v = ax * cy - ay * cx;
+        let w = bx * ay - by * ax;
+        let mixed = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
+        let area = u + v + w;
+        let time = (u * az + v * bz + w * cz) / area * self.forward;
+        if !mixed && area != 0.0 && time >= 0.0 {
+            time
+        } else {
+            f64::INFINITY
         }
-        let mut times = [f64::INFINITY; WIDTH];
-        for lane in 0..WIDTH {
-            let [ax, ay, az, bx, by, bz, cx, cy, cz] = corners.map(|column| column[lane]);
-            // The same products for both triangles at an edge, so that they agree about it.
-            let u = cx * by - cy * bx;
-            let v = ax * cy - ay * cx;
-            let w = bx * ay - by * ax;
-            let mixed = ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0));
-            let area = u + v + w;
-            let time = (u * az + v * bz + w * cz) / area * self.forward;
-            let hit = !mixed & (area != 0.0) & (time >= 0.0);
-            times[lane] = if hit { time } else { f64::INFINITY };
-        }
-        times
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_meshes;
+    use crate::{Mesh, test_meshes};
+    use alloc::vec::Vec;
 
     #[test]
     fn rays_find_the_nearest_face_of_a_cube() {
@@ -257,5 +314,61 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// The nearest time of all triangles, each asked about in f64.
+    fn slowly(bvh: &Bvh, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let ray = Ray::new(origin, direction, bvh.bounds())?;
+        let times = bvh.triangles.iter();
+        let times = times.flat_map(|four| (0..WIDTH).map(|lane| ray.meet(four, lane)));
+        let nearest = times.fold(f64::INFINITY, f64::min);
+        (nearest < f64::INFINITY).then_some(nearest * ray.scale)
+    }
+
+    /// Sizes at which products overflow or vanish in f32, far places, and directions along walls.
+    #[test]
+    fn what_is_ruled_out_in_f32_is_no_hit() {
+        let ball = test_meshes::sphere(14);
+        let mut hits = 0;
+        for (size, away) in [
+            (1.0, 0.0),
+            (1.0, 1e3),
+            (1e-2, 1e3),
+            (1e-30, 0.0),
+            (1e-40, 0.0),
+            (1e15, 1e19),
+            (1e30, 0.0),
+            (1e38, 0.0),
+        ] {
+            let at = |v: &Vec3| (v.as_dvec3() * size + away).as_vec3();
+            let vertices: Vec<Vec3> = ball.vertices().iter().map(at).collect();
+            let bvh = Bvh::build(&Mesh::new(vertices, ball.triangles().to_vec()).unwrap());
+            let middle = DVec3::splat(away);
+            let features = ball.edges().iter().step_by(7).map(|edge| {
+                let [a, b] = edge.map(|v| at(&ball.vertices()[v as usize]).as_dvec3());
+                [a, 0.5 * (a + b)]
+            });
+            for target in features.flatten() {
+                for far in [0.01, 1.0, 30.0, 1e5, 1e12, 1e200] {
+                    let origin = middle + DVec3::new(0.3, 0.2, 1.0) * far * size;
+                    let to = target - origin;
+                    let along = to / to.length();
+                    for direction in [
+                        to,
+                        along * DVec3::new(1.0, 0.0, 1.0),
+                        along * DVec3::new(1.0, 1e-22, 1e-30),
+                        -to,
+                    ] {
+                        // Through the target also where it is not in that direction.
+                        for origin in [origin, target - far * size * direction.normalize()] {
+                            let found = bvh.ray(origin, direction).map(|hit| hit.t);
+                            assert_eq!(found, slowly(&bvh, origin, direction), "{size} {far}");
+                            hits += usize::from(found.is_some());
+                        }
+                    }
+                }
+            }
+        }
+        assert!(hits > 10_000, "{hits}");
     }
 }
