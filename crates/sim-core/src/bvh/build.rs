@@ -2,10 +2,10 @@
 
 use alloc::{boxed::Box, vec, vec::Vec};
 use core::array;
-use glam::{Mat4, Vec3A, Vec4};
+use glam::{Mat4, Vec4};
 
 use super::cuboid::Cuboid;
-use super::grid::Grid;
+use super::grid::{Grid, Sorted};
 use super::short::SHORT;
 use super::slabs::{self, Below, Slabs};
 use super::split::{Bounds, HALVE_FROM, Items, Run};
@@ -21,7 +21,8 @@ const FEW: u32 = 32;
 pub(super) fn build(mesh: &Mesh) -> Bvh {
     let count = mesh.triangles().len();
     // With a fourth coordinate each is one load.
-    let vertices: Vec<Vec4> = mesh.vertices().iter().map(|v| v.extend(0.0)).collect();
+    let vertices = mesh.vertices().iter();
+    let vertices: Vec<Vec4> = vertices.map(|v| v.extend(Bounds::ONE)).collect();
     let mut grid = Grid::of(mesh, &vertices);
     let mut items = Items::default();
     let mut tree = Tree::with_capacity(count);
@@ -49,26 +50,27 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
         // Depth first, so no other triangles wait in `items` when it is filled anew.
         let few = run.len() <= FEW_CELLS || run.count <= FEW || level >= HALVE_FROM;
         if run.of_cells && few {
-            run = grid.gather(mesh, &vertices, &run, &mut items);
+            run = grid.gather(&vertices, &run, &mut items);
         }
         depth = depth.max(level + 1);
         let leaf = run.count <= WIDTH as u32;
         let index = tree.nodes.len() as u32;
         if run.parent != u32::MAX {
             let code = index | if leaf { LEAF } else { 0 };
-            tree.adopt(run.parent, usize::from(run.lane), code, &run.bounds);
+            tree.nodes[run.parent as usize].child[usize::from(run.lane)] = code;
         }
         if leaf {
-            tree.push_leaf(mesh, &vertices, items.of(&run));
+            tree.push_leaf(&grid.sorted, &vertices, items.of(&run));
         } else if !run.of_cells && run.count as usize <= SHORT {
             tree.push_node();
-            let mut lane = 0;
+            let (mut bounds, mut child, mut count) = ([Bounds::EMPTY; WIDTH], [0; WIDTH], 0);
             items.leaves(&run, |items| {
-                let code = tree.nodes.len() as u32 | LEAF;
-                let bounds = tree.push_leaf(mesh, &vertices, items);
-                tree.adopt(index, lane, code, &bounds);
-                lane += 1;
+                child[count] = tree.nodes.len() as u32 | LEAF;
+                bounds[count] = tree.push_leaf(&grid.sorted, &vertices, items);
+                count += 1;
             });
+            tree.nodes[index as usize].child = child;
+            tree.adopt(index, &bounds, count);
             tree.close(index);
             depth = depth.max(level + 2);
         } else {
@@ -76,16 +78,20 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
             let first = runs.len();
             open.push((index, first));
             runs.push(run);
-            if run.of_cells {
-                grid.divide(&mut runs);
+            let of = if run.of_cells {
+                &mut grid.cells
             } else {
-                items.divide(&mut runs, |_| 1);
-            }
+                &mut items
+            };
+            of.divide(&mut runs);
+            let mut bounds = [Bounds::EMPTY; WIDTH];
             for (lane, child) in runs[first..].iter_mut().enumerate() {
                 child.parent = index;
                 child.lane = lane as u8;
                 child.level = run.level + 1;
+                bounds[lane] = child.bounds;
             }
+            tree.adopt(index, &bounds, runs.len() - first);
         }
         while let Some((index, _)) = open.pop_if(|&mut (_, waiting)| waiting == runs.len()) {
             tree.close(index);
@@ -124,13 +130,17 @@ impl Tree {
         }
     }
 
+    /// Gives a node the boxes of its children.
     #[inline]
-    fn adopt(&mut self, parent: u32, lane: usize, code: u32, bounds: &Bounds) {
+    fn adopt(&mut self, parent: u32, children: &[Bounds; WIDTH], count: usize) {
+        let axes = |of: fn(&Bounds) -> Vec4| {
+            let [a, b, c, d] = children.each_ref().map(of);
+            let columns = Mat4::from_cols(a, b, c, d).transpose();
+            [columns.x_axis, columns.y_axis, columns.z_axis]
+        };
         let parent = &mut self.nodes[parent as usize];
-        let (min, max) = (Vec3A::from_vec4(bounds.min), Vec3A::from_vec4(bounds.max));
-        parent.boxes.set(lane, min, max);
-        parent.child[lane] = code;
-        parent.count += 1;
+        parent.boxes = Boxes::between(axes(|child| child.min), axes(|child| child.max), count);
+        parent.count = count as u32;
     }
 
     fn push_node(&mut self) {
@@ -158,10 +168,10 @@ impl Tree {
     }
 
     #[inline]
-    fn push_leaf(&mut self, mesh: &Mesh, vertices: &[Vec4], items: &[Bounds]) -> Bounds {
+    fn push_leaf(&mut self, sorted: &[Sorted], vertices: &[Vec4], items: &[Bounds]) -> Bounds {
         // Lanes that hold nothing repeat the last one, so that they widen nothing.
         let of_lane = array::from_fn(|lane| items[lane.min(items.len() - 1)]);
-        let leaf = leaf(mesh, vertices, &of_lane);
+        let leaf = leaf(sorted, vertices, &of_lane);
         let place = self.triangles.len() as u32;
         self.nodes.push(Node {
             boxes: leaf.boxes(items.len()),
@@ -179,36 +189,30 @@ impl Tree {
 
 /// The triangles of a leaf side by side.
 #[inline]
-fn leaf(mesh: &Mesh, vertices: &[Vec4], items: &[Bounds; WIDTH]) -> Triangles {
-    let face = array::from_fn(|lane| items[lane].number());
-    let of_lane = face.map(|face: u32| mesh.triangles()[face as usize]);
+fn leaf(sorted: &[Sorted], vertices: &[Vec4], items: &[Bounds; WIDTH]) -> Triangles {
+    let of_lane = items.each_ref().map(|item| sorted[item.number() as usize]);
     let mut corners = [[0.0; WIDTH]; 9];
     for k in 0..3 {
-        let [a, b, c, d] = of_lane.map(|corners| vertices[corners[k] as usize]);
+        let [a, b, c, d] = of_lane.map(|triangle| vertices[triangle.corners[k] as usize]);
         let columns = Mat4::from_cols(a, b, c, d).transpose();
         corners[3 * k] = columns.x_axis.to_array();
         corners[3 * k + 1] = columns.y_axis.to_array();
         corners[3 * k + 2] = columns.z_axis.to_array();
     }
-    Triangles { corners, face }
+    Triangles {
+        corners,
+        face: of_lane.map(|triangle| triangle.face),
+    }
 }
 
 impl Triangles {
     /// The boxes of the first `count` triangles.
     #[inline]
     fn boxes(&self, count: usize) -> Boxes {
-        let mut boxes = Boxes::EMPTY;
-        // Infinite in lanes that hold nothing.
-        let beyond = array::from_fn(|lane| if lane < count { 0.0 } else { f32::INFINITY });
-        let beyond = Vec4::from_array(beyond);
-        for axis in 0..3 {
-            let [a, b, c] = [0, 3, 6].map(|k| Vec4::from_array(self.corners[k + axis]));
-            let (min, max) = (a.min(b).min(c), a.max(b).max(c));
-            let centre = 0.5 * min + 0.5 * max;
-            let half = (max - centre).max(centre - min) * (1.0 + 2.0 * f32::EPSILON);
-            boxes.centre[axis] = centre.to_array();
-            boxes.half[axis] = (half - beyond).to_array();
-        }
-        boxes
+        let corners =
+            [0, 1, 2].map(|axis| [0, 3, 6].map(|k| Vec4::from_array(self.corners[k + axis])));
+        let min = corners.map(|[a, b, c]| a.min(b).min(c));
+        let max = corners.map(|[a, b, c]| a.max(b).max(c));
+        Boxes::between(min, max, count)
     }
 }

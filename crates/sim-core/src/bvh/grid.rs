@@ -15,10 +15,17 @@ const PER_CELL: f64 = 12.0;
 
 /// The cells that hold triangles, as items, and the triangles of each.
 pub(super) struct Grid {
+    /// The number of a cell is the place of its first triangle in `sorted`.
     pub(super) cells: Items,
-    /// Where the triangles of a cell end in `faces`, those of the first cell coming first.
-    ends: Vec<u32>,
-    faces: Vec<u32>,
+    pub(super) sorted: Vec<Sorted>,
+}
+
+/// Corners of a triangle, and its index in the mesh. Those of a cell lie side by side, so the builder
+/// reads them from there rather than from all over the mesh.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Sorted {
+    pub(super) corners: [u32; 3],
+    pub(super) face: u32,
 }
 
 impl Grid {
@@ -28,73 +35,52 @@ impl Grid {
         // Numbers of cells from 1, in the order in which triangles come; 0 for none yet.
         let mut numbers = vec![0u32; frame.cells()];
         let mut cells: Vec<Bounds> = Vec::with_capacity(count / 4);
-        let mut ends: Vec<u32> = Vec::with_capacity(count / 4);
         let mut of_face: Vec<u32> = Vec::with_capacity(count);
         of_face.extend(mesh.triangles().iter().map(|&corners| {
             let bounds = bounds(vertices, corners);
             let number = &mut numbers[frame.cell(&bounds)];
             if *number == 0 {
-                cells.push(Bounds::EMPTY);
-                ends.push(0);
+                cells.push(bounds);
                 *number = cells.len() as u32;
+                return *number - 1;
             }
-            let cell = *number as usize - 1;
-            cells[cell] = cells[cell].union(bounds);
-            ends[cell] += 1;
-            cell as u32
+            let cell = &mut cells[*number as usize - 1];
+            let count = cell.count() + 1;
+            *cell = cell.union(bounds);
+            cell.set_count(count);
+            *number - 1
         }));
-        for (number, cell) in cells.iter_mut().enumerate() {
-            cell.set_number(number as u32);
-        }
-        // Counts become starts, and these ends as triangles come in.
+        // Where the next triangle of each cell goes.
         let mut start = 0;
-        for end in &mut ends {
-            start += core::mem::replace(end, start);
+        let mut next: Vec<u32> = Vec::with_capacity(cells.len());
+        for cell in &mut cells {
+            cell.set_number(start);
+            next.push(start);
+            start += cell.count();
         }
-        let mut faces = vec![0; count];
-        for (face, &cell) in of_face.iter().enumerate() {
-            let end = &mut ends[cell as usize];
-            faces[*end as usize] = face as u32;
-            *end += 1;
+        let mut sorted = vec![Sorted::default(); count];
+        for ((face, &corners), &cell) in (0..).zip(mesh.triangles()).zip(&of_face) {
+            let next = &mut next[cell as usize];
+            sorted[*next as usize] = Sorted { corners, face };
+            *next += 1;
         }
         let mut cells = Items {
             bounds: [cells, Vec::new()],
         };
         cells.mirror();
-        Grid { cells, ends, faces }
+        Grid { cells, sorted }
     }
 
-    fn faces(&self, cell: &Bounds) -> &[u32] {
-        let cell = cell.number() as usize;
-        let start = if cell == 0 { 0 } else { self.ends[cell - 1] };
-        &self.faces[start as usize..self.ends[cell] as usize]
-    }
-
-    /// Cuts a run of cells, see [`Items::divide`].
-    pub(super) fn divide(&mut self, runs: &mut Vec<Run>) {
-        let ends = &self.ends[..];
-        self.cells.divide(runs, |cell| {
-            let cell = cell.number() as usize;
-            let start = if cell == 0 { 0 } else { ends[cell - 1] };
-            ends[cell] - start
-        })
-    }
-
-    /// The triangles of a run of cells, as items.
-    pub(super) fn gather(
-        &self,
-        mesh: &Mesh,
-        vertices: &[Vec4],
-        run: &Run,
-        items: &mut Items,
-    ) -> Run {
+    /// The triangles of a run of cells, as items whose numbers are their places in `sorted`.
+    pub(super) fn gather(&self, vertices: &[Vec4], run: &Run, items: &mut Items) -> Run {
         let triangles = &mut items.bounds[0];
         triangles.clear();
         for cell in self.cells.of(run) {
-            let faces = self.faces(cell).iter();
-            triangles.extend(faces.map(|&face| {
-                let mut bounds = bounds(vertices, mesh.triangles()[face as usize]);
-                bounds.set_number(face);
+            let places = cell.number()..cell.number() + cell.count();
+            let sorted = &self.sorted[places.start as usize..places.end as usize];
+            triangles.extend(places.zip(sorted).map(|(place, triangle)| {
+                let mut bounds = bounds(vertices, triangle.corners);
+                bounds.set_number(place);
                 bounds
             }));
         }

@@ -1,6 +1,7 @@
 //! Nodes and leaves: four boxes side by side, and their contents.
 
-use glam::{Vec3, Vec3A};
+use core::array;
+use glam::{BVec4A, Vec3, Vec4};
 
 use crate::Aabb;
 
@@ -30,15 +31,21 @@ impl Boxes {
         half: [[f32::NEG_INFINITY; WIDTH]; 3],
     };
 
-    pub(crate) fn set(&mut self, lane: usize, min: Vec3A, max: Vec3A) {
-        let centre = 0.5 * min + 0.5 * max;
-        // Either difference is rounded once, the factor makes up for it.
-        let half = (max - centre).max(centre - min) * (1.0 + 2.0 * f32::EPSILON);
-        let (centre, half) = (centre.to_array(), half.to_array());
+    /// From their ends by axis; only the first `count` are boxes.
+    #[inline]
+    pub(crate) fn between(min: [Vec4; 3], max: [Vec4; 3], count: usize) -> Boxes {
+        let mut boxes = Boxes::EMPTY;
+        let used = array::from_fn(|lane| lane < count);
+        let used = BVec4A::from_array(used);
         for axis in 0..3 {
-            self.centre[axis][lane] = centre[axis];
-            self.half[axis][lane] = half[axis];
+            let (min, max) = (min[axis], max[axis]);
+            let centre = 0.5 * min + 0.5 * max;
+            // Either difference is rounded once, the factor makes up for it.
+            let half = (max - centre).max(centre - min) * (1.0 + 2.0 * f32::EPSILON);
+            boxes.centre[axis] = Vec4::select(used, centre, Vec4::ZERO).to_array();
+            boxes.half[axis] = Vec4::select(used, half, Vec4::NEG_INFINITY).to_array();
         }
+        boxes
     }
 
     /// The box of a lane that is not empty, rounded outward once more.

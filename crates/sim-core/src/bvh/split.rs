@@ -18,7 +18,8 @@ const FEW: usize = 64;
 /// mesh has fewer than 4^16 triangles, so the tree stays within `MAX_DEPTH`.
 pub(super) const HALVE_FROM: usize = MAX_DEPTH - 16;
 
-/// A box in two SIMD registers, and in the last lane the number of what is in it.
+/// A box in two SIMD registers, and in their last lanes how many triangles are in it, and the number of
+/// what it is the box of.
 #[derive(Clone, Copy)]
 pub(super) struct Bounds {
     pub(super) min: Vec4,
@@ -46,7 +47,21 @@ impl Bounds {
             .fold(Bounds::EMPTY, |all, &item| all.union(item))
     }
 
-    /// The number as the float of the same bits, past those that processors are slow with.
+    /// The last lane of a vertex, and so of the box of a triangle: that is one triangle.
+    pub(super) const ONE: f32 = f32::from_bits(f32::MIN_POSITIVE.to_bits() + 1);
+
+    /// The count as the float of the same bits, past those that processors are slow with.
+    #[inline]
+    pub(super) fn set_count(&mut self, count: u32) {
+        self.min.w = f32::from_bits(count + f32::MIN_POSITIVE.to_bits());
+    }
+
+    #[inline]
+    pub(super) fn count(&self) -> u32 {
+        self.min.w.to_bits() - f32::MIN_POSITIVE.to_bits()
+    }
+
+    /// The number likewise.
     #[inline]
     pub(super) fn set_number(&mut self, number: u32) {
         self.max.w = f32::from_bits(number + f32::MIN_POSITIVE.to_bits());
@@ -131,14 +146,13 @@ impl Items {
     }
 
     /// Cuts the last of some runs into two to four, none of them empty, reordering items. It has
-    /// more than four triangles and more than one item. `count` tells how many triangles are in an
-    /// item.
-    pub(super) fn divide(&mut self, runs: &mut Vec<Run>, count: impl Fn(&Bounds) -> u32) {
+    /// more than four triangles and more than one item.
+    pub(super) fn divide(&mut self, runs: &mut Vec<Run>) {
         let first = runs.len() - 1;
         let mut costs = [f32::INFINITY; WIDTH];
         let mut dearest = 0;
         for part in 1..WIDTH {
-            let (left, right) = self.split(&runs[first + dearest], &count);
+            let (left, right) = self.split(&runs[first + dearest]);
             // Below the level of halving, the longest run has to go first.
             let cost = |run: &Run| {
                 if run.count <= WIDTH as u32 || run.len() == 1 {
@@ -166,7 +180,7 @@ impl Items {
 
     /// Cuts a run of two or more in two, along the axis on which centres lie farthest apart.
     #[inline]
-    fn split(&mut self, run: &Run, count: &impl Fn(&Bounds) -> u32) -> (Run, Run) {
+    fn split(&mut self, run: &Run) -> (Run, Run) {
         if run.len() == run.count as usize && run.len() <= SHORT {
             return self.split_short(run);
         }
@@ -174,7 +188,7 @@ impl Items {
         let items = self.of(run);
         let Centres { axis, low, high } = Centres::of(items);
         if level >= HALVE_FROM || !(high > low && high - low < f32::INFINITY) {
-            return self.halve(run, count);
+            return self.halve(run);
         }
         if run.len() == run.count as usize && run.len() <= FEW {
             // One at least lies beyond.
@@ -182,8 +196,8 @@ impl Items {
             let at = self.partition(run, |item| item.along(axis) <= middle);
             return self.parts(run, at - run.start);
         }
-        let Some(best) = best_plane(items, run.count, axis, low, high, count) else {
-            return self.halve(run, count);
+        let Some(best) = best_plane(items, run.count, axis, low, high) else {
+            return self.halve(run);
         };
         let at = self.partition(run, |item| {
             place(item, axis, low, best.scale) <= best.last_left
@@ -249,13 +263,13 @@ impl Items {
 
     /// Cuts a run where it is whose centres no plane separates.
     #[cold]
-    fn halve(&self, run: &Run, count: &impl Fn(&Bounds) -> u32) -> (Run, Run) {
+    fn halve(&self, run: &Run) -> (Run, Run) {
         let middle = run.start + run.len() as u32 / 2;
         let part = |start, end| {
             let part = Run { start, end, ..*run };
             let items = self.of(&part).iter();
             Run {
-                count: items.clone().map(count).sum(),
+                count: items.map(Bounds::count).sum(),
                 bounds: Bounds::around(self.of(&part)),
                 ..part
             }
@@ -347,14 +361,7 @@ fn place(item: &Bounds, axis: usize, origin: f32, scale: f32) -> f32 {
 /// Planes across the other two axes as well, tried, took three times as long and saved queries no
 /// more than a few tiles in a hundred.
 #[inline]
-fn best_plane(
-    items: &[Bounds],
-    count: u32,
-    axis: usize,
-    low: f32,
-    high: f32,
-    count_of: &impl Fn(&Bounds) -> u32,
-) -> Option<Plane> {
+fn best_plane(items: &[Bounds], count: u32, axis: usize, low: f32, high: f32) -> Option<Plane> {
     // A little less than the bins, so that the highest centre still lies in the last one.
     let scale = BINS as f32 * (1.0 - 1e-6) / (high - low);
     let mut bins = [Bounds::EMPTY; BINS];
@@ -362,7 +369,7 @@ fn best_plane(
     for item in items {
         let bin = whole(place(item, axis, low, scale)) as usize & (BINS - 1);
         bins[bin] = bins[bin].union(*item);
-        counts[bin] += count_of(item);
+        counts[bin] += item.count();
     }
     // What lies to the right of each plane, swept from the right.
     let mut right = [Bounds::EMPTY; BINS];

@@ -234,7 +234,7 @@ impl InLanes for StayApart<'_> {
 mod tests {
     use super::*;
     use crate::{Mesh, test_meshes::cube, test_random::Random};
-    use glam::{DQuat, Vec3, Vec3A};
+    use glam::{DQuat, Vec3};
 
     /// When two boxes given as low and high corners begin to meet within the motion, as a fraction.
     fn exact(
@@ -276,17 +276,17 @@ mod tests {
             );
             let tree = Bvh::build(&size.unwrap());
             let tile = |random: &mut Random| {
-                let mut boxes = Boxes::EMPTY;
-                let corners: [[[i64; 3]; 2]; WIDTH] = core::array::from_fn(|lane| {
+                let corners: [[[i64; 3]; 2]; WIDTH] = core::array::from_fn(|_| {
                     let (p, q) = (random.three(most), random.three(most));
                     let low: [i64; 3] = core::array::from_fn(|i| p[i].min(q[i]));
                     let high: [i64; 3] = core::array::from_fn(|i| p[i].max(q[i]));
-                    let float =
-                        |c: [i64; 3]| Vec3A::from_array(c.map(|x| (x as f64 * unit) as f32));
-                    boxes.set(lane, float(low), float(high));
                     [low, high]
                 });
-                (boxes, corners)
+                let [low, high] = [0, 1].map(|end| {
+                    let float = |x: i64| (x as f64 * unit) as f32;
+                    [0, 1, 2].map(|axis| corners.map(|of| float(of[end][axis])).into())
+                });
+                (Boxes::between(low, high, WIDTH), corners)
             };
             let ((first, s), (second, t)) = (tile(&mut random), tile(&mut random));
             let (offset, mut motion) = (random.three(most), random.three(4 * most));
