@@ -326,7 +326,14 @@ impl Force {
         match *self {
             Force::Push { point, .. } => Some(point),
             Force::Anchor { point, .. } => point,
-            _ => None,
+            Force::Gravity { .. }
+            | Force::LinearDrag { .. }
+            | Force::QuadraticDrag { .. }
+            | Force::Spring { .. }
+            | Force::Attraction { .. }
+            | Force::Gravitation { .. }
+            | Force::Body { .. }
+            | Force::Pair { .. } => None,
         }
     }
 
@@ -334,7 +341,15 @@ impl Force {
     pub fn points(&self) -> Option<[DVec3; 2]> {
         match *self {
             Force::Spring { points, .. } => points,
-            _ => None,
+            Force::Gravity { .. }
+            | Force::LinearDrag { .. }
+            | Force::QuadraticDrag { .. }
+            | Force::Anchor { .. }
+            | Force::Push { .. }
+            | Force::Attraction { .. }
+            | Force::Gravitation { .. }
+            | Force::Body { .. }
+            | Force::Pair { .. } => None,
         }
     }
 

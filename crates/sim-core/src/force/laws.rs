@@ -41,7 +41,10 @@ impl Force {
                 centre, strength, ..
             } => -at.mass * *strength * inverse_square(at.position - *centre),
             Force::Body { law, .. } => law.0.force(at),
-            _ => DVec3::ZERO,
+            Force::Gravity { .. }
+            | Force::Spring { .. }
+            | Force::Gravitation { .. }
+            | Force::Pair { .. } => DVec3::ZERO,
         }
     }
 
@@ -77,7 +80,11 @@ impl Force {
                 velocity: DMat3::ZERO,
             },
             Force::Body { law, .. } => law.0.jacobians(at),
-            _ => Jacobians::ZERO,
+            Force::Gravity { .. }
+            | Force::Push { .. }
+            | Force::Spring { .. }
+            | Force::Gravitation { .. }
+            | Force::Pair { .. } => Jacobians::ZERO,
         }
     }
 
@@ -100,7 +107,11 @@ impl Force {
                 centre, strength, ..
             } => Some(-at.mass * strength / length(at.position - *centre)),
             Force::Body { law, .. } => law.0.potential(at),
-            _ => None,
+            Force::LinearDrag { .. }
+            | Force::QuadraticDrag { .. }
+            | Force::Spring { .. }
+            | Force::Gravitation { .. }
+            | Force::Pair { .. } => None,
         }
     }
 
@@ -121,7 +132,13 @@ impl Force {
                 constant * at.mass[0] * at.mass[1] * inverse_square(at.position)
             }
             Force::Pair { law, .. } => law.0.force(at),
-            _ => DVec3::ZERO,
+            Force::Gravity { .. }
+            | Force::LinearDrag { .. }
+            | Force::QuadraticDrag { .. }
+            | Force::Anchor { .. }
+            | Force::Push { .. }
+            | Force::Attraction { .. }
+            | Force::Body { .. } => DVec3::ZERO,
         }
     }
 
@@ -146,7 +163,13 @@ impl Force {
                 velocity: DMat3::ZERO,
             },
             Force::Pair { law, .. } => law.0.jacobians(at),
-            _ => Jacobians::ZERO,
+            Force::Gravity { .. }
+            | Force::LinearDrag { .. }
+            | Force::QuadraticDrag { .. }
+            | Force::Anchor { .. }
+            | Force::Push { .. }
+            | Force::Attraction { .. }
+            | Force::Body { .. } => Jacobians::ZERO,
         }
     }
 
@@ -199,7 +222,13 @@ impl Force {
                 Some(-constant * at.mass[0] * at.mass[1] / length(at.position))
             }
             Force::Pair { law, .. } => law.0.potential(at),
-            _ => None,
+            Force::Gravity { .. }
+            | Force::LinearDrag { .. }
+            | Force::QuadraticDrag { .. }
+            | Force::Anchor { .. }
+            | Force::Push { .. }
+            | Force::Attraction { .. }
+            | Force::Body { .. } => None,
         }
     }
 }

@@ -243,7 +243,13 @@ fn is_internal(world: &World, force: &Force) -> bool {
         Force::Spring { .. } | Force::Pair { .. } => {
             force.bodies().all(|i| world.kind(i).is_movable())
         }
-        _ => false,
+        Force::Gravity { .. }
+        | Force::LinearDrag { .. }
+        | Force::QuadraticDrag { .. }
+        | Force::Anchor { .. }
+        | Force::Push { .. }
+        | Force::Attraction { .. }
+        | Force::Body { .. } => false,
     }
 }
 
@@ -267,7 +273,13 @@ fn drives(world: &World, force: &Force) -> bool {
     match force {
         Force::Body { .. } | Force::Pair { .. } => true,
         Force::Spring { bodies, .. } => bodies.iter().any(|&i| is_driven(world, i)),
-        _ => false,
+        Force::Gravity { .. }
+        | Force::LinearDrag { .. }
+        | Force::QuadraticDrag { .. }
+        | Force::Anchor { .. }
+        | Force::Push { .. }
+        | Force::Attraction { .. }
+        | Force::Gravitation { .. } => false,
     }
 }
 

@@ -35,7 +35,13 @@ impl Session {
                     self.add_spring(from, to, lines);
                 }
                 Force::Attraction { centre, .. } => self.add_cross(centre, lines),
-                _ => {}
+                Force::Gravity { .. }
+                | Force::LinearDrag { .. }
+                | Force::QuadraticDrag { .. }
+                | Force::Push { .. }
+                | Force::Gravitation { .. }
+                | Force::Body { .. }
+                | Force::Pair { .. } => {}
             }
         }
     }

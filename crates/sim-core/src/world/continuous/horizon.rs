@@ -178,7 +178,12 @@ impl Scene<'_> {
             Force::Pair { bodies: pair, .. } => {
                 pair.is_none_or(|[first, _]| bodies.contains(&first))
             }
-            _ => false,
+            Force::Gravity { .. }
+            | Force::LinearDrag { .. }
+            | Force::QuadraticDrag { .. }
+            | Force::Anchor { .. }
+            | Force::Spring { .. }
+            | Force::Push { .. } => false,
         })
     }
 
