@@ -183,7 +183,6 @@ impl Ray {
     /// When the ray enters four boxes, from `near` on and rounded down; infinity where it does not before
     /// `leave`.
     #[inline]
-    #[expect(clippy::needless_range_loop, reason = "lanes of several columns")]
     fn enter(&self, boxes: &Boxes, leave: f32) -> [f32; WIDTH] {
         let (mut enter, mut leave) = ([0.0_f32; WIDTH], [leave; WIDTH]);
         for axis in 0..3 {

@@ -86,7 +86,10 @@ fn apart(first: Placed<'_>, second: Placed<'_>, within: f64) -> Option<Hit> {
                 parts: [None; 2],
             })
         }
-        _ => apart(second, first, within).map(Hit::turned),
+        (Form::Sphere(_), Form::Mesh(_))
+        | (Form::Mesh(_) | Form::Sphere(_), Form::HalfSpace(_)) => {
+            apart(second, first, within).map(Hit::turned)
+        }
     }
 }
 
@@ -111,7 +114,8 @@ fn shared_point(first: Placed<'_>, second: Placed<'_>) -> DVec3 {
         }
         // What reaches farthest into it.
         (Form::HalfSpace(normal), other) => second.position + reach(other, normal).1,
-        _ => shared_point(second, first),
+        (Form::Sphere(_), Form::Mesh(_))
+        | (Form::Mesh(_) | Form::Sphere(_), Form::HalfSpace(_)) => shared_point(second, first),
     }
 }
 
