@@ -83,7 +83,7 @@ pub struct TurningTouch {
     pub distance: f64,
     /// No more than this, m, is a contact: 2^-46 of sizes, distance and way together. A greater distance
     /// tells that the search has ended after 2^20 pairs: until then they are apart. It takes things that whirl
-    /// within each other's reach for hundreds of turns.
+    /// within each other's reach for many thousands of turns.
     pub near: f64,
     /// The points nearest each other at that time, of the first shape and of the second, as seen from the
     /// first one's centre of mass, m.
@@ -108,7 +108,8 @@ pub struct Effort {
 /// Roundings of 2^-53 in which two surfaces touch; placing them is right to 16, and certificates keep 32.
 pub const NEAR: f64 = 128.0;
 
-/// No search that others may judge looks at more pairs of triangles, or at boxes again: it stops where it is, which is no later than a contact.
+/// No search that others may judge looks at more pairs of triangles, or at boxes again: it stops where it is, which is
+/// no later than a contact.
 const MOST: u32 = 1 << 20;
 
 /// The first contact within `duration`, s; `None` proves that there is none.
