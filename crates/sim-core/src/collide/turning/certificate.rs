@@ -26,6 +26,12 @@ pub(super) struct Margin {
 }
 
 impl View {
+    /// How long it takes two boxes at least to move past each other by as much as they extend, s.
+    pub(super) fn passing(&self, [a, b]: [&Boxed; 2]) -> f64 {
+        let size = a.half.length() + a.radius + b.half.length() + b.radius;
+        size / self.margin([a.farthest, b.farthest]).speed
+    }
+
     /// How long two boxes are certainly apart, s from here; 0 where nothing is known.
     pub(super) fn boxes_apart(
         &self,
@@ -39,7 +45,10 @@ impl View {
             self.velocity + self.second.spin.cross(placed) - self.first.spin.cross(a.centre);
         let margin = self.margin([a.farthest, b.farthest + b.radius + a.radius]);
         let bend = self.first.second * a.farthest + self.second.second * b.farthest;
-        let mut lasts: f64 = 0.0;
+        // However they turn they stay within balls.
+        let balls = a.farthest + a.radius + b.farthest + b.radius;
+        let course = [self.offset, self.velocity, self.acceleration];
+        let mut lasts = balls_part(course, balls, margin, only);
         let mut along = |direction: &Direction, is_oriented: bool| {
             let n = direction.along;
             let (height, reach) = (
@@ -83,17 +92,37 @@ pub(super) fn balls_apart(a: &Moving<'_>, b: &Moving<'_>, only: Option<DVec3>) -
         root.farthest + root.radius
     };
     let balls = reach(a) + reach(b);
-    let offset = b.position - a.position;
+    let course = [
+        b.position - a.position,
+        b.velocity - a.velocity,
+        b.acceleration - a.acceleration,
+    ];
+    let [size, speed, bend] = course.map(DVec3::length);
+    let margin = Margin {
+        size: size + balls,
+        speed,
+        bend,
+    };
+    balls_part(course, balls, margin, only)
+}
+
+/// For how long balls are certainly apart, of radii that add up to a sum, by the course of one centre as seen from the
+/// other one.
+fn balls_part(
+    [offset, velocity, acceleration]: [DVec3; 3],
+    balls: f64,
+    margin: Margin,
+    only: Option<DVec3>,
+) -> f64 {
     let Some(n) = only.or_else(|| offset.try_normalize()) else {
         return 0.0;
     };
-    let (velocity, acceleration) = (b.velocity - a.velocity, b.acceleration - a.acceleration);
-    let s = n.dot(offset) - balls - 32.0 * UNIT * (offset.length() + balls);
+    let s = n.dot(offset) - balls - 32.0 * UNIT * margin.size;
     if s.is_nan() || s <= 0.0 {
         return 0.0;
     }
-    let w = n.dot(velocity) - 32.0 * UNIT * velocity.length();
-    let q = n.dot(acceleration) - 64.0 * UNIT * acceleration.length();
+    let w = n.dot(velocity) - 32.0 * UNIT * margin.speed;
+    let q = n.dot(acceleration) - 64.0 * UNIT * margin.bend;
     root(s, w, q)
 }
 

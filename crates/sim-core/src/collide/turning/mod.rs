@@ -7,11 +7,13 @@
 //! boxes; `separation` has directions for sets of points: triangles, points, and boxes as a whole.
 //!
 //! A priority queue holds pairs of boxes and of triangles, each with the time until which it is certified. The
-//! search takes the pair with the least time: it splits boxes into pairs of their children, and certifies triangles
-//! anew from their places at that time. Every two triangles belong to one pair in the queue, or to
-//! one that was certified to the end. So no contact is before the least time in the queue: **a time of impact
-//! is never later than the first contact, and the answer "no contact" is proven.** Triangles nearer than
-//! [`NEAR`] roundings that neither move apart nor are certified to the end are a contact.
+//! search takes the pair with the least time and certifies it anew from its place at that time. Boxes for which that
+//! is not worth its price are split into pairs of their children, which are looked at until the boxes may have gone
+//! past each other; then the boxes come back instead, so that the cost follows what is near. Every two triangles belong
+//! at every time to one pair in the queue, or to one that was certified for longer. So no contact is before the least
+//! time in the queue: **a time of impact is never later than the first contact, and the answer "no contact" is
+//! proven.** Triangles nearer than [`NEAR`] roundings that neither move apart nor are certified to the end are a
+//! contact.
 //!
 //! Times come from poses at one time (`View`), in a frame at rest that then has the first shape's axes.
 //! All bounds are relative: the module has no constant length or time.
@@ -80,8 +82,8 @@ pub struct TurningTouch {
     /// How far apart they are then, m.
     pub distance: f64,
     /// No more than this, m, is a contact: 2^-46 of sizes, distance and way together. A greater distance
-    /// tells that the search has ended after 2^20 pairs of pieces: until then they are apart. It takes long
-    /// things that whirl within each other's reach for tens of turns.
+    /// tells that the search has ended after 2^20 pairs: until then they are apart. It takes things that whirl
+    /// within each other's reach for many thousands of turns.
     pub near: f64,
     /// The points nearest each other at that time, of the first shape and of the second, as seen from the
     /// first one's centre of mass, m.
@@ -106,7 +108,8 @@ pub struct Effort {
 /// Roundings of 2^-53 in which two surfaces touch; placing them is right to 16, and certificates keep 32.
 pub const NEAR: f64 = 128.0;
 
-/// No search that others may judge looks at more pairs of triangles: it stops where it is, which is no later than a contact.
+/// No search that others may judge looks at more pairs of triangles, or at boxes again: it stops where it is, which is
+/// no later than a contact.
 const MOST: u32 = 1 << 20;
 
 /// The first contact within `duration`, s; `None` proves that there is none.
@@ -136,7 +139,7 @@ pub(crate) struct Care {
     /// Roundings that are left of a gap where shapes stop that come from afar, beside those that certificates
     /// keep: what goes on from there is rounded once more.
     pub(crate) halt: f64,
-    /// Pairs of pieces that are looked at, at most.
+    /// Pairs of pieces that are looked at, and boxes that are again, at most.
     pub(crate) most: u32,
     /// Shapes that are no farther apart at the start than this times what is a contact lie on each other there, unless
     /// they part by more before they may be back.
@@ -197,9 +200,11 @@ impl Moving<'_> {
     }
 }
 
-/// A pair that is apart until a time.
+/// A pair that is apart until a time, and is looked at from there until another one: then it belongs to a pair of
+/// greater boxes again.
 struct Entry {
     time: f64,
+    until: f64,
     a: Item,
     b: Item,
 }
@@ -212,9 +217,9 @@ impl Entry {
             _ => item,
         };
         Entry {
-            time: self.time,
             a: open(self.a, &roots[0]),
             b: open(self.b, &roots[1]),
+            ..self
         }
     }
 }
@@ -268,6 +273,7 @@ fn search(
         only,
         care,
         effort,
+        returns: 0,
     };
     let (whole_a, whole_b) = (Item::whole(a), Item::whole(b));
     let roots = [Boxed::root(a), Boxed::root(b)];
@@ -278,7 +284,7 @@ fn search(
         if now == 0.0 && search.apart_to_end(&view, &view.directions(), &roots) {
             return None;
         }
-        match search.advance(&view, (whole_a, whole_b), hint) {
+        match search.advance(&view, (whole_a, whole_b), end, hint) {
             Next::Apart => return None,
             Next::Later(time, along) => (now, hint) = (time, Some(along)),
             Next::Contact(touch) => return Some(touch),
@@ -300,6 +306,8 @@ struct Search<'a, 'b> {
     only: Option<DVec3>,
     care: Care,
     effort: &'b mut Effort,
+    /// How often a pair of boxes has come back into the queue.
+    returns: u32,
 }
 
 /// What becomes of two sets.
@@ -319,6 +327,12 @@ impl Search<'_, '_> {
         View::new(self.bodies[0], self.bodies[1], time, self.end)
     }
 
+    /// Whether so many pairs have been looked at that the search ends where it is: boxes do not come back from then on,
+    /// so it gets to some pieces.
+    fn is_spent(&self) -> bool {
+        self.effort.pieces + self.returns >= self.care.most
+    }
+
     /// Whether the boxes around both shapes tell that they stay apart.
     fn apart_to_end(
         &mut self,
@@ -333,7 +347,13 @@ impl Search<'_, '_> {
 
     /// What becomes of two sets from the time of a view on. A direction in the world may be known that has kept them
     /// apart before.
-    fn advance(&mut self, view: &View, (a, b): (Item, Item), hint: Option<DVec3>) -> Next {
+    fn advance(
+        &mut self,
+        view: &View,
+        (a, b): (Item, Item),
+        end: f64,
+        hint: Option<DVec3>,
+    ) -> Next {
         self.effort.pieces += 1;
         let (first, second) = (Points::of(self.bodies[0], a), Points::of(self.bodies[1], b));
         let reach = if view.time == 0.0 {
@@ -349,7 +369,7 @@ impl Search<'_, '_> {
             return Next::Untold;
         }
         let until = view.time + gap.lasts;
-        if until >= self.end {
+        if until >= end {
             return Next::Apart;
         }
         // Without a proof for any time, and where they are near and come nearer.
@@ -357,7 +377,7 @@ impl Search<'_, '_> {
         // Nor do they part at the start by more than that before they may be back.
         let farthest = gap.distance + gap.parting.max(0.0) * gap.lasts;
         let is_lying = reach > 1.0 && farthest <= reach * gap.near;
-        match is_contact || is_lying || self.effort.pieces == self.care.most {
+        match is_contact || is_lying || self.is_spent() {
             true => Next::Contact(touch(view, &gap)),
             false => Next::Later(until, view.axes * gap.normal),
         }
@@ -378,48 +398,75 @@ impl Search<'_, '_> {
         let mut queue = BinaryHeap::new();
         queue.push(Entry {
             time: from,
+            until: self.end,
             a: first.0,
             b: first.1,
         });
         while let Some(entry) = queue.pop() {
             let now = entry.time;
-            if entry.a.is_set() && entry.b.is_set() {
-                if now != view.time {
-                    view = self.view(now);
-                    directions = view.directions();
-                }
-                match self.advance(&view, (entry.a, entry.b), None) {
+            let [a, b] = self.bodies;
+            let (of_a, of_b) = (Boxed::within(a, entry.a), Boxed::within(b, entry.b));
+            let both = [&of_a.around(entry.a), &of_b.around(entry.b)];
+            let are_sets = entry.a.is_set() && entry.b.is_set();
+            // What is within them is looked at until they may have gone past each other, and then they themselves are.
+            let is_spent = self.is_spent();
+            let passed = now + view.passing(both);
+            let until = match passed > now && !is_spent {
+                true => entry.until.min(passed),
+                false => entry.until,
+            };
+            // Boxes take a view that is not much older than they are.
+            let short = RENEW * (until - now);
+            if now - view.time > if are_sets { 0.0 } else { short } {
+                view = self.view(now);
+                directions = view.directions();
+            }
+            self.effort.boxes += 1;
+            let time = view.time + view.boxes_apart(&directions, both, self.only);
+            if time >= entry.until {
+                continue;
+            }
+            if time > now + short && !is_spent {
+                self.returns += 1;
+                queue.push(Entry { time, ..entry });
+                continue;
+            }
+            if are_sets {
+                // Whether they lie on each other at the start is told by all that is left.
+                let end = if now == 0.0 { self.end } else { entry.until };
+                view.left = end - now;
+                match self.advance(&view, (entry.a, entry.b), end, None) {
                     Next::Apart => (),
+                    Next::Later(time, _) if time >= entry.until => (),
                     Next::Later(time, _) => queue.push(Entry { time, ..entry }),
                     Next::Contact(touch) => return Some(touch),
                     Next::Untold => queue.push(entry.opened(roots)),
                 }
                 continue;
             }
-            // Boxes take a view that is not much older than they are.
-            if now - view.time > RENEW * view.left {
-                view = self.view(now);
-                directions = view.directions();
-            }
-            let [a, b] = self.bodies;
-            let (of_a, of_b) = (Boxed::within(a, entry.a), Boxed::within(b, entry.b));
             for a in of_a.iter() {
                 for b in of_b.iter() {
                     self.effort.boxes += 1;
                     let lasts = view.boxes_apart(&directions, [a, b], self.only);
                     let time = (view.time + lasts).max(now);
-                    if time < self.end {
+                    if time < until {
                         let (a, b) = (a.item, b.item);
-                        queue.push(Entry { time, a, b });
+                        queue.push(Entry { time, until, a, b });
                     }
                 }
+            }
+            if until < entry.until {
+                self.returns += 1;
+                let time = until;
+                queue.push(Entry { time, ..entry });
             }
         }
         None
     }
 }
 
-/// Part of what is left of the time after which boxes get new poses. It changes cost only.
+/// Part of the time for which boxes are looked at after which they get new poses, and for which a certificate of theirs
+/// is worth its price. It changes cost only.
 const RENEW: f64 = 0.25;
 
 fn touch(view: &View, gap: &Gap) -> TurningTouch {

@@ -74,7 +74,10 @@ pub(super) fn nearest(
                 of_a.map(|(by, _)| bounds(&pick(first, by))),
                 of_b.map(|(by, _)| bounds(&pick(second, by))),
             );
-            let mut compare = |i: usize, k: usize| {
+            let bottom = bottoms[..count_b]
+                .iter()
+                .fold(f64::INFINITY, |low, &at| low.min(at));
+            let compare = |best: &mut Pair, i: usize, k: usize| {
                 if bottoms[k] - tops[i] < best.length * (1.0 - 1.0 / 64.0)
                     && between(&boxes_a[i], &boxes_b[k]) <= best.length * best.length
                 {
@@ -86,14 +89,18 @@ pub(super) fn nearest(
             };
             // Those first that are likely to be the nearest, so that few others are not passed over.
             for (i, k) in likely((a, first), second, &of_b[..count_b]) {
-                compare(i, k);
+                compare(&mut best, i, k);
             }
             for (k, i) in likely((b, second), first, &of_a[..count_a]) {
-                compare(i, k);
+                compare(&mut best, i, k);
             }
-            for i in 0..count_a {
+            for (i, top) in tops[..count_a].iter().enumerate() {
+                // As is all that is with one that is too low for the lowest.
+                if bottom - top >= best.length * (1.0 - 1.0 / 64.0) {
+                    continue;
+                }
                 for k in 0..count_b {
-                    compare(i, k);
+                    compare(&mut best, i, k);
                 }
             }
         }

@@ -47,6 +47,22 @@ pub(super) struct Row {
 }
 
 impl Row {
+    /// A box around all of them.
+    pub(super) fn around(&self, item: Item) -> Boxed {
+        let [first, rest @ ..] = &self.boxes[..self.count] else {
+            unreachable!("no node is empty")
+        };
+        if rest.is_empty() {
+            return Boxed { item, ..*first };
+        }
+        let (mut low, mut high) = (first.centre - first.half, first.centre + first.half);
+        for next in rest {
+            low = low.min(next.centre - next.half);
+            high = high.max(next.centre + next.half);
+        }
+        between(low, high, item)
+    }
+
     pub(super) fn iter(&self) -> impl Iterator<Item = &Boxed> {
         self.boxes[..self.count].iter()
     }
@@ -128,7 +144,10 @@ impl Boxed {
 /// The box around a triangle.
 fn around(points: &Points<'_>, item: Item) -> Boxed {
     let [a, b, c] = points.corners();
-    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    between(a.min(b).min(c), a.max(b).max(c), item)
+}
+
+fn between(low: DVec3, high: DVec3, item: Item) -> Boxed {
     let half = 0.5 * (high - low) * (1.0 + 2.0 * f64::EPSILON);
     Boxed::new(0.5 * (low + high), half, item)
 }
