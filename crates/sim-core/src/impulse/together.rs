@@ -15,7 +15,7 @@
 use alloc::{vec, vec::Vec};
 use glam::DVec3;
 
-use super::complementarity::{self, sum};
+use super::complementarity::{self, FEW, sum};
 
 /// Two bodies in contact, and the unit normal from the first to the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,6 +162,14 @@ fn missing_speeds(contacts: &[Joined], velocity: &[DVec3]) -> Vec<f64> {
 
 /// Adds the impulses of contacts to the velocities.
 fn push(contacts: &[Joined], inverse_mass: &[f64], velocity: &mut [DVec3], impulse: &[f64]) {
+    if contacts.len() > FEW {
+        for (contact, &impulse) in contacts.iter().zip(impulse) {
+            let (i, j) = contact.bodies;
+            velocity[i] -= impulse * inverse_mass[i] * contact.normal;
+            velocity[j] += impulse * inverse_mass[j] * contact.normal;
+        }
+        return;
+    }
     // The terms of each body side by side: where they begin, and then where the next one goes.
     let mut next = vec![0; velocity.len() + 1];
     for contact in contacts {

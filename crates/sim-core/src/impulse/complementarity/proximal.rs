@@ -35,7 +35,7 @@ const MOST_STIFFER: u32 = 3;
 const STEPS: usize = 32;
 
 /// Sweeps before the first step, contact by contact, there and back. They find most of who pushes.
-const SWEEPS: usize = 4;
+const SWEEPS: usize = 2;
 
 /// Steps of Newton's method in each, at most; and how many are taken whole at first, which mostly finds the
 /// least at once, before the least along each is looked for, which always finds it.
