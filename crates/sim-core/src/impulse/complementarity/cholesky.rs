@@ -12,6 +12,7 @@ use glam::{DMat3, DVec3};
 const NONE: u32 = u32::MAX;
 
 /// Where the factor may be other than zero.
+#[derive(Clone, Debug)]
 pub(super) struct Pattern {
     /// The place of each row in the order of elimination.
     pub(super) place: Vec<u32>,
@@ -22,8 +23,8 @@ pub(super) struct Pattern {
 }
 
 /// The factor. Rows and columns are those of places.
-pub(super) struct Cholesky {
-    pattern: Pattern,
+pub(super) struct Cholesky<'a> {
+    pattern: &'a Pattern,
     blocks: Vec<DMat3>,
     /// Of the diagonal blocks of `L`.
     inverse: Vec<DMat3>,
@@ -97,8 +98,8 @@ impl Pattern {
     }
 }
 
-impl Cholesky {
-    pub(super) fn of(pattern: Pattern) -> Cholesky {
+impl Cholesky<'_> {
+    pub(super) fn of(pattern: &Pattern) -> Cholesky<'_> {
         let count = pattern.place.len();
         Cholesky {
             blocks: vec![DMat3::ZERO; pattern.rows.len()],
@@ -187,7 +188,7 @@ impl Cholesky {
 
     /// Solves for a right-hand side, in its place.
     pub(super) fn solve(&self, values: &mut [DVec3]) {
-        let Pattern { begin, rows, .. } = &self.pattern;
+        let Pattern { begin, rows, .. } = self.pattern;
         for (column, inverse) in self.inverse.iter().enumerate() {
             let below = begin[column]..begin[column + 1];
             let value = *inverse * values[column];
@@ -271,7 +272,7 @@ mod tests {
             for (row, &place) in place.iter().enumerate() {
                 diagonal[place] = 0.5 + row as f64;
             }
-            let mut matrix = Cholesky::of(pattern);
+            let mut matrix = Cholesky::of(&pattern);
             matrix.begin(&diagonal);
             for (&((i, j), along), at) in ties.iter().zip(at) {
                 let block = outer(along);

@@ -4,6 +4,8 @@ mod cholesky;
 mod guess;
 mod proximal;
 
+pub(super) use proximal::Network;
+
 use alloc::vec::Vec;
 
 use super::{Joined, Known};

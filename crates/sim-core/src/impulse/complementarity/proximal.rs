@@ -22,7 +22,7 @@ use super::{
     ROUNDING,
     cholesky::{Cholesky, Pattern},
 };
-use crate::impulse::{Joined, Known};
+use crate::impulse::{Joined, Known, Prepared};
 
 /// `R` by the heavier of the bodies of a contact: large, but not so large that rounding in the factor undoes
 /// what a step gains; and by what it grows where a step gains little, and how often. None changes the answer.
@@ -49,6 +49,7 @@ const LOOKS: usize = 16;
 const FARTHEST: f64 = 1024.0;
 
 /// A contact between two places in the order of elimination; what nothing moves is in the last place.
+#[derive(Clone, Debug)]
 struct Link {
     bodies: (usize, usize),
     normal: DVec3,
@@ -65,12 +66,19 @@ impl Link {
     }
 }
 
-/// Contacts and their bodies as one problem.
-struct Problem<'a> {
+/// Contacts and their bodies in the order of elimination.
+#[derive(Clone, Debug)]
+pub(in crate::impulse) struct Network {
     links: Vec<Link>,
     /// By place, kg and 1/kg; the last place has neither.
     mass: Vec<f64>,
     inverse_mass: Vec<f64>,
+    pattern: Pattern,
+}
+
+/// A network and what is wanted of it, as one problem.
+struct Problem<'a> {
+    network: &'a Network,
     held: &'a [bool],
     /// How much contacts are to open, m/s.
     wanted: &'a [f64],
@@ -86,7 +94,10 @@ pub(super) fn multipliers(
     wanted: &[f64],
     known: Known,
 ) -> Vec<f64> {
-    let (mut problem, pattern) = Problem::of(contacts, inverse_mass, wanted, known.held);
+    let own = Prepared::default();
+    let prepared = known.prepared.unwrap_or(&own);
+    let network = prepared.network(contacts, inverse_mass);
+    let mut problem = Problem::of(network, wanted, known.held);
     let count = contacts.len();
     let mut given = match known.warm.len() == count {
         true => known.warm.to_vec(),
@@ -96,7 +107,7 @@ pub(super) fn multipliers(
         *given = problem.allowed(k, *given);
     }
     problem.sweep(&mut given);
-    let mut newton = Newton::of(&problem, pattern);
+    let mut newton = Newton::of(network);
     let most = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
     let enough = known.enough.max(ROUNDING * most);
     let mut best = (f64::INFINITY, given.clone());
@@ -129,13 +140,8 @@ pub(super) fn multipliers(
     best.1
 }
 
-impl<'a> Problem<'a> {
-    fn of(
-        contacts: &[Joined],
-        inverse_mass: &[f64],
-        wanted: &'a [f64],
-        held: &'a [bool],
-    ) -> (Problem<'a>, Pattern) {
+impl Network {
+    pub(in crate::impulse) fn of(contacts: &[Joined], inverse_mass: &[f64]) -> Network {
         let mut rows = 0..;
         let row = inverse_mass.iter().map(|&w| match w > 0.0 {
             true => rows.next(),
@@ -162,18 +168,36 @@ impl<'a> Problem<'a> {
                 mass: if yielding > 0.0 { 1.0 / yielding } else { 0.0 },
             }
         };
-        let links: Vec<Link> = contacts.iter().map(link).collect();
-        // By the heavier of two bodies: light ones pass on what heavy ones weigh.
-        let stiffness = |link: &Link| STIFFNESS * mass[link.bodies.0].max(mass[link.bodies.1]);
-        let problem = Problem {
-            stiffness: links.iter().map(stiffness).collect(),
-            links,
+        Network {
+            links: contacts.iter().map(link).collect(),
             mass,
             inverse_mass: inverse,
+            pattern,
+        }
+    }
+
+    /// What impulses change velocities by, m/s.
+    fn change(&self, given: &[f64], change: &mut [DVec3]) {
+        change.fill(DVec3::ZERO);
+        for (link, &given) in self.links.iter().zip(given) {
+            let (i, j) = link.bodies;
+            change[i] -= given * self.inverse_mass[i] * link.normal;
+            change[j] += given * self.inverse_mass[j] * link.normal;
+        }
+    }
+}
+
+impl<'a> Problem<'a> {
+    fn of(network: &'a Network, wanted: &'a [f64], held: &'a [bool]) -> Problem<'a> {
+        // By the heavier of two bodies: light ones pass on what heavy ones weigh.
+        let mass = &network.mass;
+        let stiffness = |link: &Link| STIFFNESS * mass[link.bodies.0].max(mass[link.bodies.1]);
+        Problem {
+            stiffness: network.links.iter().map(stiffness).collect(),
+            network,
             held,
             wanted,
-        };
-        (problem, pattern)
+        }
     }
 
     fn is_held(&self, k: usize) -> bool {
@@ -190,29 +214,24 @@ impl<'a> Problem<'a> {
 
     /// Brings impulses nearer to the answer, contact by contact, there and back (Gauss, Seidel).
     fn sweep(&self, given: &mut [f64]) {
-        let mut change = vec![DVec3::ZERO; self.mass.len()];
-        self.change(given, &mut change);
+        let Network {
+            links,
+            inverse_mass,
+            ..
+        } = self.network;
+        let mut change = vec![DVec3::ZERO; inverse_mass.len()];
+        self.network.change(given, &mut change);
         for _ in 0..SWEEPS {
             for k in (0..given.len()).chain((0..given.len()).rev()) {
-                let link = &self.links[k];
+                let link = &links[k];
                 let missing = self.wanted[k] - link.opening(&change);
                 let next = self.allowed(k, given[k] + missing * link.mass);
                 let by = (next - given[k]) * link.normal;
                 let (i, j) = link.bodies;
-                change[i] -= self.inverse_mass[i] * by;
-                change[j] += self.inverse_mass[j] * by;
+                change[i] -= inverse_mass[i] * by;
+                change[j] += inverse_mass[j] * by;
                 given[k] = next;
             }
-        }
-    }
-
-    /// What impulses change velocities by, m/s.
-    fn change(&self, given: &[f64], change: &mut [DVec3]) {
-        change.fill(DVec3::ZERO);
-        for (link, &given) in self.links.iter().zip(given) {
-            let (i, j) = link.bodies;
-            change[i] -= given * self.inverse_mass[i] * link.normal;
-            change[j] += given * self.inverse_mass[j] * link.normal;
         }
     }
 
@@ -227,8 +246,8 @@ impl<'a> Problem<'a> {
 }
 
 /// Newton's method, and its memory.
-struct Newton {
-    factor: Cholesky,
+struct Newton<'a> {
+    factor: Cholesky<'a>,
     /// Which contacts push in the factor, if something has been factored, and which push now.
     factored: Option<Vec<bool>>,
     pushes: Vec<bool>,
@@ -242,11 +261,11 @@ struct Newton {
     opens: Vec<f64>,
 }
 
-impl Newton {
-    fn of(problem: &Problem, pattern: Pattern) -> Newton {
-        let (places, count) = (problem.mass.len(), problem.links.len());
+impl Newton<'_> {
+    fn of(network: &Network) -> Newton<'_> {
+        let (places, count) = (network.mass.len(), network.links.len());
         Newton {
-            factor: Cholesky::of(pattern),
+            factor: Cholesky::of(&network.pattern),
             factored: None,
             pushes: vec![false; count],
             change: vec![DVec3::ZERO; places],
@@ -264,8 +283,8 @@ impl Newton {
 
     /// Looks what is missing after some impulses.
     fn look(&mut self, problem: &Problem, given: &[f64]) {
-        problem.change(given, &mut self.change);
-        let links = problem.links.iter().zip(problem.wanted);
+        problem.network.change(given, &mut self.change);
+        let links = problem.network.links.iter().zip(problem.wanted);
         for (missing, (link, wanted)) in self.missing.iter_mut().zip(links) {
             *missing = wanted - link.opening(&self.change);
         }
@@ -329,11 +348,11 @@ impl Newton {
     /// The step of Newton's method for those that push, and what contacts open by along it.
     fn find_way(&mut self, problem: &Problem, given: &[f64]) {
         // The gradient with its sign changed.
-        let bodies = self.change.iter().zip(&problem.mass);
+        let bodies = self.change.iter().zip(&problem.network.mass);
         for (way, (&change, &mass)) in self.way.iter_mut().zip(bodies) {
             *way = -mass * change;
         }
-        for (k, link) in problem.links.iter().enumerate() {
+        for (k, link) in problem.network.links.iter().enumerate() {
             let by = match self.pushes[k] {
                 true => self.more(problem, k, self.opened[k]),
                 false => -given[k],
@@ -346,7 +365,7 @@ impl Newton {
         if let Some(unmoved) = self.way.last_mut() {
             *unmoved = DVec3::ZERO;
         }
-        for (opens, link) in self.opens.iter_mut().zip(&problem.links) {
+        for (opens, link) in self.opens.iter_mut().zip(&problem.network.links) {
             *opens = link.opening(&self.way);
         }
     }
@@ -356,7 +375,7 @@ impl Newton {
     fn least_along(&self, problem: &Problem, given: &[f64]) -> f64 {
         let (mut inertia, mut linear) = (0.0, 0.0);
         let bodies = self.change.iter().zip(&self.way);
-        for ((change, way), &mass) in bodies.zip(&problem.mass) {
+        for ((change, way), &mass) in bodies.zip(&problem.network.mass) {
             inertia += mass * way.length_squared();
             linear += mass * change.dot(*way);
         }
@@ -405,9 +424,9 @@ impl Newton {
     /// Factors the matrix of contacts that push.
     fn factor(&mut self, problem: &Problem) {
         let Newton { factor, pushes, .. } = self;
-        let (_, moved) = problem.mass.split_last().unwrap_or((&0.0, &[]));
+        let (_, moved) = problem.network.mass.split_last().unwrap_or((&0.0, &[]));
         factor.begin(moved);
-        let links = problem.links.iter().zip(&problem.stiffness);
+        let links = problem.network.links.iter().zip(&problem.stiffness);
         for ((link, &stiffness), _) in links.zip(pushes).filter(|(_, pushes)| **pushes) {
             let block = stiffness * outer(link.normal);
             let (i, j) = link.bodies;
@@ -441,8 +460,9 @@ mod tests {
 
     fn solved(contacts: &[Joined], inverse_mass: &[f64], wanted: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let given = multipliers(contacts, inverse_mass, wanted, Known::default());
-        let (problem, pattern) = Problem::of(contacts, inverse_mass, wanted, &[]);
-        let mut newton = Newton::of(&problem, pattern);
+        let network = Network::of(contacts, inverse_mass);
+        let problem = Problem::of(&network, wanted, &[]);
+        let mut newton = Newton::of(&network);
         newton.look(&problem, &given);
         (given, newton.missing)
     }

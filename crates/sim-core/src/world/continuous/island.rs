@@ -10,7 +10,7 @@ use super::super::{
     state::State,
 };
 use super::view::View;
-use crate::impulse::Joined;
+use crate::impulse::{Joined, Prepared};
 
 /// Bodies and constraints that contacts tie together.
 #[derive(Clone, Debug, Default)]
@@ -117,6 +117,7 @@ pub(in crate::world) struct Places {
     pub(super) bodies: Vec<usize>,
     pub(super) joined: Vec<Joined>,
     pub(super) inverse_mass: Vec<f64>,
+    pub(super) prepared: Prepared,
 }
 
 impl Places {
@@ -153,6 +154,7 @@ impl Places {
             bodies,
             joined,
             inverse_mass,
+            prepared: Prepared::default(),
         }
     }
 
