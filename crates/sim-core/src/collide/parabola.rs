@@ -209,16 +209,29 @@ fn spheres(first: f64, second: f64, way: &Parabola, length: f64) -> Option<Conta
 
 /// A polynomial over 0 to 1, from the coefficients of powers, lowest first, to Bernstein's.
 fn bernstein<const N: usize>(powers: [f64; N]) -> [f64; N] {
-    let degree = N - 1;
-    // Row by row of Pascal's triangle: what is left of `C(i, k) / C(degree, k)`.
+    let shares = const { shares::<N>() };
     core::array::from_fn(|i| {
-        let (mut factor, mut sum) = (1.0, powers[0]);
-        for (k, power) in (1..=i).zip(&powers[1..]) {
-            factor *= (i + 1 - k) as f64 / (degree + 1 - k) as f64;
-            sum += factor * power;
+        let mut sum = powers[0];
+        for k in 1..=i {
+            sum += shares[i][k] * powers[k];
         }
         sum
     })
+}
+
+/// By row and column `C(i, k) / C(degree, k)`.
+const fn shares<const N: usize>() -> [[f64; N]; N] {
+    let mut shares = [[1.0; N]; N];
+    let mut i = 0;
+    while i < N {
+        let mut k = 1;
+        while k <= i {
+            shares[i][k] = shares[i][k - 1] * (i + 1 - k) as f64 / (N - k) as f64;
+            k += 1;
+        }
+        i += 1;
+    }
+    shares
 }
 
 /// Halvings of the interval in search of a root.
@@ -240,6 +253,11 @@ fn first_root_in<const N: usize>(
     if coefficients[0] <= 0.0 || halvings == 0 {
         return Some(low);
     }
+    // Where signs change once there is one root (Descartes' rule in Bernstein's basis).
+    let first_below = coefficients.iter().position(|&c| c < 0.0).unwrap_or(N);
+    if coefficients[first_below..].iter().all(|&c| c < 0.0) {
+        return Some(low + (high - low) * only_root(&coefficients));
+    }
     // De Casteljau: the left half's are the first of each row, the right half's the last ones.
     let (mut left, mut right) = (coefficients, coefficients);
     let mut row = coefficients;
@@ -253,6 +271,45 @@ fn first_root_in<const N: usize>(
     let middle = 0.5 * (low + high);
     first_root_in(left, (low, middle), halvings - 1)
         .or_else(|| first_root_in(right, (middle, high), halvings - 1))
+}
+
+/// Looks for the only root, at most: two for each digit.
+const LOOKS: usize = 106;
+
+/// The root of a polynomial that is positive at 0, negative at 1 and has one root between, by Newton's method,
+/// and by halves where that leaves the interval or does not halve its step.
+fn only_root<const N: usize>(coefficients: &[f64; N]) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    let (mut at, mut last) = (0.5, 1.0);
+    for _ in 0..LOOKS {
+        let (value, slope) = value_and_slope(coefficients, at);
+        match value > 0.0 {
+            true => low = at,
+            false => high = at,
+        }
+        let newton = at - value / slope;
+        let is_good = newton >= low && newton <= high && (newton - at).abs() <= 0.5 * last;
+        let next = if is_good { newton } else { 0.5 * (low + high) };
+        last = (next - at).abs();
+        at = next;
+        if last <= f64::EPSILON {
+            break;
+        }
+    }
+    at
+}
+
+/// A polynomial in Bernstein's basis and its slope somewhere (de Casteljau).
+fn value_and_slope<const N: usize>(coefficients: &[f64; N], at: f64) -> (f64, f64) {
+    let mut row = *coefficients;
+    let mut slope = 0.0;
+    for level in 1..N {
+        slope = (N - 1) as f64 * (row[1] - row[0]);
+        for i in 0..N - level {
+            row[i] += at * (row[i + 1] - row[i]);
+        }
+    }
+    (row[0], slope)
 }
 
 #[cfg(test)]
@@ -316,6 +373,32 @@ mod tests {
             }
         }
         assert!(hits > 500 && misses > 1000);
+    }
+
+    #[test]
+    fn the_only_root_is_that_of_halvings() {
+        let mut random = Random(3);
+        let mut found = 0;
+        for _ in 0..20_000 {
+            let mut numbers = [0; 5].map(|_| libm::pow(random.unit(), 6.0));
+            // Signs change once.
+            let positive = 1 + random.below(4);
+            numbers[positive..].iter_mut().for_each(|c| *c = -*c);
+            let root = only_root(&numbers);
+            let (below, above) = ((root - 4e-15).max(0.0), (root + 4e-15).min(1.0));
+            let size = numbers.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+            let rounding = 8.0 * f64::EPSILON * size;
+            assert!(
+                value_and_slope(&numbers, below).0 >= -rounding,
+                "{numbers:?}: {root}"
+            );
+            assert!(
+                value_and_slope(&numbers, above).0 <= rounding,
+                "{numbers:?}: {root}"
+            );
+            found += 1;
+        }
+        assert_eq!(found, 20_000);
     }
 
     #[test]

@@ -19,7 +19,7 @@ use glam::DVec3;
 
 use crate::expansion::two_sum;
 pub use friction::{ALL_SWEEPS, apply, drag, limit, rub};
-pub use together::{Joined, Known, greatest, project, project_with, reflect};
+pub use together::{Joined, Known, Prepared, greatest, project, project_with, reflect};
 
 /// What two bodies exchange.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,9 +13,10 @@
 //! another order, and mirror images, give the same bits, except for heaps of more than 8 contacts.
 
 use alloc::{vec, vec::Vec};
+use core::cell::OnceCell;
 use glam::DVec3;
 
-use super::complementarity::{self, sum};
+use super::complementarity::{self, FEW, Network, sum};
 
 /// Two bodies in contact, and the unit normal from the first to the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,6 +141,18 @@ pub struct Known<'a> {
     pub warm: &'a [f64],
     /// What may stay missing, m/s; little more than rounding where 0.
     pub enough: f64,
+    /// Of the same contacts and masses.
+    pub prepared: Option<&'a Prepared>,
+}
+
+/// What heaps are solved with, for contacts that are solved more than once: it is made the first time.
+#[derive(Clone, Debug, Default)]
+pub struct Prepared(OnceCell<Network>);
+
+impl Prepared {
+    pub(super) fn network(&self, contacts: &[Joined], inverse_mass: &[f64]) -> &Network {
+        self.0.get_or_init(|| Network::of(contacts, inverse_mass))
+    }
 }
 
 /// The same with what is known beforehand.
@@ -162,6 +175,14 @@ fn missing_speeds(contacts: &[Joined], velocity: &[DVec3]) -> Vec<f64> {
 
 /// Adds the impulses of contacts to the velocities.
 fn push(contacts: &[Joined], inverse_mass: &[f64], velocity: &mut [DVec3], impulse: &[f64]) {
+    if contacts.len() > FEW {
+        for (contact, &impulse) in contacts.iter().zip(impulse) {
+            let (i, j) = contact.bodies;
+            velocity[i] -= impulse * inverse_mass[i] * contact.normal;
+            velocity[j] += impulse * inverse_mass[j] * contact.normal;
+        }
+        return;
+    }
     // The terms of each body side by side: where they begin, and then where the next one goes.
     let mut next = vec![0; velocity.len() + 1];
     for contact in contacts {

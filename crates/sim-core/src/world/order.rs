@@ -17,13 +17,13 @@ pub(super) fn key(bodies: &Bodies, motion: &State, body: usize) -> Key {
     [x, y, z, u, v, w, bodies.mass[body], a, b, c].map(ordinal)
 }
 
-/// The bodies of some pairs, once each, in the order of their keys.
+/// Some bodies, once each, in the order of their keys.
 pub(super) fn in_order(
     bodies: &Bodies,
     motion: &State,
-    pairs: impl Iterator<Item = (usize, usize)>,
+    these: impl Iterator<Item = usize>,
 ) -> InOrder {
-    let mut these: Vec<usize> = pairs.flat_map(|(i, j)| [i, j]).collect();
+    let mut these: Vec<usize> = these.collect();
     these.sort_unstable();
     these.dedup();
     // By the first number of their keys, which is enough for nearly all.
@@ -42,6 +42,7 @@ pub(super) fn in_order(
 }
 
 /// Bodies in order, and the place of each among them.
+#[derive(Clone, Debug, Default)]
 pub(super) struct InOrder {
     pub(super) bodies: Vec<usize>,
     /// By body.

@@ -56,9 +56,9 @@ impl Scene<'_> {
         order::key(self.bodies, self.before, body)
     }
 
-    /// The bodies of some pairs, once each, in that order.
-    pub(super) fn in_order(&self, pairs: impl Iterator<Item = (usize, usize)>) -> InOrder {
-        order::in_order(self.bodies, self.before, pairs)
+    /// Some bodies, once each, in that order.
+    pub(super) fn in_order(&self, these: impl Iterator<Item = usize>) -> InOrder {
+        order::in_order(self.bodies, self.before, these)
     }
 
     /// Whether the step before has left a body where it was.

@@ -11,23 +11,40 @@ use glam::{DMat3, DVec3};
 /// No place in a list.
 const NONE: u32 = u32::MAX;
 
-/// The factor, and where it may be other than zero.
-pub(super) struct Cholesky {
+/// Where the factor may be other than zero.
+#[derive(Clone, Debug)]
+pub(super) struct Pattern {
     /// The place of each row in the order of elimination.
-    place: Vec<u32>,
+    pub(super) place: Vec<u32>,
     /// Where the blocks below the diagonal of each column begin, by places, and where the last end.
     begin: Vec<usize>,
     /// The row of each block, by place, ascending in each column.
     rows: Vec<u32>,
+}
+
+/// The factor. Rows and columns are those of places.
+pub(super) struct Cholesky<'a> {
+    pattern: &'a Pattern,
     blocks: Vec<DMat3>,
     /// Of the diagonal blocks of `L`.
     inverse: Vec<DMat3>,
+    memory: Memory,
 }
 
-impl Cholesky {
+/// What factoring needs beside the factor, by column.
+struct Memory {
+    /// The columns whose next block lies in a row, as lists: of each row the first, of each column the
+    /// next in its list, and of each column that block.
+    first: Vec<u32>,
+    next: Vec<u32>,
+    at: Vec<usize>,
+    sums: Vec<DMat3>,
+}
+
+impl Pattern {
     /// Of matrices of so many rows of blocks that are zero but on the diagonal and where two rows are
     /// tied.
-    pub(super) fn of_graph(count: usize, ties: impl Iterator<Item = (usize, usize)>) -> Cholesky {
+    pub(super) fn of_graph(count: usize, ties: impl Iterator<Item = (usize, usize)>) -> Pattern {
         // By row, a bit for each row that it is tied to and that has no place yet.
         let words = count.div_ceil(64);
         let mut near = vec![0_u64; count * words];
@@ -69,123 +86,135 @@ impl Cholesky {
             rows.iter_mut().for_each(|row| *row = place[*row as usize]);
             rows.sort_unstable();
         }
+        Pattern { place, begin, rows }
+    }
+
+    /// The block of two places that are tied.
+    pub(super) fn between(&self, i: usize, j: usize) -> usize {
+        let (column, row) = (i.min(j), i.max(j) as u32);
+        let first = self.begin[column];
+        let below = &self.rows[first..self.begin[column + 1]];
+        first + below.partition_point(|&other| other < row)
+    }
+}
+
+impl Cholesky<'_> {
+    pub(super) fn of(pattern: &Pattern) -> Cholesky<'_> {
+        let count = pattern.place.len();
         Cholesky {
-            blocks: vec![DMat3::ZERO; rows.len()],
+            blocks: vec![DMat3::ZERO; pattern.rows.len()],
             inverse: vec![DMat3::ZERO; count],
-            place,
-            begin,
-            rows,
+            memory: Memory {
+                first: vec![NONE; count],
+                next: vec![NONE; count],
+                at: vec![0; count],
+                sums: vec![DMat3::ZERO; count],
+            },
+            pattern,
         }
     }
 
     /// Begins with a matrix that is a multiple of one in each row.
-    pub(super) fn begin(&mut self, diagonal: impl Iterator<Item = f64>) {
+    pub(super) fn begin(&mut self, diagonal: &[f64]) {
         self.blocks.fill(DMat3::ZERO);
-        for (row, value) in diagonal.enumerate() {
-            self.inverse[self.place[row] as usize] = DMat3::from_diagonal(DVec3::splat(value));
+        for (block, &value) in self.inverse.iter_mut().zip(diagonal) {
+            *block = DMat3::from_diagonal(DVec3::splat(value));
         }
     }
 
     /// Adds a block to the diagonal.
-    pub(super) fn add(&mut self, row: usize, block: DMat3) {
-        self.inverse[self.place[row] as usize] += block;
+    pub(super) fn add(&mut self, row: usize, block: &DMat3) {
+        self.inverse[row] += *block;
     }
 
-    /// Adds a symmetric block where two rows are tied.
-    pub(super) fn add_between(&mut self, i: usize, j: usize, block: DMat3) {
-        let (i, j) = (self.place[i], self.place[j]);
-        let (column, row) = (i.min(j) as usize, i.max(j));
-        let first = self.begin[column];
-        let below = &self.rows[first..self.begin[column + 1]];
-        self.blocks[first + below.partition_point(|&other| other < row)] += block;
+    /// Takes a symmetric block away [between](Pattern::between) two rows.
+    pub(super) fn take_between(&mut self, at: usize, block: &DMat3) {
+        self.blocks[at] -= *block;
     }
 
     /// Factors what has been added, which has to be positive.
     pub(super) fn factor(&mut self) {
-        let count = self.inverse.len();
-        // The columns whose next block lies in a row, as lists: of each row the first, of each column the
-        // next in its list, and of each column that block.
-        let (mut first, mut next, mut at) = (vec![NONE; count], vec![NONE; count], vec![0; count]);
-        let mut sums = vec![DMat3::ZERO; count];
-        for column in 0..count {
-            let (begin, end) = (self.begin[column], self.begin[column + 1]);
-            let mut diagonal = self.inverse[column];
-            let own = self.rows[begin..end].iter().zip(&self.blocks[begin..end]);
-            for (&row, block) in own {
+        let Cholesky {
+            pattern: Pattern { begin, rows, .. },
+            blocks,
+            inverse,
+            memory:
+                Memory {
+                    first,
+                    next,
+                    at,
+                    sums,
+                },
+        } = self;
+        // Puts a column into the list of the row in which its next block lies.
+        let pass_on = |column: usize, place: usize, first: &mut [u32], next: &mut [u32]| {
+            if place < begin[column + 1] {
+                let row = rows[place] as usize;
+                next[column] = first[row];
+                first[row] = column as u32;
+            }
+        };
+        first.fill(NONE);
+        for column in 0..inverse.len() {
+            let (start, end) = (begin[column], begin[column + 1]);
+            let mut diagonal = inverse[column];
+            for (&row, block) in rows[start..end].iter().zip(&blocks[start..end]) {
                 sums[row as usize] = *block;
             }
             let mut left = first[column];
             while left != NONE {
-                let (own, next_left) = (left as usize, next[left as usize]);
-                let (here, end) = (at[own], self.begin[own + 1]);
-                let across = self.blocks[here].transpose();
-                diagonal -= self.blocks[here] * across;
-                let below = self.rows[here + 1..end]
-                    .iter()
-                    .zip(&self.blocks[here + 1..end]);
-                for (&row, block) in below {
+                let own = left as usize;
+                left = next[own];
+                let here = at[own];
+                let below = here + 1..begin[own + 1];
+                let across = blocks[here].transpose();
+                diagonal -= blocks[here] * across;
+                for (&row, block) in rows[below.clone()].iter().zip(&blocks[below]) {
                     sums[row as usize] -= *block * across;
                 }
-                self.pass_on(own, here + 1, (&mut first, &mut next, &mut at));
-                left = next_left;
+                at[own] = here + 1;
+                pass_on(own, here + 1, first, next);
             }
-            let inverse = inverse_of_root(diagonal);
-            self.inverse[column] = inverse;
-            let across = inverse.transpose();
-            let own = self.rows[begin..end]
-                .iter()
-                .zip(&mut self.blocks[begin..end]);
-            for (&row, block) in own {
+            let root = inverse_of_root(diagonal);
+            inverse[column] = root;
+            let across = root.transpose();
+            for (&row, block) in rows[start..end].iter().zip(&mut blocks[start..end]) {
                 *block = sums[row as usize] * across;
             }
-            self.pass_on(column, begin, (&mut first, &mut next, &mut at));
+            at[column] = start;
+            pass_on(column, start, first, next);
         }
     }
 
-    /// Puts a column into the list of the row in which its next block lies.
-    fn pass_on(
-        &self,
-        column: usize,
-        place: usize,
-        (first, next, at): (&mut [u32], &mut [u32], &mut [usize]),
-    ) {
-        if place < self.begin[column + 1] {
-            let row = self.rows[place] as usize;
-            at[column] = place;
-            next[column] = first[row];
-            first[row] = column as u32;
-        }
-    }
-
-    /// The blocks of a column, with their rows.
-    fn below(&self, column: usize) -> impl Iterator<Item = (&u32, &DMat3)> {
-        let all = self.begin[column]..self.begin[column + 1];
-        self.rows[all.clone()].iter().zip(&self.blocks[all])
-    }
-
-    /// Solves for a right-hand side, in its place, with some memory of the same length.
-    pub(super) fn solve(&self, values: &mut [DVec3], memory: &mut [DVec3]) {
-        for (row, &place) in self.place.iter().enumerate() {
-            memory[place as usize] = values[row];
-        }
-        for column in 0..self.inverse.len() {
-            let value = self.inverse[column] * memory[column];
-            memory[column] = value;
-            for (&row, block) in self.below(column) {
-                memory[row as usize] -= *block * value;
+    /// Solves for a right-hand side, in its place.
+    pub(super) fn solve(&self, values: &mut [DVec3]) {
+        let Pattern { begin, rows, .. } = self.pattern;
+        for (column, inverse) in self.inverse.iter().enumerate() {
+            let below = begin[column]..begin[column + 1];
+            let value = *inverse * values[column];
+            values[column] = value;
+            for (&row, block) in rows[below.clone()].iter().zip(&self.blocks[below]) {
+                values[row as usize] -= *block * value;
             }
         }
-        for column in (0..self.inverse.len()).rev() {
-            let mut value = memory[column];
-            for (&row, block) in self.below(column) {
-                value -= block.transpose() * memory[row as usize];
+        for (column, inverse) in self.inverse.iter().enumerate().rev() {
+            let below = begin[column]..begin[column + 1];
+            let mut value = values[column];
+            for (&row, block) in rows[below.clone()].iter().zip(&self.blocks[below]) {
+                value -= transposed_times(block, values[row as usize]);
             }
-            memory[column] = self.inverse[column].transpose() * value;
-        }
-        for (row, &place) in self.place.iter().enumerate() {
-            values[row] = memory[place as usize];
+            values[column] = transposed_times(inverse, value);
         }
     }
+}
+
+/// `matrixᵀ v`.
+fn transposed_times(matrix: &DMat3, v: DVec3) -> DVec3 {
+    DVec3::new(
+        matrix.x_axis.dot(v),
+        matrix.y_axis.dot(v),
+        matrix.z_axis.dot(v),
+    )
 }
 
 /// The places of the bits of a set, ascending.
@@ -235,13 +264,21 @@ mod tests {
                 .map(|((i, j), along)| ((i % count, j % count), DVec3::from_array(along)))
                 .filter(|((i, j), _)| i != j)
                 .collect();
-            let mut matrix = Cholesky::of_graph(count, ties.iter().map(|tie| tie.0));
-            matrix.begin((0..count).map(|row| 0.5 + row as f64));
-            for &((i, j), along) in &ties {
+            let pattern = Pattern::of_graph(count, ties.iter().map(|tie| tie.0));
+            let place: Vec<usize> = pattern.place.iter().map(|&place| place as usize).collect();
+            let between = |(i, j): (usize, usize)| pattern.between(place[i], place[j]);
+            let at: Vec<usize> = ties.iter().map(|tie| between(tie.0)).collect();
+            let mut diagonal = vec![0.0; count];
+            for (row, &place) in place.iter().enumerate() {
+                diagonal[place] = 0.5 + row as f64;
+            }
+            let mut matrix = Cholesky::of(&pattern);
+            matrix.begin(&diagonal);
+            for (&((i, j), along), at) in ties.iter().zip(at) {
                 let block = outer(along);
-                matrix.add(i, block);
-                matrix.add(j, block);
-                matrix.add_between(i, j, -block);
+                matrix.add(place[i], &block);
+                matrix.add(place[j], &block);
+                matrix.take_between(at, &block);
             }
             matrix.factor();
             let wanted: Vec<DVec3> = wanted[..count].iter().map(|&v| DVec3::from_array(v)).collect();
@@ -252,9 +289,14 @@ mod tests {
                 values[i] += pull;
                 values[j] -= pull;
             }
-            matrix.solve(&mut values, &mut vec![DVec3::ZERO; count]);
-            for (value, wanted) in values.iter().zip(&wanted) {
-                prop_assert!((*value - *wanted).length() < 1e-11, "{value} for {wanted}");
+            let mut placed = vec![DVec3::ZERO; count];
+            for (value, &place) in values.iter().zip(&place) {
+                placed[place] = *value;
+            }
+            matrix.solve(&mut placed);
+            for (&place, wanted) in place.iter().zip(&wanted) {
+                let value = placed[place];
+                prop_assert!((value - *wanted).length() < 1e-11, "{value} for {wanted}");
             }
         }
     }

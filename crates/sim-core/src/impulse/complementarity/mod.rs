@@ -4,12 +4,14 @@ mod cholesky;
 mod guess;
 mod proximal;
 
+pub(super) use proximal::Network;
+
 use alloc::vec::Vec;
 
 use super::{Joined, Known};
 
 /// Up to so many contacts are solved in sums that know no order.
-const FEW: usize = 8;
+pub(super) const FEW: usize = 8;
 
 /// Part of the largest speed that is lost in solving.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;

@@ -18,8 +18,11 @@
 use alloc::{vec, vec::Vec};
 use glam::{DMat3, DVec3};
 
-use super::{ROUNDING, cholesky::Cholesky};
-use crate::impulse::{Joined, Known};
+use super::{
+    ROUNDING,
+    cholesky::{Cholesky, Pattern},
+};
+use crate::impulse::{Joined, Known, Prepared};
 
 /// `R` by the heavier of the bodies of a contact: large, but not so large that rounding in the factor undoes
 /// what a step gains; and by what it grows where a step gains little, and how often. None changes the answer.
@@ -32,7 +35,7 @@ const MOST_STIFFER: u32 = 3;
 const STEPS: usize = 32;
 
 /// Sweeps before the first step, contact by contact, there and back. They find most of who pushes.
-const SWEEPS: usize = 4;
+const SWEEPS: usize = 2;
 
 /// Steps of Newton's method in each, at most; and how many are taken whole at first, which mostly finds the
 /// least at once, before the least along each is looked for, which always finds it.
@@ -45,17 +48,42 @@ const LOOKS: usize = 16;
 /// Lengths of a step beyond which nothing is looked for.
 const FARTHEST: f64 = 1024.0;
 
-/// Contacts and their bodies as one problem.
+/// A contact between two places in the order of elimination; what nothing moves is in the last place.
+#[derive(Clone, Debug)]
+struct Link {
+    bodies: (usize, usize),
+    normal: DVec3,
+    /// The block between the two in the factor; none where one of them is not moved.
+    block: Option<usize>,
+    /// 1 / (1/m1 + 1/m2), kg, or nothing where neither is moved.
+    mass: f64,
+}
+
+impl Link {
+    /// Speed at which the contact opens, m/s.
+    fn opening(&self, velocity: &[DVec3]) -> f64 {
+        (velocity[self.bodies.1] - velocity[self.bodies.0]).dot(self.normal)
+    }
+}
+
+/// Contacts and their bodies in the order of elimination.
+#[derive(Clone, Debug)]
+pub(in crate::impulse) struct Network {
+    links: Vec<Link>,
+    /// By place, kg and 1/kg; the last place has neither.
+    mass: Vec<f64>,
+    inverse_mass: Vec<f64>,
+    pattern: Pattern,
+}
+
+/// A network and what is wanted of it, as one problem.
 struct Problem<'a> {
-    contacts: &'a [Joined],
-    inverse_mass: &'a [f64],
+    network: &'a Network,
     held: &'a [bool],
     /// How much contacts are to open, m/s.
     wanted: &'a [f64],
     /// By contact, kg.
     stiffness: Vec<f64>,
-    /// Row of each body in the factor; none for what nothing moves.
-    row: Vec<Option<usize>>,
 }
 
 /// The multipliers: the least ones after which no contact closes as far as it is wanted to open, and those
@@ -66,7 +94,10 @@ pub(super) fn multipliers(
     wanted: &[f64],
     known: Known,
 ) -> Vec<f64> {
-    let mut problem = Problem::of(contacts, inverse_mass, wanted, known.held);
+    let own = Prepared::default();
+    let prepared = known.prepared.unwrap_or(&own);
+    let network = prepared.network(contacts, inverse_mass);
+    let mut problem = Problem::of(network, wanted, known.held);
     let count = contacts.len();
     let mut given = match known.warm.len() == count {
         true => known.warm.to_vec(),
@@ -76,20 +107,21 @@ pub(super) fn multipliers(
         *given = problem.allowed(k, *given);
     }
     problem.sweep(&mut given);
-    let mut newton = Newton::of(&problem);
+    let mut newton = Newton::of(network);
     let most = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
     let enough = known.enough.max(ROUNDING * most);
     let mut best = (f64::INFINITY, given.clone());
     let (mut is_found, mut stiffer) = (true, 0);
     for _ in 0..STEPS {
-        let missing = problem.missing(&given);
-        let worst = problem.worst(&given, &missing);
+        newton.look(&problem, &given);
+        let worst = problem.worst(&given, &newton.missing);
         if worst <= enough {
             return given;
         }
         let is_slow = is_found && worst > 0.25 * best.0;
         if worst < best.0 {
-            best = (worst, given.clone());
+            best.0 = worst;
+            best.1.copy_from_slice(&given);
         }
         if is_slow {
             // Rounding is all that is left, or there is no room.
@@ -97,44 +129,74 @@ pub(super) fn multipliers(
                 break;
             }
             stiffer += 1;
-            newton.pushes.clear();
+            newton.forget();
             problem
                 .stiffness
                 .iter_mut()
                 .for_each(|stiffness| *stiffness *= STIFFER);
         }
-        is_found = newton.step(&problem, &mut given, &missing);
+        is_found = newton.step(&problem, &mut given);
     }
     best.1
 }
 
-impl<'a> Problem<'a> {
-    fn of(
-        contacts: &'a [Joined],
-        inverse_mass: &'a [f64],
-        wanted: &'a [f64],
-        held: &'a [bool],
-    ) -> Problem<'a> {
+impl Network {
+    pub(in crate::impulse) fn of(contacts: &[Joined], inverse_mass: &[f64]) -> Network {
         let mut rows = 0..;
         let row = inverse_mass.iter().map(|&w| match w > 0.0 {
             true => rows.next(),
             false => None,
         });
-        let row = row.collect();
+        let row: Vec<Option<usize>> = row.collect();
+        let ties = contacts.iter().map(|contact| contact.bodies);
+        let ties = ties.filter_map(|(i, j)| row[i].zip(row[j]));
+        let count = row.iter().flatten().count();
+        let pattern = Pattern::of_graph(count, ties);
+        let place = |body: usize| row[body].map_or(count, |row| pattern.place[row] as usize);
+        let (mut mass, mut inverse) = (vec![0.0; count + 1], vec![0.0; count + 1]);
+        for (body, &w) in inverse_mass.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+            (mass[place(body)], inverse[place(body)]) = (1.0 / w, w);
+        }
+        let link = |contact: &Joined| {
+            let bodies = (place(contact.bodies.0), place(contact.bodies.1));
+            let yielding = inverse[bodies.0] + inverse[bodies.1];
+            let is_tie = bodies.0 < count && bodies.1 < count;
+            Link {
+                bodies,
+                normal: contact.normal,
+                block: is_tie.then(|| pattern.between(bodies.0, bodies.1)),
+                mass: if yielding > 0.0 { 1.0 / yielding } else { 0.0 },
+            }
+        };
+        Network {
+            links: contacts.iter().map(link).collect(),
+            mass,
+            inverse_mass: inverse,
+            pattern,
+        }
+    }
+
+    /// What impulses change velocities by, m/s.
+    fn change(&self, given: &[f64], change: &mut [DVec3]) {
+        change.fill(DVec3::ZERO);
+        for (link, &given) in self.links.iter().zip(given) {
+            let (i, j) = link.bodies;
+            change[i] -= given * self.inverse_mass[i] * link.normal;
+            change[j] += given * self.inverse_mass[j] * link.normal;
+        }
+    }
+}
+
+impl<'a> Problem<'a> {
+    fn of(network: &'a Network, wanted: &'a [f64], held: &'a [bool]) -> Problem<'a> {
         // By the heavier of two bodies: light ones pass on what heavy ones weigh.
-        let stiffness = contacts.iter().map(|contact| {
-            let (i, j) = contact.bodies;
-            let moved = [inverse_mass[i], inverse_mass[j]].into_iter();
-            let least = moved.filter(|&w| w > 0.0).fold(f64::INFINITY, f64::min);
-            STIFFNESS / least
-        });
+        let mass = &network.mass;
+        let stiffness = |link: &Link| STIFFNESS * mass[link.bodies.0].max(mass[link.bodies.1]);
         Problem {
-            stiffness: stiffness.collect(),
-            contacts,
-            inverse_mass,
+            stiffness: network.links.iter().map(stiffness).collect(),
+            network,
             held,
             wanted,
-            row,
         }
     }
 
@@ -152,45 +214,28 @@ impl<'a> Problem<'a> {
 
     /// Brings impulses nearer to the answer, contact by contact, there and back (Gauss, Seidel).
     fn sweep(&self, given: &mut [f64]) {
-        let mut change = self.change(given);
+        let Network {
+            links,
+            inverse_mass,
+            ..
+        } = self.network;
+        let mut change = vec![DVec3::ZERO; inverse_mass.len()];
+        self.network.change(given, &mut change);
         for _ in 0..SWEEPS {
             for k in (0..given.len()).chain((0..given.len()).rev()) {
-                let contact = &self.contacts[k];
-                let (i, j) = contact.bodies;
-                let yielding = self.inverse_mass[i] + self.inverse_mass[j];
-                if yielding > 0.0 {
-                    let missing = self.wanted[k] - contact.opening(&change);
-                    let next = self.allowed(k, given[k] + missing / yielding);
-                    let by = (next - given[k]) * contact.normal;
-                    change[i] -= self.inverse_mass[i] * by;
-                    change[j] += self.inverse_mass[j] * by;
-                    given[k] = next;
-                }
+                let link = &links[k];
+                let missing = self.wanted[k] - link.opening(&change);
+                let next = self.allowed(k, given[k] + missing * link.mass);
+                let by = (next - given[k]) * link.normal;
+                let (i, j) = link.bodies;
+                change[i] -= inverse_mass[i] * by;
+                change[j] += inverse_mass[j] * by;
+                given[k] = next;
             }
         }
     }
 
-    /// What impulses change velocities by, m/s.
-    fn change(&self, given: &[f64]) -> Vec<DVec3> {
-        let mut change = vec![DVec3::ZERO; self.inverse_mass.len()];
-        for (contact, &given) in self.contacts.iter().zip(given) {
-            let (i, j) = contact.bodies;
-            change[i] -= given * self.inverse_mass[i] * contact.normal;
-            change[j] += given * self.inverse_mass[j] * contact.normal;
-        }
-        change
-    }
-
-    /// What contacts are to open further after some impulses, m/s.
-    fn missing(&self, given: &[f64]) -> Vec<f64> {
-        let change = self.change(given);
-        let pairs = self.contacts.iter().zip(self.wanted);
-        pairs
-            .map(|(contact, wanted)| wanted - contact.opening(&change))
-            .collect()
-    }
-
-    /// How far from the answer some impulses are, m/s.
+    /// How far from the answer some impulses are after which so much is missing, m/s.
     fn worst(&self, given: &[f64], missing: &[f64]) -> f64 {
         let of = |k: usize| match given[k] > 0.0 || self.is_held(k) {
             true => missing[k].abs(),
@@ -201,133 +246,143 @@ impl<'a> Problem<'a> {
 }
 
 /// Newton's method, and its memory.
-struct Newton {
-    factor: Cholesky,
-    /// Which contacts push in the factor; none where nothing has been factored.
+struct Newton<'a> {
+    factor: Cholesky<'a>,
+    /// Which contacts push in the factor, if something has been factored, and which push now.
+    factored: Option<Vec<bool>>,
     pushes: Vec<bool>,
-    /// The change of velocity so far in a step, the next part of it, and the gradient there, by bodies.
+    /// The change of velocity so far in a step, and the next part of it, by places.
     change: Vec<DVec3>,
     way: Vec<DVec3>,
-    rows: Vec<DVec3>,
-    memory: Vec<DVec3>,
+    /// What contacts are to open further where the step starts, what they have opened since then, and
+    /// open along the way, m/s.
+    missing: Vec<f64>,
+    opened: Vec<f64>,
+    opens: Vec<f64>,
 }
 
-impl Newton {
-    fn of(problem: &Problem) -> Newton {
-        let bodies = problem.inverse_mass.len();
-        let ties = problem.contacts.iter().filter_map(|contact| {
-            let (i, j) = contact.bodies;
-            problem.row[i].zip(problem.row[j])
-        });
-        let rows = problem.row.iter().flatten().count();
+impl Newton<'_> {
+    fn of(network: &Network) -> Newton<'_> {
+        let (places, count) = (network.mass.len(), network.links.len());
         Newton {
-            factor: Cholesky::of_graph(rows, ties),
-            pushes: Vec::new(),
-            change: vec![DVec3::ZERO; bodies],
-            way: vec![DVec3::ZERO; bodies],
-            rows: vec![DVec3::ZERO; rows],
-            memory: vec![DVec3::ZERO; rows],
+            factor: Cholesky::of(&network.pattern),
+            factored: None,
+            pushes: vec![false; count],
+            change: vec![DVec3::ZERO; places],
+            way: vec![DVec3::ZERO; places],
+            missing: vec![0.0; count],
+            opened: vec![0.0; count],
+            opens: vec![0.0; count],
         }
     }
 
-    /// Takes a step of the proximal point method from impulses after which something is missing, and tells
-    /// whether it has come to its end.
-    fn step(&mut self, problem: &Problem, given: &mut [f64], missing: &[f64]) -> bool {
+    /// Forgets what has been factored.
+    fn forget(&mut self) {
+        self.factored = None;
+    }
+
+    /// Looks what is missing after some impulses.
+    fn look(&mut self, problem: &Problem, given: &[f64]) {
+        problem.network.change(given, &mut self.change);
+        let links = problem.network.links.iter().zip(problem.wanted);
+        for (missing, (link, wanted)) in self.missing.iter_mut().zip(links) {
+            *missing = wanted - link.opening(&self.change);
+        }
+    }
+
+    /// What a contact gives more, N s, once it has opened by so much.
+    fn more(&self, problem: &Problem, k: usize, opened: f64) -> f64 {
+        problem.stiffness[k] * (self.missing[k] - opened)
+    }
+
+    /// Takes a step of the proximal point method from impulses that have been looked at, and tells whether
+    /// it has come to its end.
+    fn step(&mut self, problem: &Problem, given: &mut [f64]) -> bool {
         let count = given.len();
         self.change.fill(DVec3::ZERO);
-        // What each contact has opened by the change, and opens along the way.
-        let (mut opened, mut opens) = (vec![0.0; count], vec![0.0; count]);
-        let more = |k: usize, opened: f64| problem.stiffness[k] * (missing[k] - opened);
+        self.opened.fill(0.0);
         // At first those that push now, and those that close.
-        let pushes_after = |step: usize, k: usize, opened: f64| match step {
-            0 => given[k] > 0.0 || missing[k] > 0.0,
-            _ => given[k] + more(k, opened) > 0.0,
-        };
+        for (k, pushes) in self.pushes.iter_mut().enumerate() {
+            *pushes = problem.is_held(k) || given[k] > 0.0 || self.missing[k] > 0.0;
+        }
         let mut is_found = false;
         for step in 0..NEWTON_STEPS {
-            let pushes: Vec<bool> = (0..count)
-                .map(|k| problem.is_held(k) || pushes_after(step, k, opened[k]))
-                .collect();
-            if self.pushes != pushes {
-                self.factor(problem, &pushes);
-                self.pushes = pushes;
+            if self.factored.as_ref() != Some(&self.pushes) {
+                self.factor(problem);
             }
-            // The gradient with its sign changed.
-            for (&row, (&change, &inverse)) in problem
-                .row
-                .iter()
-                .zip(self.change.iter().zip(problem.inverse_mass))
-            {
-                if let Some(row) = row {
-                    self.rows[row] = -change / inverse;
-                }
+            self.find_way(problem, given);
+            let mut is_same = true;
+            for k in 0..count {
+                let more = self.more(problem, k, self.opened[k] + self.opens[k]);
+                let pushes = problem.is_held(k) || given[k] + more > 0.0;
+                is_same &= self.pushes[k] == pushes;
+                self.pushes[k] = pushes;
             }
-            for (k, contact) in problem.contacts.iter().enumerate() {
-                let by = match self.pushes[k] {
-                    true => more(k, opened[k]),
-                    false => -given[k],
-                };
-                let (i, j) = contact.bodies;
-                if let Some(row) = problem.row[i] {
-                    self.rows[row] -= by * contact.normal;
-                }
-                if let Some(row) = problem.row[j] {
-                    self.rows[row] += by * contact.normal;
-                }
-            }
-            self.factor.solve(&mut self.rows, &mut self.memory);
-            for (way, row) in self.way.iter_mut().zip(&problem.row) {
-                *way = row.map_or(DVec3::ZERO, |row| self.rows[row]);
-            }
-            for (opens, contact) in opens.iter_mut().zip(problem.contacts) {
-                *opens = contact.opening(&self.way);
-            }
-            let is_same = (0..count).all(|k| {
-                problem.is_held(k)
-                    || self.pushes[k] == (given[k] + more(k, opened[k] + opens[k]) > 0.0)
-            });
             let length = match is_same || step < FULL_STEPS {
                 true => 1.0,
-                false => self.least_along(problem, given, missing, (&opened, &opens)),
+                false => self.least_along(problem, given),
             };
             for (change, way) in self.change.iter_mut().zip(&self.way) {
                 *change += length * *way;
             }
-            for (opened, opens) in opened.iter_mut().zip(&opens) {
+            for (opened, opens) in self.opened.iter_mut().zip(&self.opens) {
                 *opened += length * opens;
             }
             is_found = is_same;
             if is_same || length == 0.0 {
                 break;
             }
+            if length != 1.0 {
+                for k in 0..count {
+                    let more = self.more(problem, k, self.opened[k]);
+                    self.pushes[k] = problem.is_held(k) || given[k] + more > 0.0;
+                }
+            }
         }
-        for k in 0..count {
-            given[k] = problem.allowed(k, given[k] + more(k, opened[k]));
+        for (k, given) in given.iter_mut().enumerate() {
+            *given = problem.allowed(k, *given + self.more(problem, k, self.opened[k]));
         }
         is_found
     }
 
+    /// The step of Newton's method for those that push, and what contacts open by along it.
+    fn find_way(&mut self, problem: &Problem, given: &[f64]) {
+        // The gradient with its sign changed.
+        let bodies = self.change.iter().zip(&problem.network.mass);
+        for (way, (&change, &mass)) in self.way.iter_mut().zip(bodies) {
+            *way = -mass * change;
+        }
+        for (k, link) in problem.network.links.iter().enumerate() {
+            let by = match self.pushes[k] {
+                true => self.more(problem, k, self.opened[k]),
+                false => -given[k],
+            };
+            let (i, j) = link.bodies;
+            self.way[i] -= by * link.normal;
+            self.way[j] += by * link.normal;
+        }
+        self.factor.solve(&mut self.way);
+        if let Some(unmoved) = self.way.last_mut() {
+            *unmoved = DVec3::ZERO;
+        }
+        for (opens, link) in self.opens.iter_mut().zip(&problem.network.links) {
+            *opens = link.opening(&self.way);
+        }
+    }
+
     /// How far along the way the least is: where the slope, which rises from piece to piece, is
     /// nothing.
-    fn least_along(
-        &self,
-        problem: &Problem,
-        given: &[f64],
-        missing: &[f64],
-        (opened, opens): (&[f64], &[f64]),
-    ) -> f64 {
+    fn least_along(&self, problem: &Problem, given: &[f64]) -> f64 {
         let (mut inertia, mut linear) = (0.0, 0.0);
         let bodies = self.change.iter().zip(&self.way);
-        for ((change, way), &inverse) in bodies.zip(problem.inverse_mass) {
-            if inverse > 0.0 {
-                inertia += way.length_squared() / inverse;
-                linear += change.dot(*way) / inverse;
-            }
+        for ((change, way), &mass) in bodies.zip(&problem.network.mass) {
+            inertia += mass * way.length_squared();
+            linear += mass * change.dot(*way);
         }
         let slope = |length: f64| {
             let of = |k: usize| {
-                let more = problem.stiffness[k] * (missing[k] - opened[k] - length * opens[k]);
-                (problem.allowed(k, given[k] + more) - given[k]) * opens[k]
+                let more = self.more(problem, k, self.opened[k] + length * self.opens[k]);
+                (problem.allowed(k, given[k] + more) - given[k]) * self.opens[k]
             };
             linear + length * inertia - (0..given.len()).map(of).sum::<f64>()
         };
@@ -367,23 +422,23 @@ impl Newton {
     }
 
     /// Factors the matrix of contacts that push.
-    fn factor(&mut self, problem: &Problem, pushes: &[bool]) {
-        let moved = problem.inverse_mass.iter().filter(|&&w| w > 0.0);
-        self.factor.begin(moved.map(|w| 1.0 / w));
-        for (k, contact) in problem.contacts.iter().enumerate() {
-            if pushes[k] {
-                let block = problem.stiffness[k] * outer(contact.normal);
-                let (i, j) = contact.bodies;
-                let rows = (problem.row[i], problem.row[j]);
-                for row in [rows.0, rows.1].into_iter().flatten() {
-                    self.factor.add(row, block);
-                }
-                if let Some((i, j)) = rows.0.zip(rows.1) {
-                    self.factor.add_between(i, j, -block);
-                }
+    fn factor(&mut self, problem: &Problem) {
+        let Newton { factor, pushes, .. } = self;
+        let (_, moved) = problem.network.mass.split_last().unwrap_or((&0.0, &[]));
+        factor.begin(moved);
+        let links = problem.network.links.iter().zip(&problem.stiffness);
+        for ((link, &stiffness), _) in links.zip(pushes).filter(|(_, pushes)| **pushes) {
+            let block = stiffness * outer(link.normal);
+            let (i, j) = link.bodies;
+            for place in [i, j].into_iter().filter(|&place| place < moved.len()) {
+                factor.add(place, &block);
+            }
+            if let Some(between) = link.block {
+                factor.take_between(between, &block);
             }
         }
-        self.factor.factor();
+        factor.factor();
+        self.factored = Some(self.pushes.clone());
     }
 }
 
@@ -405,8 +460,11 @@ mod tests {
 
     fn solved(contacts: &[Joined], inverse_mass: &[f64], wanted: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let given = multipliers(contacts, inverse_mass, wanted, Known::default());
-        let missing = Problem::of(contacts, inverse_mass, wanted, &[]).missing(&given);
-        (given, missing)
+        let network = Network::of(contacts, inverse_mass);
+        let problem = Problem::of(&network, wanted, &[]);
+        let mut newton = Newton::of(&network);
+        newton.look(&problem, &given);
+        (given, newton.missing)
     }
 
     #[test]

@@ -233,6 +233,7 @@ impl View<'_> {
             held: &[],
             warm: &warm,
             enough: self.unseen_speed(island) / self.scene.settings.dt,
+            prepared: (kept.len() == open.len()).then_some(&places.prepared),
         };
         let given = project_with(&joined, inverse_mass, &mut acceleration, &missing, known);
         let mut force = alloc::vec![0.0; open.len()];

@@ -208,6 +208,7 @@ impl View<'_> {
                 break;
             }
             let known = Known {
+                prepared: Some(&places.prepared),
                 enough,
                 ..Known::default()
             };

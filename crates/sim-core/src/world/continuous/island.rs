@@ -4,9 +4,13 @@ use alloc::vec::Vec;
 use core::mem;
 use glam::DVec3;
 
-use super::super::{bodies::Bodies, order, state::State};
+use super::super::{
+    bodies::Bodies,
+    order::{self, InOrder},
+    state::State,
+};
 use super::view::View;
-use crate::impulse::Joined;
+use crate::impulse::{Joined, Prepared};
 
 /// Bodies and constraints that contacts tie together.
 #[derive(Clone, Debug, Default)]
@@ -15,6 +19,8 @@ pub(super) struct Island {
     pub(super) bodies: Vec<usize>,
     /// Indices of the constraints.
     pub(super) constraints: Vec<usize>,
+    /// All bodies of the constraints.
+    order: InOrder,
 }
 
 /// Who has been visited in a search for islands.
@@ -50,9 +56,7 @@ impl View<'_> {
     /// The island of a body, unless it has been visited.
     pub(super) fn island_of(&self, seed: usize, visited: &mut Visited) -> Option<Island> {
         let mut island = self.island_around(seed, visited)?;
-        if island.bodies.len() + island.constraints.len() > 2 {
-            self.sort(&mut island);
-        }
+        self.sort(&mut island);
         Some(island)
     }
 
@@ -64,6 +68,7 @@ impl View<'_> {
         let mut island = Island {
             bodies: alloc::vec![seed],
             constraints: Vec::new(),
+            order: InOrder::default(),
         };
         let mut next = 0;
         while let Some(&body) = island.bodies.get(next) {
@@ -86,16 +91,24 @@ impl View<'_> {
     /// Puts an island into an order that is not that of the places of bodies: sums over it round.
     fn sort(&self, island: &mut Island) {
         let all = self.contacts.all();
-        let pairs = island.constraints.iter().map(|&index| all[index].bodies);
-        let order = self.scene.in_order(pairs);
-        let bodies = order.bodies.iter().copied();
-        island.bodies = bodies
-            .filter(|&body| self.scene.bodies.is_movable(body))
-            .collect();
-        island.constraints.sort_by_cached_key(|&index| {
-            let contact = &all[index];
-            (order.between(contact.bodies, contact.normal), index)
-        });
+        let Island {
+            bodies,
+            constraints,
+            order,
+        } = island;
+        let pairs = constraints.iter().map(|&index| all[index].bodies);
+        let both = pairs.flat_map(|(i, j)| [i, j]);
+        let walls = both.filter(|&body| !self.scene.bodies.is_movable(body));
+        *order = self.scene.in_order(walls.chain(bodies.iter().copied()));
+        bodies.clear();
+        let ordered = order.bodies.iter().copied();
+        bodies.extend(ordered.filter(|&body| self.scene.bodies.is_movable(body)));
+        if constraints.len() > 1 {
+            constraints.sort_by_cached_key(|&index| {
+                let contact = &all[index];
+                (order.between(contact.bodies, contact.normal), index)
+            });
+        }
     }
 }
 
@@ -104,14 +117,15 @@ pub(in crate::world) struct Places {
     pub(super) bodies: Vec<usize>,
     pub(super) joined: Vec<Joined>,
     pub(super) inverse_mass: Vec<f64>,
+    pub(super) prepared: Prepared,
 }
 
 impl Places {
-    pub(super) fn of(view: View<'_>, constraints: &[usize]) -> Places {
+    pub(super) fn of(view: View<'_>, island: &Island) -> Places {
         let all = view.contacts.all();
-        let pairs = constraints.iter().map(|&index| &all[index]);
-        let pairs = pairs.map(|c| (c.bodies, c.normal));
-        Places::between(view.scene.bodies, view.scene.before, pairs)
+        let contacts = island.constraints.iter().map(|&index| &all[index]);
+        let contacts = contacts.map(|c| (c.bodies, c.normal));
+        Places::in_order(view.scene.bodies, &island.order, contacts)
     }
 
     pub(in crate::world) fn between(
@@ -119,19 +133,28 @@ impl Places {
         motion: &State,
         contacts: impl Iterator<Item = ((usize, usize), DVec3)> + Clone,
     ) -> Places {
-        let order = order::in_order(of, motion, contacts.clone().map(|(bodies, _)| bodies));
+        let both = contacts.clone().flat_map(|((i, j), _)| [i, j]);
+        Places::in_order(of, &order::in_order(of, motion, both), contacts)
+    }
+
+    fn in_order(
+        of: &Bodies,
+        order: &InOrder,
+        contacts: impl Iterator<Item = ((usize, usize), DVec3)>,
+    ) -> Places {
         let joined = contacts
             .map(|((i, j), normal)| Joined {
                 bodies: (order.place(i), order.place(j)),
                 normal,
             })
             .collect();
-        let bodies = order.bodies;
+        let bodies = order.bodies.clone();
         let inverse_mass = bodies.iter().map(|&body| 1.0 / of.mass[body]).collect();
         Places {
             bodies,
             joined,
             inverse_mass,
+            prepared: Prepared::default(),
         }
     }
 

@@ -89,7 +89,7 @@ impl Correction<'_> {
         near.sort_unstable();
         near.dedup();
         if near.iter().any(|&(i, j)| self.meet_now(i, j)) {
-            let order = self.scene.in_order(near.iter().copied());
+            let order = self.scene.in_order(near.iter().flat_map(|&(i, j)| [i, j]));
             near.sort_by_cached_key(|&pair| order.between(pair, DVec3::ZERO));
             if !self.part_all(near) && !self.part_together(near) {
                 return self.roll_back_meeting(near);
@@ -236,9 +236,7 @@ impl Correction<'_> {
     /// does all that they meet there. Immovable ones go on, and take what they meet along.
     fn roll_back(&mut self, pair: (usize, usize), back: &mut Back) -> Result<(), (usize, Cause)> {
         back.with.resize(self.scene.bodies.len(), None);
-        let solid = self
-            .scene
-            .in_order(self.scene.bodies.solid.iter().map(|&body| (body, body)));
+        let solid = self.scene.in_order(self.scene.bodies.solid.iter().copied());
         let mut pairs = alloc::vec![pair];
         while let Some((i, j)) = pairs.pop() {
             if !self.meet_now(i, j) {

@@ -121,11 +121,7 @@ impl ContactSolver<'_> {
             visited,
         };
         let mut outcome = Ok(());
-        for seed in self
-            .scene
-            .in_order(seeds.iter().map(|&body| (body, body)))
-            .bodies
-        {
+        for seed in self.scene.in_order(seeds.iter().copied()).bodies {
             if let Some(island) = self.view().island_of(seed, &mut now.visited)
                 && !island.constraints.is_empty()
             {
@@ -221,7 +217,7 @@ impl ContactSolver<'_> {
     ) -> Result<(), (usize, Cause)> {
         let time = now.time;
         let is_bundled = self.spread_bundle(island);
-        let places = Places::of(self.view(), &island.constraints);
+        let places = Places::of(self.view(), island);
         let mut solution = self.solve_velocities(island, &places, is_bundled, time)?;
         self.solve_accelerations(island, &places, &mut solution, time);
         let gone = (0..island.constraints.len())

@@ -188,6 +188,7 @@ impl View<'_> {
                     held,
                     warm: &given,
                     enough,
+                    prepared: Some(&places.prepared),
                 };
                 given = project_with(joined, inverse_mass, velocity, &closing, known);
                 let leaving = leaving(places, &before, (held, hop), (&target, &given), enough);
@@ -291,6 +292,7 @@ fn leaving(
     let missing: Vec<f64> = (0..given.len()).map(missing).collect();
     let known = Known {
         enough,
+        prepared: Some(&places.prepared),
         ..Known::default()
     };
     project_with(joined, &places.inverse_mass, &mut free, &missing, known);

@@ -53,7 +53,11 @@ impl<'a> View<'a> {
         if events.len() < 2 {
             return;
         }
-        let order = self.scene.in_order(events.iter().map(|event| event.bodies));
+        let order = self.scene.in_order(
+            events
+                .iter()
+                .flat_map(|event| [event.bodies.0, event.bodies.1]),
+        );
         events.sort_by_cached_key(|event| {
             let time = ordinal(event.time);
             (time, order.between(event.bodies, event.contact.normal))
@@ -68,9 +72,8 @@ impl<'a> View<'a> {
             !self.is_asleep(i) && !self.is_asleep(j)
         };
         let mut awake: Vec<usize> = (0..all.len()).filter(is_awake).collect();
-        let order = self
-            .scene
-            .in_order(awake.iter().map(|&index| all[index].bodies));
+        let pairs = awake.iter().map(|&index| all[index].bodies);
+        let order = self.scene.in_order(pairs.flat_map(|(i, j)| [i, j]));
         awake.sort_by_cached_key(|&index| order.between(all[index].bodies, all[index].normal));
         awake
     }
