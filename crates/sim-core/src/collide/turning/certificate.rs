@@ -1,10 +1,10 @@
-//! Certificates of boxes, and of balls about centres of mass: how long they are apart.
+//! Certificates for boxes, and for balls about centres of mass: how long they stay apart.
 //!
 //! Let `s` be the gap along a direction, `w` its derivative, and `q` a lower bound on its second derivative.
 //! Then the gap is at least `s + w t + q t²/2`.
 //!
-//! Rounding: with `S` all lengths together, placed coordinates are right to 16 roundings of `S`, so `s` is
-//! lowered by 32, and `w` by 32 of all speeds, `q` by 64 of all accelerations.
+//! Rounding: let `S` be the sum of all lengths. Placed coordinates are right to 16 roundings of `S`, so `s` is lowered
+//! by 32 of these, `w` by 32 roundings of the sum of all speeds, and `q` by 64 of the sum of all accelerations.
 
 use glam::DVec3;
 
@@ -14,10 +14,10 @@ use super::{
     view::{Direction, View},
 };
 
-/// Half of the distance of 1 to the next number.
+/// Half of the distance from 1 to the next number.
 pub(super) const UNIT: f64 = 0.5 * f64::EPSILON;
 
-/// All lengths, speeds and accelerations of a pair together.
+/// The sums of all lengths, speeds and accelerations of a pair, which bound its rounding errors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Margin {
     pub(super) size: f64,
@@ -26,13 +26,13 @@ pub(super) struct Margin {
 }
 
 impl View {
-    /// How long it takes two boxes at least to move past each other by as much as they extend, s.
+    /// A lower bound on the time in which two boxes move past each other by the sum of their sizes, s.
     pub(super) fn passing(&self, [a, b]: [&Boxed; 2]) -> f64 {
         let size = a.half.length() + a.radius + b.half.length() + b.radius;
         size / self.margin([a.farthest, b.farthest]).speed
     }
 
-    /// How long two boxes are certainly apart, s from here; 0 where nothing is known.
+    /// How long two boxes are certainly apart, s from the view's time; 0 if nothing is proven.
     pub(super) fn boxes_apart(
         &self,
         directions: &[Direction; 6],
@@ -45,7 +45,7 @@ impl View {
             self.velocity + self.second.spin.cross(placed) - self.first.spin.cross(a.centre);
         let margin = self.margin([a.farthest, b.farthest + b.radius + a.radius]);
         let bend = self.first.second * a.farthest + self.second.second * b.farthest;
-        // However they turn they stay within balls.
+        // Whatever their rotation, the boxes stay within balls about the centres of mass.
         let balls = a.farthest + a.radius + b.farthest + b.radius;
         let course = [self.offset, self.velocity, self.acceleration];
         let mut lasts = balls_part(course, balls, margin, only);
@@ -84,8 +84,8 @@ impl View {
     }
 }
 
-/// For how long two shapes are certainly apart, s from the start, as they stay within balls about their
-/// centres of mass however they turn.
+/// How long two shapes are certainly apart, s from the start. The proof uses balls about their centres of mass, in
+/// which the shapes stay for any rotation.
 pub(super) fn balls_apart(a: &Moving<'_>, b: &Moving<'_>, only: Option<DVec3>) -> f64 {
     let reach = |moving: &Moving<'_>| {
         let root = Boxed::root(moving);
@@ -106,8 +106,8 @@ pub(super) fn balls_apart(a: &Moving<'_>, b: &Moving<'_>, only: Option<DVec3>) -
     balls_part(course, balls, margin, only)
 }
 
-/// For how long balls are certainly apart, of radii that add up to a sum, by the course of one centre as seen from the
-/// other one.
+/// How long two balls are certainly apart. `balls` is the sum of their radii; the motion is that of one centre relative
+/// to the other.
 fn balls_part(
     [offset, velocity, acceleration]: [DVec3; 3],
     balls: f64,
@@ -126,9 +126,9 @@ fn balls_part(
     root(s, w, q)
 }
 
-/// No later than the first time at which `s + w t + q t²/2` is 0; `s` is positive.
+/// A lower bound on the first time at which `s + w t + q t²/2` is 0; `s` is positive.
 fn root(s: f64, w: f64, q: f64) -> f64 {
-    // Made greater by what rounding may have made it less, so that the root is no later.
+    // Raised by a bound on its rounding, so that the root is no later.
     let depth = w * w * (1.0 + 8.0 * UNIT) - 2.0 * q * s;
     let first = match (q >= 0.0, w >= 0.0) {
         (true, true) => return f64::INFINITY,

@@ -1,7 +1,7 @@
 //! All features of two shapes that touch at one time: corners in faces, and edges that cross.
 //!
-//! An impact needs more than one pair of nearest points: a cube that lands on its face
-//! touches with four corners, and does not start to rotate.
+//! An impact needs more than one pair of nearest points. For example, a cube that lands on its face touches with four
+//! corners, and does not start to rotate.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use core::ops::ControlFlow;
@@ -12,37 +12,37 @@ use super::{
     pieces::{Boxed, Item, Points},
 };
 
-/// Two points that are near each other, and the direction in which they are apart.
+/// Two points near each other, and the direction that separates them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
-    /// The points, of the first shape and of the second, as seen from the first one's centre of mass, m.
+    /// The points of the first shape and of the second, relative to the first centre of mass, m.
     pub points: [DVec3; 2],
-    /// A unit vector from the first to the second.
+    /// A unit vector from the first shape to the second.
     pub normal: DVec3,
-    /// The shape with whose surface the normal turns: 0 or 1.
+    /// The shape whose rotation turns the normal: 0 or 1.
     pub owner: usize,
-    /// Where edges cross, their directions, of the first shape and of the second: the normal stays across both.
+    /// If edges cross, their directions, of the first shape and of the second: the normal stays perpendicular to both.
     pub edges: Option<[DVec3; 2]>,
 }
 
-/// Cosine of the angle up to which the line between two near points is along the normal of their features.
-/// Where it is not, other features of theirs are nearer.
+/// The least cosine of the angle between the line of two near points and the normal of their features. If the cosine is
+/// less, other features of the two shapes are nearer.
 const ALONG: f64 = 0.75;
 
-/// Sine of the angle between edges below which no normal comes from them: their ends say it.
+/// Sine of the angle between two edges below which their cross product gives no normal; their ends give the contacts.
 const CROSSING: f64 = 1e-6;
 
-/// So many touches or fewer are compared with each other one by one.
+/// Up to this many contact points are compared with each other one by one.
 const FEW: usize = 64;
 
-/// Cosine above which normals are those of one plane.
+/// Two normals whose cosine is above this count as equal.
 const SAME: f64 = 1.0 - 1e-8;
 
-/// The features of two shapes that are no farther than `reach` (m) from each other where they are at their
-/// start, and nowhere nearer than `distance`; those of one plane are cut to the corners of their hull, which
-/// without friction do the same.
+/// The features of two shapes that are within `reach` (m) of each other at the start of their motion, where the shapes
+/// are nowhere nearer than `distance` (m). Contact points in one plane are reduced to the corners of their convex hull,
+/// which have the same effect without friction.
 ///
-/// A ball touches with one point, found elsewhere: of pairs with one there are none.
+/// A pair with a ball returns none: a ball touches at one point, which another module finds.
 pub fn features_within(
     a: &Moving<'_>,
     b: &Moving<'_>,
@@ -82,8 +82,8 @@ pub fn features_within(
     cut_to_hulls(once(found, reach))
 }
 
-/// Normals of the features of two meshes that are no farther than `reach`, m, from each other where they are at
-/// their start, both ways: the first ones that are found, and no more than `most`.
+/// Normals of the features of two meshes that are within `reach`, m, of each other at the start of their motion, in
+/// both directions. Returns the first ones found: the search ends when there are `most`.
 pub fn normals_within(a: &Moving<'_>, b: &Moving<'_>, reach: f64, most: usize) -> Vec<DVec3> {
     let mut normals: Vec<DVec3> = Vec::new();
     if let (Figure::Mesh(_), Figure::Mesh(_)) = (a.figure, b.figure) {
@@ -102,7 +102,7 @@ pub fn normals_within(a: &Moving<'_>, b: &Moving<'_>, reach: f64, most: usize) -
     normals
 }
 
-/// Corners of a mesh that are near a plane, and where they are above it, as seen from the plane's shape.
+/// The corners of a mesh near a plane, and their feet on it, relative to the centre of mass of the plane's shape.
 fn corners_on_plane(
     mesh: &Moving<'_>,
     plane: &Moving<'_>,
@@ -134,7 +134,7 @@ fn corners_on_plane(
     }
 }
 
-/// Corners in faces and crossing edges of two meshes.
+/// Corners on faces and crossing edges of two meshes.
 fn between_meshes(
     a: &Moving<'_>,
     b: &Moving<'_>,
@@ -150,7 +150,7 @@ fn between_meshes(
     let mut pairs = alloc::vec![(Boxed::root(a), Boxed::root(b))];
     let mut touches = Vec::new();
     while let Some((first, second)) = pairs.pop() {
-        // Along the axes of both; for a bound on what is near, that is enough.
+        // Axes of both boxes only: enough for a bound on the distance.
         let between = turn * second.centre + offset - first.centre;
         let is_far = |apart: DVec3, own: DVec3, other: DVec3, turn: &DMat3| {
             let half = turn.abs() * other;
@@ -193,14 +193,14 @@ fn between_meshes(
     ControlFlow::Continue(())
 }
 
-/// Corners in faces and crossing edges of two triangles in one frame.
+/// Corners on faces and crossing edges of two triangles in one frame.
 fn of_triangles(
     p: &[DVec3; 3],
     q: &[DVec3; 3],
     (distance, reach): (f64, f64),
     found: &mut Vec<ContactPoint>,
 ) {
-    // Less than that, so that a corner that is below the end of a face is not beside it.
+    // Less than `distance`, so that a corner below the border of a face does not count as beside it.
     let slack = 0.25 * distance;
     for (corners, face, owner) in [(q, p, 0), (p, q, 1)] {
         let normal = (face[1] - face[0]).cross(face[2] - face[0]);
@@ -238,7 +238,7 @@ fn of_triangles(
             if sine2.is_nan() || sine2 < CROSSING * CROSSING {
                 continue;
             }
-            // Where the lines come nearest each other.
+            // The nearest points of the two lines.
             let r = q0 - p0;
             let (s, t) = (
                 r.cross(v).dot(cross) / cross.length_squared(),
@@ -270,7 +270,7 @@ fn of_triangles(
     }
 }
 
-/// Whether a point of a triangle's plane is in it, or beside it by less than a length.
+/// Whether a point in a triangle's plane is inside the triangle, or outside by less than `slack`.
 fn is_within(point: DVec3, face: &[DVec3; 3], normal: DVec3, slack: f64) -> bool {
     (0..3).all(|k| {
         let edge = face[(k + 1) % 3] - face[k];
@@ -279,7 +279,7 @@ fn is_within(point: DVec3, face: &[DVec3; 3], normal: DVec3, slack: f64) -> bool
     })
 }
 
-/// Leaves of touches in one place along one normal one.
+/// Keeps one of all contact points that share a place and a normal.
 fn once(found: Vec<ContactPoint>, reach: f64) -> Vec<ContactPoint> {
     let mut kept: Vec<ContactPoint> = Vec::with_capacity(found.len());
     let is_same = |known: &ContactPoint, touch: &ContactPoint| {
@@ -294,7 +294,7 @@ fn once(found: Vec<ContactPoint>, reach: f64) -> Vec<ContactPoint> {
         }
         return kept;
     }
-    // By cells as wide as touches in one place may be apart.
+    // By cells as wide as contact points in one place may be apart.
     let mut cells: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
     for touch in found {
         let cell = (touch.points[1] / (2.0 * reach)).floor();
@@ -312,7 +312,7 @@ fn once(found: Vec<ContactPoint>, reach: f64) -> Vec<ContactPoint> {
     kept
 }
 
-/// Steps from a cell to itself and to those about it.
+/// Steps from a cell to itself and to its neighbours.
 const NEIGHBOURS: [[i64; 3]; 27] = {
     let mut steps = [[0; 3]; 27];
     let mut k = 0;
@@ -324,7 +324,7 @@ const NEIGHBOURS: [[i64; 3]; 27] = {
     steps
 };
 
-/// Of touches along one normal those at the corners of their hull.
+/// Reduces the contact points of each normal to the corners of their convex hull.
 fn cut_to_hulls(mut found: Vec<ContactPoint>) -> Vec<ContactPoint> {
     let mut kept = Vec::new();
     while let Some(first) = found.first().copied() {
@@ -387,7 +387,7 @@ mod tests {
         let mut digit = |count: usize| random.below(count) as f64;
         let touches: Vec<ContactPoint> = (0..2000)
             .map(|_| {
-                // On both sides of the borders of cells, and of what is one place.
+                // On both sides of the borders between cells, and of the distance within which points share a place.
                 let place = DVec3::new(digit(80), digit(12), digit(12)) - DVec3::splat(6.0);
                 let point = 0.45 * reach * place;
                 ContactPoint {

@@ -1,22 +1,22 @@
 //! The time of impact of two shapes that move and turn, never too late.
 //!
-//! A *certificate* is a direction that keeps two sets of points apart for some time: let `s` be the gap
-//! along it now, `w` how fast that changes, and the second derivative of every point's place be bounded;
-//! then the gap is above a parabola, and until that has its root the sets are apart (a plane lies between
-//! their hulls, which a rigid motion moves with their points). `certificate` has the parabolas for
-//! boxes; `separation` has directions for sets of points: triangles, points, and boxes as a whole.
+//! A *certificate* is a direction that keeps two sets of points apart for a proven time. Let `s` be the gap along this
+//! direction now and `w` its rate of change, and let the second derivative of the position of every point be bounded.
+//! Then a parabola is a lower bound on the gap. Until the first root of the parabola the sets are apart: a plane lies
+//! between their convex hulls, which a rigid motion moves with their points. `certificate` has the parabolas for
+//! boxes. `separation` has directions for sets of points: triangles, single points, and boxes as a whole.
 //!
-//! A priority queue holds pairs of boxes and of triangles, each with the time until which it is certified. The
-//! search takes the pair with the least time and certifies it anew from its place at that time. Boxes for which that
-//! is not worth its price are split into pairs of their children, which are looked at until the boxes may have gone
-//! past each other; then the boxes come back instead, so that the cost follows what is near. Every two triangles belong
-//! at every time to one pair in the queue, or to one that was certified for longer. So no contact is before the least
-//! time in the queue: **a time of impact is never later than the first contact, and the answer "no contact" is
-//! proven.** Triangles nearer than [`NEAR`] roundings that neither move apart nor are certified to the end are a
-//! contact.
+//! A priority queue holds pairs of boxes and of triangles, each with the time until which it is certified. The search
+//! takes the pair with the least time and certifies it anew from its pose at that time. If the certificate of a pair
+//! of boxes is too short to be worth its cost, the search splits the pair into pairs of their children. The children
+//! are searched only until the boxes may have moved past each other; then the pair of boxes returns to the queue, so
+//! that the cost follows the pairs that are near. At every time each two triangles belong to exactly one pair in the
+//! queue, or to a pair that was certified for longer. So no contact is before the least time in the queue: **a time of
+//! impact is never later than the first contact, and the answer "no contact" is proven.** Triangles nearer than
+//! [`NEAR`] roundings are a contact, unless they move apart or are certified to the end.
 //!
-//! Times come from poses at one time (`View`), in a frame at rest that then has the first shape's axes.
-//! All bounds are relative: the module has no constant length or time.
+//! Each time is computed from the poses at one time (`View`), in a frame at rest with the axes that the first shape
+//! has at that time. All bounds are relative: the module has no constant length or time.
 
 mod certificate;
 mod contact_set;
@@ -36,68 +36,67 @@ use pieces::{Boxed, Item, Points};
 use separation::Gap;
 use view::{Direction, View};
 
-/// What moves.
+/// The geometry of a moving shape.
 #[derive(Clone, Copy, Debug)]
 pub enum Figure<'a> {
     /// A mesh, by its tree.
     Mesh(&'a Bvh),
     /// A ball about the origin of its frame, of this radius, m.
     Ball(f64),
-    /// All below the plane through the origin of its frame with this unit normal. It does not turn.
+    /// The half-space below the plane through the origin of its frame with this unit normal. It does not turn.
     HalfSpace(DVec3),
 }
 
-/// How it is turned.
+/// The rotation of a shape over time.
 #[derive(Clone, Copy, Debug)]
 pub enum Turning<'a> {
-    /// As this tells, always.
+    /// This rotation at all times.
     Still(DQuat),
-    /// On its way: the flight turns principal axes, which are `axes` in the shape's frame
+    /// Free flight. The flight turns the principal axes; the quaternion is their rotation in the shape's frame
     /// ([`Inertia::axes`](crate::Inertia::axes)).
     Flight(&'a Flight, DQuat),
 }
 
-/// A shape on its way: its centre of mass on a parabola, and about it a rotation.
+/// A moving shape: its centre of mass follows a parabola, and the shape rotates about it.
 #[derive(Clone, Copy, Debug)]
 pub struct Moving<'a> {
-    /// What moves.
+    /// The geometry.
     pub figure: Figure<'a>,
     /// The centre of mass in the frame of the shape, m.
     pub centre: DVec3,
-    /// Where the centre of mass is at the start, m.
+    /// The centre of mass at the start, m.
     pub position: DVec3,
-    /// Its velocity at the start, m/s.
+    /// The velocity of the centre of mass at the start, m/s.
     pub velocity: DVec3,
-    /// Its acceleration, m/s².
+    /// The acceleration of the centre of mass, m/s².
     pub acceleration: DVec3,
-    /// How it turns.
+    /// The rotation about the centre of mass.
     pub turning: Turning<'a>,
 }
 
-/// Where two shapes come together.
+/// The contact of two moving shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurningTouch {
-    /// When, s from the start: at or before the first contact.
+    /// The time of the contact, s from the start: at or before the first contact.
     pub time: f64,
-    /// How far apart they are then, m.
+    /// The distance of the shapes at that time, m.
     pub distance: f64,
-    /// No more than this, m, is a contact: 2^-46 of sizes, distance and way together. A greater distance
-    /// tells that the search has ended after 2^20 pairs: until then they are apart. It takes things that whirl
-    /// within each other's reach for many thousands of turns.
+    /// The greatest distance that counts as a contact, m: 2^-46 of sizes, distance and path together. A greater
+    /// `distance` shows that the search stopped after 2^20 pairs; the shapes are apart until `time`. This takes shapes
+    /// that spin within each other's reach for many thousands of turns.
     pub near: f64,
-    /// The points nearest each other at that time, of the first shape and of the second, as seen from the
-    /// first one's centre of mass, m.
+    /// The nearest points at that time, of the first shape and of the second, relative to the first centre of mass, m.
     pub points: [DVec3; 2],
-    /// A unit vector from the first to the second, along which they were kept apart last.
+    /// Unit vector from the first shape to the second: the direction that separated them last.
     pub normal: DVec3,
-    /// The triangles, where they are meshes.
+    /// The triangles in contact; `None` for a shape that is not a mesh.
     pub faces: [Option<u32>; 2],
 }
 
-/// What an answer has cost.
+/// The cost of an answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Effort {
-    /// Poses at one time.
+    /// Number of times at which both poses were computed.
     pub views: u32,
     /// Pairs of boxes certified.
     pub boxes: u32,
@@ -105,11 +104,12 @@ pub struct Effort {
     pub pieces: u32,
 }
 
-/// Roundings of 2^-53 in which two surfaces touch; placing them is right to 16, and certificates keep 32.
+/// Two surfaces touch within this many roundings of 2^-53. Placing them has an error of up to 16 of these, and
+/// certificates keep 32.
 pub const NEAR: f64 = 128.0;
 
-/// No search that others may judge looks at more pairs of triangles, or at boxes again: it stops where it is, which is
-/// no later than a contact.
+/// The most pairs of triangles, and returns of boxes to the queue, in a search whose result is visible outside. The
+/// search then stops at the time that it has reached, which is no later than a contact.
 const MOST: u32 = 1 << 20;
 
 /// The first contact within `duration`, s; `None` proves that there is none.
@@ -119,7 +119,7 @@ pub fn first_contact(a: &Moving<'_>, b: &Moving<'_>, duration: f64) -> Option<Tu
     first_contact_counted(a, b, duration).0
 }
 
-/// The same, with its cost.
+/// `first_contact`, and its cost.
 pub fn first_contact_counted(
     a: &Moving<'_>,
     b: &Moving<'_>,
@@ -133,21 +133,21 @@ pub fn first_contact_counted(
     first_contact_with(a, b, duration, exactly)
 }
 
-/// How a search is made.
+/// Limits and tolerances of a search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Care {
-    /// Roundings that are left of a gap where shapes stop that come from afar, beside those that certificates
-    /// keep: what goes on from there is rounded once more.
+    /// Where approaching shapes stop: this many roundings of gap remain, beside those that certificates keep. The
+    /// motion that starts there is rounded once more.
     pub(crate) halt: f64,
-    /// Pairs of pieces that are looked at, and boxes that are again, at most.
+    /// The most pairs of pieces, and returns of boxes to the queue, in a search.
     pub(crate) most: u32,
-    /// Shapes that are no farther apart at the start than this times what is a contact lie on each other there, unless
-    /// they part by more before they may be back.
+    /// At the start, shapes no farther apart than this times the distance of a contact rest on each other, unless they
+    /// part by more before they may come back.
     pub(crate) reach: f64,
 }
 
 impl Care {
-    /// For what goes on from the contact.
+    /// For shapes that move on from the contact.
     pub(crate) const TO_GO_ON: Care = Care {
         halt: 64.0,
         most: 1 << 12,
@@ -155,7 +155,7 @@ impl Care {
     };
 }
 
-/// The same, made with some care.
+/// `first_contact` with given limits and tolerances.
 pub(crate) fn first_contact_with(
     a: &Moving<'_>,
     b: &Moving<'_>,
@@ -181,12 +181,12 @@ pub(crate) fn first_contact_with(
 }
 
 impl Moving<'_> {
-    /// Where the centre of mass is at a time, m.
+    /// The position of the centre of mass at a time, m.
     fn place(&self, t: f64) -> DVec3 {
         self.position + t * (self.velocity + 0.5 * t * self.acceleration)
     }
 
-    /// Turns the shape's frame into the world at a time.
+    /// The rotation from the shape's frame into the world at a time.
     pub fn rotation_at(&self, t: f64) -> DQuat {
         match self.turning {
             Turning::Still(rotation) => rotation,
@@ -194,14 +194,14 @@ impl Moving<'_> {
         }
     }
 
-    /// Where the origin of the shape's frame is at a time, m.
+    /// The position of the origin of the shape's frame at a time, m.
     pub fn origin_at(&self, t: f64) -> DVec3 {
         self.place(t) - self.rotation_at(t) * self.centre
     }
 }
 
-/// A pair that is apart until a time, and is looked at from there until another one: then it belongs to a pair of
-/// greater boxes again.
+/// A pair that is certified until `time` and has to be searched from `time` to `until`. From `until` on a pair of
+/// larger boxes covers it.
 struct Entry {
     time: f64,
     until: f64,
@@ -210,7 +210,7 @@ struct Entry {
 }
 
 impl Entry {
-    /// The same pair by the faces of whole boxes.
+    /// The same pair, with the faces of a cuboid in place of the cuboid as a whole.
     fn opened(self, roots: &[Boxed; 2]) -> Entry {
         let open = |item: Item, root: &Boxed| match item {
             Item::Cuboid => root.item,
@@ -225,7 +225,7 @@ impl Entry {
 }
 
 impl Ord for Entry {
-    /// The greatest is the one with the least time.
+    /// The entry with the least time is the greatest.
     fn cmp(&self, other: &Entry) -> Ordering {
         let pair = (self.a, self.b).cmp(&(other.a, other.b));
         other.time.total_cmp(&self.time).then(pair)
@@ -246,7 +246,7 @@ impl PartialEq for Entry {
 
 impl Eq for Entry {}
 
-/// Whether two shapes are certainly apart for a time, s, however they turn.
+/// Whether two shapes are certainly apart for a time, s, for any rotation.
 pub(crate) fn stay_apart(a: &Moving<'_>, b: &Moving<'_>, end: f64) -> bool {
     let only = match (a.figure, b.figure) {
         (Figure::HalfSpace(normal), _) => Some(normal),
@@ -278,7 +278,7 @@ fn search(
     let (whole_a, whole_b) = (Item::whole(a), Item::whole(b));
     let roots = [Boxed::root(a), Boxed::root(b)];
     let (mut now, mut apart, mut hint) = (0.0, true, None);
-    // Two sets need no queue.
+    // Two sets of points need no queue.
     while apart && whole_a.is_set() && whole_b.is_set() {
         let view = search.view(now);
         if now == 0.0 && search.apart_to_end(&view, &view.directions(), &roots) {
@@ -293,7 +293,8 @@ fn search(
     }
     let first = match apart {
         true => (whole_a, whole_b),
-        // What is within a box, or too near it to tell, is looked at face by face.
+        // No direction separates the sets: one is inside a box, or too near it. The faces of the box are searched one
+        // by one.
         false => (roots[0].item, roots[1].item),
     };
     search.in_boxes(now, first, &roots)
@@ -310,14 +311,14 @@ struct Search<'a, 'b> {
     returns: u32,
 }
 
-/// What becomes of two sets.
+/// The result of one certificate for two sets.
 enum Next {
     /// They stay apart to the end.
     Apart,
-    /// They are apart until then, by a direction in the world.
+    /// They are apart until this time, separated by this direction in the world.
     Later(f64, DVec3),
     Contact(TurningTouch),
-    /// No direction has them on either side, of which one is a box.
+    /// One of the sets is a box, and no direction separates them.
     Untold,
 }
 
@@ -327,13 +328,13 @@ impl Search<'_, '_> {
         View::new(self.bodies[0], self.bodies[1], time, self.end)
     }
 
-    /// Whether so many pairs have been looked at that the search ends where it is: boxes do not come back from then on,
-    /// so it gets to some pieces.
+    /// Whether the search has reached its limit of pairs and ends where it is. From then on boxes do not return to the
+    /// queue, so that the search reaches some pieces.
     fn is_spent(&self) -> bool {
         self.effort.pieces + self.returns >= self.care.most
     }
 
-    /// Whether the boxes around both shapes tell that they stay apart.
+    /// Whether the bounding boxes of both shapes prove that they stay apart.
     fn apart_to_end(
         &mut self,
         view: &View,
@@ -345,8 +346,8 @@ impl Search<'_, '_> {
         view.boxes_apart(directions, [a, b], self.only) >= view.left
     }
 
-    /// What becomes of two sets from the time of a view on. A direction in the world may be known that has kept them
-    /// apart before.
+    /// Certifies two sets from the time of a view on. `hint` is a direction in the world that has separated them
+    /// before, if one is known.
     fn advance(
         &mut self,
         view: &View,
@@ -372,9 +373,9 @@ impl Search<'_, '_> {
         if until >= end {
             return Next::Apart;
         }
-        // Without a proof for any time, and where they are near and come nearer.
+        // A contact: no certificate lasts for any time, or the sets are near and approach.
         let is_contact = until <= view.time || gap.distance <= gap.near && !gap.opens;
-        // Nor do they part at the start by more than that before they may be back.
+        // Resting: before they may come back, they part by no more than `reach` times the distance of a contact.
         let farthest = gap.distance + gap.parting.max(0.0) * gap.lasts;
         let is_lying = reach > 1.0 && farthest <= reach * gap.near;
         match is_contact || is_lying || self.is_spent() {
@@ -383,7 +384,7 @@ impl Search<'_, '_> {
         }
     }
 
-    /// The first contact of what is in two boxes from a time on.
+    /// The first contact of the contents of two boxes from a time on.
     fn in_boxes(
         &mut self,
         from: f64,
@@ -408,14 +409,14 @@ impl Search<'_, '_> {
             let (of_a, of_b) = (Boxed::within(a, entry.a), Boxed::within(b, entry.b));
             let both = [&of_a.around(entry.a), &of_b.around(entry.b)];
             let are_sets = entry.a.is_set() && entry.b.is_set();
-            // What is within them is looked at until they may have gone past each other, and then they themselves are.
+            // The children are searched until the boxes may have moved past each other; then the pair of boxes returns.
             let is_spent = self.is_spent();
             let passed = now + view.passing(both);
             let until = match passed > now && !is_spent {
                 true => entry.until.min(passed),
                 false => entry.until,
             };
-            // Boxes take a view that is not much older than they are.
+            // The view for boxes may be older than the entry by a part of the time that is left to search.
             let short = RENEW * (until - now);
             if now - view.time > if are_sets { 0.0 } else { short } {
                 view = self.view(now);
@@ -432,7 +433,7 @@ impl Search<'_, '_> {
                 continue;
             }
             if are_sets {
-                // Whether they lie on each other at the start is told by all that is left.
+                // Whether shapes rest on each other at the start depends on all the time that is left.
                 let end = if now == 0.0 { self.end } else { entry.until };
                 view.left = end - now;
                 match self.advance(&view, (entry.a, entry.b), end, None) {
@@ -465,8 +466,8 @@ impl Search<'_, '_> {
     }
 }
 
-/// Part of the time for which boxes are looked at after which they get new poses, and for which a certificate of theirs
-/// is worth its price. It changes cost only.
+/// A view older than this part of the time that is left to search is renewed, and a certificate of boxes shorter than
+/// this part is not worth its cost. Changes the cost only.
 const RENEW: f64 = 0.25;
 
 fn touch(view: &View, gap: &Gap) -> TurningTouch {

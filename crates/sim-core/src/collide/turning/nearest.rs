@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use super::pieces::{Kind, MOST_POINTS, Points};
 
-/// Two points, and how far they are from each other.
+/// Two points, and their distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub(super) length: f64,
     pub(super) points: [DVec3; 2],
-    /// The faces that they are on, where there are some.
+    /// The faces that contain the points, if any.
     pub(super) faces: [Option<u32>; 2],
 }
 
@@ -32,8 +32,8 @@ impl Pair {
 /// The points of a set, placed.
 type At = [DVec3; MOST_POINTS];
 
-/// The nearest points of two sets whose surfaces do not cross, placed in one frame. What cannot be nearer than
-/// what is known by a sixty-fourth, as a unit vector tells, is passed over.
+/// The nearest points of two sets whose surfaces do not cross, placed in one frame. Skips every pair of triangles that
+/// cannot be nearer than the best pair by more than a sixty-fourth, by their heights along the unit vector `along`.
 pub(super) fn nearest(
     (a, first): (&Points<'_>, &At),
     (b, second): (&Points<'_>, &At),
@@ -87,7 +87,7 @@ pub(super) fn nearest(
                     best.keep_nearer(pair);
                 }
             };
-            // Those first that are likely to be the nearest, so that few others are not passed over.
+            // The likely pairs first, so that most others can be skipped.
             for (i, k) in likely((a, first), second, &of_b[..count_b]) {
                 compare(&mut best, i, k);
             }
@@ -95,7 +95,7 @@ pub(super) fn nearest(
                 compare(&mut best, i, k);
             }
             for (i, top) in tops[..count_a].iter().enumerate() {
-                // As is all that is with one that is too low for the lowest.
+                // The triangle is too low even for the lowest triangle of the other set: skip all its pairs.
                 if bottom - top >= best.length * (1.0 - 1.0 / 64.0) {
                     continue;
                 }
@@ -108,8 +108,9 @@ pub(super) fn nearest(
     best
 }
 
-/// Of a box its two triangles on the side that is nearest to a corner of another set, each with a triangle of that one
-/// at the corner, by their places; none where the first set is no box.
+/// Two pairs of triangles that are likely to be nearest, by index: the two triangles of the box on its side nearest to
+/// the nearest corner of the other set, each with one triangle of that set at this corner. Empty if the first set is
+/// not a box.
 fn likely(
     (a, at): (&Points<'_>, &At),
     others: &At,
@@ -117,7 +118,7 @@ fn likely(
 ) -> impl Iterator<Item = (usize, usize)> + use<> {
     let axes = [1, 2, 4].map(|k| at[k] - at[0]);
     let squares = axes.map(DVec3::length_squared);
-    // How far a corner is from the box, and which side is between them.
+    // The distance of a corner from the box, and the side between them.
     let away = |p: DVec3| {
         let mut rest = p - at[0];
         let mut side = (f64::NEG_INFINITY, 0);
@@ -145,12 +146,12 @@ fn likely(
     both.into_iter().flatten()
 }
 
-/// Least and greatest corner of a box around a triangle.
+/// The least and the greatest corner of the box around a triangle.
 fn bounds([a, b, c]: &[DVec3; 3]) -> [DVec3; 2] {
     [a.min(*b).min(*c), a.max(*b).max(*c)]
 }
 
-/// The square of how far two boxes are apart, m².
+/// The square of the distance of two boxes, m².
 fn between([low, high]: &[DVec3; 2], [other_low, other_high]: &[DVec3; 2]) -> f64 {
     let apart = (*other_low - *high).max(*low - *other_high);
     apart.max(DVec3::ZERO).length_squared()
@@ -169,7 +170,7 @@ fn of_triangles(first: &[DVec3; 3], second: &[DVec3; 3]) -> Pair {
     best
 }
 
-/// The point of a triangle nearest another one (Ericson 2004, Real-Time Collision Detection, sec. 5.1.5).
+/// The point of a triangle nearest to another point (Ericson 2004, Real-Time Collision Detection, sec. 5.1.5).
 fn on_triangle(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> DVec3 {
     let (ab, ac) = (b - a, c - a);
     let [from_a, from_b, from_c] = [p - a, p - b, p - c];
@@ -200,15 +201,16 @@ fn on_triangle(p: DVec3, &[a, b, c]: &[DVec3; 3]) -> DVec3 {
     }
     let whole = of_a + of_b + of_c;
     let inside = a + of_b / whole * ab + of_c / whole * ac;
-    // Where a triangle is thin its plane has few digits, and a step to what is left has the others.
+    // The plane of a thin triangle has few correct digits; one more step towards the rest of the way corrects the
+    // others.
     let onward = step([ab, ac], p - inside);
     let inside = inside + onward[0] * ab + onward[1] * ac;
-    // Of a triangle without area nothing is inside.
+    // A triangle without area has no interior.
     if inside.is_finite() { inside } else { a }
 }
 
-/// The sum of multiples of two vectors that comes nearest to a third one; no numbers where the two are
-/// along each other.
+/// The factors of the linear combination of two vectors that is nearest to a third one; not finite if the two are
+/// parallel.
 fn step([u, v]: [DVec3; 2], to: DVec3) -> [f64; 2] {
     let (uu, vv, uv) = (u.dot(u), v.dot(v), u.dot(v));
     let (along_u, along_v) = (u.dot(to), v.dot(to));
@@ -236,7 +238,7 @@ fn segments([p, p1]: [DVec3; 2], [q, q1]: [DVec3; 2]) -> Pair {
     } else if t > 1.0 {
         (s, t) = (((uv - ur) / uu).clamp(0.0, 1.0), 1.0);
     } else if 0.0 < s && s < 1.0 {
-        // As for thin triangles.
+        // One more step, as for thin triangles.
         let [onward, back] = step([u, v], (q + t * v) - (p + s * u));
         if onward.is_finite() && back.is_finite() {
             (s, t) = ((s + onward).clamp(0.0, 1.0), (t - back).clamp(0.0, 1.0));

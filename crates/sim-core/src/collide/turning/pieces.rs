@@ -1,12 +1,12 @@
 //! The contents of trees relative to the centre of mass: boxes, and sets of points that are apart from others if
-//! their hulls are.
+//! their convex hulls are.
 
 use glam::DVec3;
 
 use super::{Figure, Moving};
 use crate::bvh::{Bvh, Cuboid, LEAF, WIDTH};
 
-/// A node of a tree, or a set of points: a triangle by its leaf and lane, a point, or all of a box.
+/// A node of a tree, or a set of points: a triangle (by its leaf and lane), a single point, or a cuboid as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Item {
     Node(u32),
@@ -15,7 +15,7 @@ pub(super) enum Item {
 }
 
 impl Item {
-    /// What a search starts from.
+    /// The item from which a search starts.
     pub(super) fn whole(moving: &Moving<'_>) -> Item {
         match moving.figure {
             Figure::Mesh(tree) if tree.cuboid().is_some() => Item::Cuboid,
@@ -33,9 +33,9 @@ impl Item {
 pub(super) struct Boxed {
     pub(super) centre: DVec3,
     pub(super) half: DVec3,
-    /// What a ball adds all around, m.
+    /// A ball extends the box by this radius on all sides, m.
     pub(super) radius: f64,
-    /// No point of it is farther from the centre of mass, m; the radius apart.
+    /// The greatest distance of a point of the box from the centre of mass, m, without the radius.
     pub(super) farthest: f64,
     pub(super) item: Item,
 }
@@ -47,7 +47,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// A box around all of them.
+    /// A box around all boxes of the row.
     pub(super) fn around(&self, item: Item) -> Boxed {
         let [first, rest @ ..] = &self.boxes[..self.count] else {
             unreachable!("no node is empty")
@@ -79,7 +79,7 @@ impl Boxed {
         }
     }
 
-    /// A point with what is within a radius about it.
+    /// A point, extended by a radius.
     fn point(moving: &Moving<'_>, radius: f64) -> Boxed {
         Boxed {
             radius,
@@ -87,12 +87,12 @@ impl Boxed {
         }
     }
 
-    /// All of a shape; of a half-space a point of its plane.
+    /// The box around the whole shape; for a half-space, a point of its plane.
     pub(super) fn root(moving: &Moving<'_>) -> Boxed {
         match moving.figure {
             Figure::Mesh(tree) => {
                 let bounds = tree.bounds();
-                // Boxes of f32 about centres of f64 may round by what a box of its size does.
+                // A box with f32 bounds and an f64 centre may round as much as any box of its size.
                 let centre = bounds.centre() - moving.centre;
                 let half = bounds.half_extent() * (1.0 + f64::EPSILON);
                 Boxed::new(centre, half, Item::Node(tree.root()))
@@ -102,7 +102,7 @@ impl Boxed {
         }
     }
 
-    /// What is in a box, or that itself where it is not to be split.
+    /// The boxes inside a box, or the box itself if it cannot be split.
     pub(super) fn within(moving: &Moving<'_>, item: Item) -> Row {
         let only = |boxed: Boxed| Row {
             boxes: [boxed; WIDTH],
@@ -152,26 +152,26 @@ fn between(low: DVec3, high: DVec3, item: Item) -> Boxed {
     Boxed::new(0.5 * (low + high), half, item)
 }
 
-/// Points of which a set has no more.
+/// The most points in a set.
 pub(super) const MOST_POINTS: usize = 8;
 
 /// A set of points about the centre of mass, in the frame of the shape.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Points<'a> {
-    /// The last one as often as it takes.
+    /// The points. If there are fewer, the last one is repeated.
     pub(super) at: [DVec3; MOST_POINTS],
     pub(super) kind: Kind<'a>,
-    /// What is within this of them belongs to them, m.
+    /// All that is within this distance of the hull belongs to the set, m.
     pub(super) radius: f64,
 }
 
-/// What a set is the hull of.
+/// The shape of a set's hull.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind<'a> {
     Point,
     /// A face of a mesh.
     Triangle(u32),
-    /// Corners are numbered as there.
+    /// A box; its corners are numbered as in `Cuboid`.
     Cuboid(&'a Cuboid),
 }
 
@@ -198,12 +198,12 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// The first three, which are those of a triangle.
+    /// The first three points: the corners if the set is a triangle.
     pub(super) fn corners(&self) -> [DVec3; 3] {
         [self.at[0], self.at[1], self.at[2]]
     }
 
-    /// The triangles of the surface by their points, and which faces of the mesh they are.
+    /// The triangles of the surface, by the indices of their points and the face of the mesh, and their number.
     pub(super) fn triangles(&self) -> ([([u8; 3], u32); 12], usize) {
         let mut triangles = [([0; 3], 0); 12];
         let count = match self.kind {
@@ -234,7 +234,8 @@ impl<'a> Points<'a> {
     }
 }
 
-/// The corners of a box between two of them, by the number that its axes give.
+/// The eight corners of a box with the given low and high corners. Bit `k` of a corner's index selects the end on axis
+/// `k`.
 fn corners([low, high]: [DVec3; 2]) -> [DVec3; MOST_POINTS] {
     let mut corners = [low; MOST_POINTS];
     for (k, corner) in corners.iter_mut().enumerate() {

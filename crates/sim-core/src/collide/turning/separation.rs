@@ -1,16 +1,17 @@
 //! How long a direction keeps the hulls of two sets of points apart.
 //!
 //! A direction may be constant, turn with one shape as the normal of its face does, or stay perpendicular to an edge of
-//! each: then it separates points that lie in a face, or roll on an edge, for as long as they are apart. Along a
-//! direction `n` every point has a height `n·p`. With its first two derivatives, and a bound `J` on the third
-//! derivative of the difference of two heights, the gap between the lowest point of the one set and the highest of
-//! the other is at least
+//! each shape. The last two kinds separate points that lie in a face, or roll on an edge, for as long as these are
+//! apart. Along a direction `n` every point has a height `n·p`. Let `h`, `v` and `c` be the height and its first two
+//! derivatives, and let `J` bound the third derivative of the difference of two heights. Then the gap between the
+//! lowest point of one set and the highest point of the other is at least
 //!
 //! `min (h + v t + (c - k) t²/2) - max (h + v t + (c - k) t²/2) - J t³/6`,
 //!
-//! for any `k`, and where each `c - k` is cut at 0 to be no greater below and no less above, this is concave:
-//! where it is positive it has been so since the start. The same holds for bounds on the second derivatives
-//! in place of the second derivatives themselves and of `J`. So the root of one function tells for how long a
+//! for any `k`. Cut each `c - k` at 0: to at most 0 in the minimum and to at least 0 in the maximum. The bound still
+//! holds and is concave, so where it is positive it has been positive since the start. The same holds if bounds on the
+//! second derivatives take the place of the second derivatives and of `J`. So the root of one function tells how long a
+//! direction separates all pairs of points, at the cost of one sum over the points.
 //! direction separates all pairs of points, at the cost of one sum over the points.
 
 use glam::DVec3;
@@ -23,45 +24,47 @@ use super::{
     view::{Spinning, View},
 };
 
-/// What is between two sets.
+/// The gap between two sets, and how long it certainly stays open.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gap {
-    /// How far they are apart now, m, or less where they are not near each other.
+    /// The distance of the sets now, m; a lower bound on it if they are not near each other.
     pub(super) distance: f64,
-    /// As near as this is touching, m.
+    /// The greatest distance that counts as a contact, m.
     pub(super) near: f64,
-    /// They are apart for so long, s.
+    /// The sets are apart for this time, s.
     pub(super) lasts: f64,
-    /// Whether some direction has them on either side now.
+    /// Whether some direction separates the sets now.
     pub(super) is_apart: bool,
-    /// Whether the nearest points part along the direction that tells so, and fast enough beside what is near
-    /// them for this to be followed.
+    /// Whether the nearest points move apart along the separating direction, fast enough compared with the closing
+    /// speed of points near them for the search to follow them.
     pub(super) opens: bool,
-    /// The speed at which they part along that direction at least, where they are near, m/s.
+    /// A lower bound on the speed at which the nearest points part along the separating direction, m/s; computed only
+    /// if the sets are near.
     pub(super) parting: f64,
     pub(super) normal: DVec3,
     pub(super) points: [DVec3; 2],
     pub(super) faces: [Option<u32>; 2],
 }
 
-/// Boxes nearer than this times what is a contact are looked at along the line between their nearest points.
+/// For boxes nearer than this times the distance of a contact, the line between their nearest points is tried too.
 const NEARLY: f64 = 1024.0;
 
-/// Nearest points that part by less than this beside the speed at which corners near them close are in
-/// contact: to follow them would take as many certificates as this is small.
+/// Nearest points that part more slowly than this part of the closing speed of points near them are in contact. To
+/// follow them would take a number of certificates inversely proportional to this constant.
 const FOLLOWED: f64 = 1.0 / 1024.0;
 
-/// A certificate for this part of what is left is not made longer. It changes cost only.
+/// A certificate that covers this part of the time left is not improved. Changes the cost only.
 const ENOUGH: f64 = 0.125;
 
-/// A direction of unit length now, its derivatives, and bounds on it and three of them for what is left.
+/// A separating direction: its value now (a unit vector), its derivatives now, and bounds on its length and on those of
+/// its first three derivatives for the time left.
 #[derive(Clone, Copy)]
 struct Direction {
     along: DVec3,
     first: DVec3,
     second: DVec3,
     most: [f64; 4],
-    /// The set with which it turns, whose heights stay.
+    /// The set with which the direction turns; the heights of its points are constant.
     owner: Option<usize>,
 }
 
@@ -87,7 +90,7 @@ impl Direction {
         }
     }
 
-    /// Across an edge of each; none where they are along each other.
+    /// The direction across an edge of each shape; `None` if the edges are parallel.
     fn across(edges: [DVec3; 2], with: [&Spinning; 2]) -> Option<Direction> {
         let [e, f] = edges.map(DVec3::normalize);
         let along = e.cross(f);
@@ -127,7 +130,7 @@ impl Direction {
     }
 }
 
-/// How points with one spin move: about an origin that is on a parabola.
+/// The motion of points that share a spin: about an origin that follows a parabola.
 #[derive(Clone, Copy)]
 struct Motion<'a> {
     origin: DVec3,
@@ -136,23 +139,23 @@ struct Motion<'a> {
     spinning: &'a Spinning,
 }
 
-/// Bounds on second and third derivatives of heights, beside what is common to all points.
+/// Bounds on the second and third derivatives of heights, without the part that is common to all points.
 #[derive(Clone, Copy, Default)]
 struct Bend {
     second: f64,
     third: f64,
 }
 
-/// A set, placed about its centre of mass with the axes of the view.
+/// A set of points relative to its centre of mass, along the axes of the view.
 struct Placed<const L: usize> {
     x: [f64; L],
     y: [f64; L],
     z: [f64; L],
-    /// Of the centre of mass, m.
+    /// The greatest distance of a point from the centre of mass, m.
     farthest: f64,
 }
 
-/// Heights along a direction with their first two derivatives.
+/// Heights along a direction, and their first two derivatives.
 struct Course<const L: usize> {
     at: [f64; L],
     speed: [f64; L],
@@ -181,7 +184,7 @@ impl<const L: usize> Placed<L> {
         core::array::from_fn(|k| base + (n.x * self.x[k] + n.y * self.y[k] + n.z * self.z[k]))
     }
 
-    /// Derivatives of heights that are known.
+    /// The heights with their derivatives at the view's time.
     fn course(&self, at: [f64; L], direction: &Direction, motion: &Motion<'_>) -> Course<L> {
         let &Direction {
             along,
@@ -221,7 +224,7 @@ impl<const L: usize> Placed<L> {
         ];
         let away = motion.origin.length() + far + by_time[0] * left;
         let [n0, n1, n2, n3] = direction.most;
-        // Where the direction stays, what the origin does is the same for all, and known.
+        // If the direction is constant, the acceleration of the origin is known, and the same for all points.
         let own = if n1 == 0.0 { second * far } else { by_time[1] };
         Bend {
             second: n2 * away + 2.0 * n1 * by_time[0] + n0 * own,
@@ -231,8 +234,8 @@ impl<const L: usize> Placed<L> {
 }
 
 impl<const L: usize> Course<L> {
-    /// Height of the lowest point after a time, as it is at most bent by what is below `common`, and the
-    /// least speed of those that are there.
+    /// The height of the lowest point after time `t`, and the least speed of the points at that height. Each point
+    /// has the second derivative `bend - common`, cut at 0 to be no greater.
     #[inline]
     fn lowest(&self, t: f64, common: f64) -> (f64, f64) {
         let (mut lowest, mut slope) = (f64::INFINITY, f64::INFINITY);
@@ -252,7 +255,7 @@ impl<const L: usize> Course<L> {
         (lowest, slope)
     }
 
-    /// The same seen from the other side, where what is highest is lowest.
+    /// The same along the opposite direction, so that the highest point becomes the lowest.
     fn reversed(self) -> Course<L> {
         Course {
             at: self.at.map(|at| -at),
@@ -262,8 +265,8 @@ impl<const L: usize> Course<L> {
     }
 }
 
-/// The least gap after a time above the highest of a set, which is given reversed, and below the lowest of
-/// another one, and its slope.
+/// A lower bound on the gap after time `t`, and its slope. The gap lies above the highest point of the set `below`,
+/// which is given reversed, and below the lowest point of the set `above`.
 fn gap_after<const M: usize, const N: usize>(
     (below, above): (&Course<M>, &Course<N>),
     (common, floor): (f64, &Floor),
@@ -274,7 +277,7 @@ fn gap_after<const M: usize, const N: usize>(
     (above.0 + below.0 + least.0, above.1 + below.1 + least.1)
 }
 
-/// The least of a gap and of its derivatives beside what points have of them.
+/// Lower bounds on the gap and its derivatives, without the parts that the points have in `Course`.
 #[derive(Clone, Copy)]
 struct Floor {
     gap: f64,
@@ -294,12 +297,13 @@ impl Floor {
     }
 }
 
-/// Rounds in which a root is drawn together, and how near that is. They change cost only.
+/// The most rounds in which `root` narrows its interval, and the relative width at which it stops. Both change the
+/// cost only.
 const ROUNDS: u32 = 8;
 const DRAWN: f64 = 1.0 / 65536.0;
 
-/// No later than the first root of a concave function that is positive at 0, if that is before `left`, and
-/// infinity else; the function tells its slope as well.
+/// A lower bound on the first root of a concave function that is positive at 0; infinity if the root is not before
+/// `left`. The function returns its value and its slope.
 fn root(left: f64, of: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut low, (mut gap, mut slope)) = (0.0, of(0.0));
     let (mut high, mut below) = (left, of(left).0);
@@ -307,13 +311,13 @@ fn root(left: f64, of: impl Fn(f64) -> (f64, f64)) -> f64 {
         return f64::INFINITY;
     }
     for _ in 0..ROUNDS {
-        // A tangent is above it,
+        // A tangent is above the function,
         let tangent = low - gap / slope;
         if slope < 0.0 && tangent < high {
             (high, below) = (tangent, of(tangent).0.min(0.0));
         }
-        // and a chord below, which may be far from it where the function is flat at first. Where they meet
-        // rounding decides, and half of it is below as well.
+        // and a chord is below it. The chord may be far below if the function is flat at first. Where tangent and chord
+        // meet, rounding decides; half of the interval is below the function as well.
         let share = gap / (gap - below);
         let middle = low + 0.5 * (high - low);
         for time in [
@@ -338,10 +342,10 @@ fn root(left: f64, of: impl Fn(f64) -> (f64, f64)) -> f64 {
     low * (1.0 - 32.0 * UNIT)
 }
 
-/// A chord is cut by this, so that its end is below.
+/// A chord is shortened by this part, so that its end is below the function.
 const SHORT: f64 = 1.0 / 65536.0;
 
-/// Two sets at the time of a view.
+/// Two sets at the time of a view, and the best certificate so far.
 struct Sets<'a, const M: usize, const N: usize> {
     view: &'a View,
     first: Placed<M>,
@@ -350,13 +354,13 @@ struct Sets<'a, const M: usize, const N: usize> {
     margin: Margin,
     near: f64,
     halt: f64,
-    /// The widest gap along any direction so far.
+    /// The widest gap so far, and its direction.
     widest: (f64, DVec3),
     lasts: f64,
     direction: Option<Direction>,
 }
 
-/// How both move, as seen from the centre of mass of the first, or of the second.
+/// The motions of both sets relative to the centre of mass of the first set, or of the second.
 fn motions(view: &View, from_second: bool) -> [Motion<'_>; 2] {
     let motion = |sign: f64, spinning| Motion {
         origin: sign * view.offset,
@@ -371,7 +375,8 @@ fn motions(view: &View, from_second: bool) -> [Motion<'_>; 2] {
 }
 
 impl<const M: usize, const N: usize> Sets<'_, M, N> {
-    /// Tries a direction, from the first to the second; keeps it if it serves longer than others.
+    /// Tries a direction, oriented from the first set to the second. Keeps it if it separates the sets for longer than
+    /// all before.
     #[inline(never)]
     fn attempt(&mut self, direction: Direction) {
         let motions = motions(self.view, direction.owner == Some(1));
@@ -405,7 +410,7 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
         let size = self.view.offset.length() + self.first.farthest + self.second.farthest;
         let speed = self.margin.speed * n0 + n1 * size;
         let bend = self.margin.bend * n0 + 2.0 * n1 * self.margin.speed + n2 * size;
-        // What comes from farther than a contact stops where there is room for another rounding.
+        // Sets that come from farther than a contact stop early, with room for another rounding.
         let room = match gap > self.near - 32.0 * UNIT * self.margin.size {
             true => self.halt * UNIT * self.margin.size,
             false => 0.0,
@@ -416,16 +421,16 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
             second: -64.0 * UNIT * bend,
             third: -(bend_a.third + bend_b.third),
         };
-        // By the second derivatives and a bound on the third,
+        // One certificate by the second derivatives and a bound on the third,
         let common = a.bend[(0..M).find(|&k| low[k] == top).unwrap_or(0)];
         let mut a = a.reversed();
         let by_third = |t: f64| gap_after((&a, &b), (common, &floor), t);
         let mut lasts = self.lasts;
-        // the best so far is not beaten by what fails before.
+        // skipped if it fails before the end of the best so far;
         if lasts == 0.0 || by_third(lasts.min(left)).0 > 0.0 {
             lasts = lasts.max(root(left, by_third));
         }
-        // or by a bound on the second derivatives.
+        // another one by a bound on the second derivatives.
         let bent = bend_a.second + bend_b.second;
         if lasts < left && -floor.third * left > 3.0 * bent {
             let common = match n1 == 0.0 {
@@ -446,7 +451,7 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
         }
     }
 
-    /// Greatest speed at which points close that are near the plane of a direction.
+    /// The greatest closing speed of points near the separating plane of a direction.
     fn closing(&self, direction: &Direction) -> f64 {
         let motions = motions(self.view, direction.owner == Some(1));
         let n = direction.along;
@@ -465,7 +470,7 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
     }
 }
 
-/// Directions that a set has of its own.
+/// The directions that the features of a set give: normals of faces, and edges.
 #[derive(Clone, Copy)]
 struct Own {
     normals: [DVec3; 3],
@@ -511,9 +516,9 @@ impl Own {
 }
 
 impl View {
-    /// What is between two sets, and how long it stays. `known` has the only direction that they are kept apart along,
-    /// and one that is tried first; `care` the roundings of a gap that are left where they stop
-    /// ([`Care::halt`](super::Care::halt)), and how near they are where it is told whether they part
+    /// The gap between two sets, and how long it stays open. `known` has the only direction along which the sets may be
+    /// separated, and one that is tried first. `care` has the roundings of a gap that are left where the sets stop
+    /// ([`Care::halt`](super::Care::halt)), and how near the sets must be for the question whether they part
     /// ([`Care::reach`](super::Care::reach)).
     pub(super) fn sets_apart(
         &self,
@@ -571,7 +576,7 @@ impl View {
             }
             None => {
                 let pair = sets.between((a, &a.at), (b, &second), &own, hint);
-                // Whether they part is asked of the nearest points.
+                // The nearest points decide whether the sets part.
                 let (widest, along) = sets.widest;
                 let is_asked = pair.is_none() && widest <= reach * near;
                 pair.or_else(|| is_asked.then(|| nearest((a, &a.at), (b, &second), along)))
@@ -611,10 +616,10 @@ impl View {
 }
 
 impl<const M: usize, const N: usize> Sets<'_, M, N> {
-    /// Tries directions at rest along a vector, from the first to the second as far as both are on sides of
-    /// their own.
+    /// Tries the constant direction along a vector, oriented from the first set to the second (`between` is a vector
+    /// from a point of the first to a point of the second).
     fn along(&mut self, vector: DVec3, between: DVec3) {
-        // Also where squares of lengths would be no numbers.
+        // Scaled first, because squares of lengths may overflow or underflow.
         let scaled = vector / vector.abs().max_element();
         let n = scaled / scaled.length();
         if n.is_finite() {
@@ -623,7 +628,7 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
         }
     }
 
-    /// Tries all that may tell two sets apart. The nearest points, where they were asked for.
+    /// Tries all directions that may separate two sets. Returns the nearest points if they were computed.
     fn between(
         &mut self,
         (a, first): (&Points<'_>, &[DVec3; MOST_POINTS]),
@@ -643,7 +648,7 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
         let has_room = matches!(a.kind, Kind::Cuboid(_)) || matches!(b.kind, Kind::Cuboid(_));
         let mut pair = None;
         if has_room {
-            // Centres, which are in the middle of them.
+            // The means of the corners are the centres of the sets.
             let middle = |at: &[DVec3; MOST_POINTS], count: usize| {
                 at[..count].iter().sum::<DVec3>() / count as f64
             };
@@ -656,7 +661,7 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
         if is_done(self) {
             return pair;
         }
-        // Near each other only features' own directions have enough digits.
+        // Of sets near each other, only the directions of features have enough correct digits.
         for normal in own.iter().flat_map(Own::normals) {
             self.along(*normal, between);
         }
@@ -673,8 +678,8 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
                 self.along(own.normals[0].cross(edge), between);
             }
         }
-        // Those that turn with what they belong to: what lies in a face, or tips over an edge, is kept apart by no
-        // direction at rest for long.
+        // Directions that turn with a shape. No constant direction separates for long a shape that lies in a face or
+        // tips over an edge.
         if has_room && !is_done(self) {
             self.along_turning(own, between);
             if is_done(self) {
@@ -686,8 +691,8 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
             self.along(nearest.points[1] - nearest.points[0], between);
             pair = Some(nearest);
         }
-        // And where a corner is nearest to an edge, or to a corner with an edge across, the direction
-        // between them, which must be exact across the edge only.
+        // If a corner is nearest to an edge, or to a corner at the end of an edge, try the direction between the
+        // nearest points, made exactly perpendicular to the edge.
         if let Some(pair) = pair {
             let straight = pair.points[1] - pair.points[0];
             for side in own.iter().flat_map(Own::edges) {
@@ -742,7 +747,7 @@ impl<const M: usize, const N: usize> Sets<'_, M, N> {
     }
 }
 
-/// The point that is lowest above a plane through the first centre of mass.
+/// The lowest point of a set above a plane through the first centre of mass.
 fn below(normal: DVec3, of: &Points<'_>, points: &[DVec3; MOST_POINTS]) -> Pair {
     let mut lowest = 0;
     for (k, &p) in points.iter().enumerate() {

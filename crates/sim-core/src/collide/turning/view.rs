@@ -4,17 +4,17 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::{Moving, Turning, certificate::Margin};
 
-/// Poses and velocities at a time, in a frame at rest with the axes that the first shape has then, and
-/// its origin where that one's centre of mass is.
+/// Poses and velocities at one time, in a frame at rest. It has the axes of the first shape at that time, and its
+/// origin at the first centre of mass.
 pub(super) struct View {
     pub(super) time: f64,
-    /// What is left from here.
+    /// The time from here to the end, s.
     pub(super) left: f64,
-    /// Turns this frame into the world.
+    /// The rotation from this frame into the world.
     pub(super) axes: DQuat,
-    /// Turns the second shape's frame into this one.
+    /// The rotation from the second shape's frame into this one.
     pub(super) turn: DMat3,
-    /// Of the second centre of mass relative to the first.
+    /// The second centre of mass relative to the first.
     pub(super) offset: DVec3,
     pub(super) velocity: DVec3,
     pub(super) acceleration: DVec3,
@@ -22,18 +22,19 @@ pub(super) struct View {
     pub(super) second: Spinning,
 }
 
-/// How one of both turns at that time, and bounds for what is left.
+/// The rotational motion of one shape at that time, and bounds for the time left.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Spinning {
     pub(super) spin: DVec3,
     pub(super) turning: DVec3,
-    /// On the speed, and on second and third derivatives of a place, each a metre from the centre of mass.
+    /// Bounds on the speed, and on the second and third derivatives of position, of a point 1 m from the centre of
+    /// mass.
     pub(super) fastest: f64,
     pub(super) second: f64,
     pub(super) third: f64,
 }
 
-/// A direction, and what boxes extend and move along it for a metre of half extent.
+/// A direction, with the extent of the boxes along it and the speed of that extent, both per metre of half extent.
 #[derive(Clone, Copy)]
 pub(super) struct Direction {
     pub(super) along: DVec3,
@@ -54,7 +55,7 @@ impl View {
         };
         let (first, second) = (seen(first), seen(second));
         let turn = DMat3::from_quat((to_frame * rotation_b).normalize());
-        // Differences first: where in the world both are is no matter.
+        // Differences first, so that the result does not depend on where in the world both shapes are.
         let (v, acceleration) = (b.velocity - a.velocity, b.acceleration - a.acceleration);
         let offset = (b.position - a.position) + time * (v + 0.5 * time * acceleration);
         View {
@@ -70,14 +71,14 @@ impl View {
         }
     }
 
-    /// Directions that boxes are compared along: axes of both.
+    /// The directions along which boxes are compared: the axes of both shapes.
     pub(super) fn directions(&self) -> [Direction; 6] {
         let [x, y, z] = DVec3::AXES.map(|axis| self.direction(axis));
         let [u, v, w] = DVec3::AXES.map(|axis| self.direction(self.turn * axis));
         [x, y, z, u, v, w]
     }
 
-    /// Of a unit vector.
+    /// The extents along a unit vector.
     pub(super) fn direction(&self, along: DVec3) -> Direction {
         let back = self.turn.transpose();
         Direction {
@@ -90,17 +91,17 @@ impl View {
         }
     }
 
-    /// What rounding does to places and velocities of what is so far from both centres of mass, m.
+    /// Bounds on rounding for points at these distances from the two centres of mass, m.
     pub(super) fn margin(&self, [a, b]: [f64; 2]) -> Margin {
         let speed = self.velocity.length() + self.first.fastest * a + self.second.fastest * b;
-        // Angles and offsets are rounded by what they have become since the start.
+        // Angles and offsets are rounded relative to their change since the start.
         let size = self.offset.length() + a + b + speed * self.time;
         let bend = self.acceleration.length() + self.first.second * a + self.second.second * b;
         Margin { size, speed, bend }
     }
 }
 
-/// Rotation of the shape's frame, and how it goes on.
+/// The rotation of the shape's frame, its motion, and bounds for the time left.
 fn spinning(moving: &Moving<'_>, time: f64, left: f64) -> (DQuat, Spinning) {
     match moving.turning {
         Turning::Still(rotation) => (rotation.normalize(), Spinning::default()),
