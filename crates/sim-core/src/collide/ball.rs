@@ -1,10 +1,9 @@
 //! A ball against one mesh.
 //!
-//! The distance of a moving point from a triangle is a convex function of time, so Newton's method
-//! from before the contact never goes past it: a tangent lies below the function. One loop serves
-//! faces, edges and vertices, and a point is a ball of radius zero. All arithmetic is f64: distances are
-//! right to within 2^-49 times the sum of the magnitudes of coordinates, radius and motion, except for
-//! triangles with angles as small as that.
+//! The distance of a moving point from a triangle is a convex function of time. A tangent lies below the function, so
+//! Newton's method from before the contact never goes past it. One loop serves faces, edges and vertices; a point is a
+//! ball of radius zero. All arithmetic is f64. Distances are right to within 2^-49 times the sum of the magnitudes of
+//! coordinates, radius and motion, except for triangles with angles as small as that.
 
 use core::ops::ControlFlow;
 use glam::DVec3;
@@ -18,25 +17,24 @@ use crate::{
 /// The first contact of a moving ball with a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallTouch {
-    /// Part of the motion done at the contact, 0 to 1, rounded down.
+    /// The part of the motion before the contact, 0 to 1, rounded down.
     pub time: f64,
-    /// Where the mesh is touched, in its frame, m (rounded).
+    /// The point of the mesh that is touched, in the mesh's frame, m (rounded).
     pub point: DVec3,
-    /// Unit normal, from the mesh to the ball (rounded).
+    /// Unit normal from the mesh to the ball (rounded).
     pub normal: DVec3,
-    /// The triangle of the mesh; one of them where an edge or a vertex is touched.
+    /// The triangle of the mesh that is touched; if an edge or a vertex is touched, one of its triangles.
     pub face: u32,
 }
 
-/// The first entering contact of a mesh with a ball about `centre` that moves by `motion`, all in the
-/// mesh's frame, m. `None` if there is none on the way, and where numbers are none, beyond 1e100 m,
-/// or the radius is negative.
+/// The first entering contact of a mesh with a ball about `centre` that moves by `motion`, all in the mesh's frame, m.
+/// `None` if there is no contact within the motion, if a number is not finite or beyond 1e100 m, or if the radius is
+/// negative.
 ///
-/// At the contact the motion leads towards what is touched. A ball that overlaps the surface at the
-/// start touches it at time 0, or not at all if it parts. Before the returned time the distance is
-/// more than the radius but for 2^-48 times the sum of the magnitudes of all coordinates, the radius
-/// and the motion; the true contact is not before it, nor later than the same length takes at the
-/// normal speed.
+/// At an entering contact the motion leads towards the feature that is touched. A ball that overlaps the surface at the
+/// start touches it at time 0, or not at all if it moves away. Before the returned time the distance is more than the
+/// radius, up to 2^-48 times the sum of the magnitudes of all coordinates, the radius and the motion. The true contact
+/// is not before the returned time, and later at most by the time that this length takes at the normal speed.
 pub fn ball_touch(mesh: &Bvh, centre: DVec3, radius: f64, motion: DVec3) -> Option<BallTouch> {
     if !(is_ball(centre, radius) && is_in_range(motion)) {
         return None;
@@ -48,10 +46,11 @@ pub fn ball_touch(mesh: &Bvh, centre: DVec3, radius: f64, motion: DVec3) -> Opti
         motion,
     };
     let mut best: Option<BallTouch> = None;
-    // Near the border of a face an edge is as near as the face, but for rounding, which turns its normal.
+    // Near the border of a face, an edge is as near as the face up to rounding, and rounding turns the normal of an
+    // edge. So contacts with the normal of a face are also kept separately.
     let mut best_upright: Option<BallTouch> = None;
     let mut error: f64 = 0.0;
-    // The nearest on top.
+    // The nearest node is on top.
     let mut stack = [(0.0, mesh.root()); 3 * MAX_DEPTH + 1];
     let mut top = 1;
     while top > 0 {
@@ -94,7 +93,7 @@ pub fn ball_touch(mesh: &Bvh, centre: DVec3, radius: f64, motion: DVec3) -> Opti
         }
     }
     let (first, upright) = (best?, best_upright);
-    // Each comes by up to twice the error before its time.
+    // The time of each contact is early by up to twice the error.
     let is_tie = |upright: &BallTouch| {
         let speed = -upright.normal.dot(motion);
         (upright.time - first.time) * speed <= 2.0 * error
@@ -102,8 +101,8 @@ pub fn ball_touch(mesh: &Bvh, centre: DVec3, radius: f64, motion: DVec3) -> Opti
     upright.filter(is_tie).or(best)
 }
 
-/// Whether a closed ball and the surface of a mesh share a point, in the mesh's frame, m: whether
-/// the distance, rounded as for [`ball_touch`], is at most the radius.
+/// Whether a closed ball and the surface of a mesh share a point, in the mesh's frame, m: whether the distance, rounded
+/// as in [`ball_touch`], is at most the radius.
 pub fn ball_meets(mesh: &Bvh, centre: DVec3, radius: f64) -> bool {
     if !is_ball(centre, radius) {
         return false;
@@ -130,12 +129,12 @@ struct Ball {
     motion: DVec3,
 }
 
-/// Whether an error, m, is worth to be told by axis: more than a nanometre, and than that part of the radius.
+/// Whether an error, m, is large enough for bounds axis by axis: more than a nanometre, and than 1e-9 of the radius.
 pub(crate) fn is_told_by_axis(error: f64, radius: f64) -> bool {
     error > 1e-9 * radius.max(1.0)
 }
 
-/// Where a centre is over a triangle: its distance from the plane along the normal, m, and the error of that.
+/// A centre over a triangle: its height above the plane along the normal, m, and the error of the height.
 #[derive(Clone, Copy)]
 struct Over {
     normal: DVec3,
@@ -143,25 +142,26 @@ struct Over {
     error: f64,
 }
 
-/// Newton's method halves the distance from a double root in a step at least, and so is at the
-/// rounding of the distances after less than this.
+/// Newton's method at least halves the distance from a double root in each step. So it reaches the rounding of the
+/// distances in fewer steps than this.
 const MOST_STEPS: u32 = 64;
 
 impl Ball {
-    /// More than the rounding of a distance from a triangle at a corner, m.
+    /// A bound on the rounding of the distance from a triangle at a corner, m.
     fn error(&self, corner: DVec3) -> f64 {
         let size = self.centre.abs() + self.motion.abs() + corner.abs();
         (size.element_sum() + self.radius) * 8.0 * f64::EPSILON
     }
 
-    /// The same along a unit vector: a triangle that is long along one axis does not blur distances along another.
+    /// The same along a unit vector: a triangle that is long on one axis does not add to the error along another.
     fn error_along(&self, [a, b, c]: [DVec3; 3], unit: DVec3) -> f64 {
         let corner = a.abs().max(b.abs()).max(c.abs());
         let size = self.centre.abs() + self.motion.abs() + corner + DVec3::splat(self.radius);
         size.dot(unit.abs()) * 8.0 * f64::EPSILON
     }
 
-    /// The height of a centre over a long triangle, of which it is `apart`, where it is over it but for `most`.
+    /// The height of a centre over a long triangle, if it is over the triangle up to `most`, m. `apart` is the vector
+    /// from the nearest point of the triangle to the centre.
     fn over(&self, apart: DVec3, centre: DVec3, corners: [DVec3; 3], most: f64) -> Option<Over> {
         let [a, b, c] = corners;
         let (u, v) = (b - a, c - a);
@@ -172,7 +172,7 @@ impl Ball {
         if aside > most && !is_inside(centre, corners) {
             return None;
         }
-        // What the normal may be turned by, by axis: `apart` is also what rounds along the triangle.
+        // A bound on the rotation of the normal by rounding, by axis. `apart` includes the rounding along the triangle.
         let products = |i: usize, j: usize| (u[i] * v[j]).abs() + (u[j] * v[i]).abs();
         let turned = DVec3::new(products(1, 2), products(2, 0), products(0, 1)) / across.length();
         let turned = 8.0 * f64::EPSILON * apart.abs().dot(turned);
@@ -184,7 +184,7 @@ impl Ball {
         })
     }
 
-    /// When the ball may come to what is in a box, rounded down; `None` if not by a time.
+    /// A lower bound on the time at which the ball may reach the contents of a box; `None` if it is after the horizon.
     fn entry(&self, bounds: &Aabb, horizon: f64) -> Option<f64> {
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let reach = self.radius + 2.0 * self.error(min.abs().max(max.abs()));
@@ -195,7 +195,7 @@ impl Ball {
             let inverse = 1.0 / self.motion[axis];
             if inverse.is_finite() {
                 let (s, t) = (near * inverse, far * inverse);
-                // Rounded twice each; the times that count are positive.
+                // Both are rounded twice; the times that count are positive.
                 enter = enter.max(s.min(t) * (1.0 - 2.0 * f64::EPSILON));
                 leave = leave.min(s.max(t) * (1.0 + 2.0 * f64::EPSILON));
             } else if near > 0.0 || far < 0.0 {
@@ -205,8 +205,8 @@ impl Ball {
         (enter <= leave).then_some(enter)
     }
 
-    /// The contact with a triangle on the way, if it is no later than another one, or as late but for
-    /// rounding; whether its normal is that of the triangle; and the error of the distance, m.
+    /// The contact with a triangle within the motion, if it is no later than the time `other` up to rounding. Also
+    /// whether its normal is that of the triangle, and the error of the distance, m.
     fn touch(
         &self,
         face: u32,
@@ -224,9 +224,9 @@ impl Ball {
             let point = nearest(centre, corners);
             let apart = square(centre - point, (centre, point), corners);
             let distance = apart.length();
-            // Over a face its normal, which a small distance does not spoil, and no rounding beside it
-            // either; at an edge, once there, the last one, as the direction of a point is rounding and
-            // nothing else.
+            // Over a face, use the face's normal: a small distance does not spoil it, and rounding beside it does not
+            // either. At an edge, once the ball is there, use the last normal: the direction to a nearest point at
+            // distance zero is only rounding.
             let side = apart.dot(across);
             let upright = || {
                 let normal = unit(across)? * libm::copysign(1.0, side);
@@ -285,7 +285,7 @@ impl Ball {
         None
     }
 
-    /// The order of contacts: by time, by how much they oppose the motion, by triangle.
+    /// The order of contacts: by time, then by how much they oppose the motion, then by triangle.
     fn is_before(&self, new: &BallTouch, old: &BallTouch) -> bool {
         let along = |touch: &BallTouch| touch.normal.dot(self.motion);
         let order = new.time.total_cmp(&old.time);
@@ -294,10 +294,10 @@ impl Ball {
     }
 }
 
-/// The point of a closed triangle, which may be a segment or a point, that is nearest to `p`: in
-/// its plane if it is there (Ericson 2005, "Real-Time Collision Detection", sec. 5.1.5), else on an
-/// edge. To the bit the same whichever of `b` and `c` is the first, so that mirrored triangles, which
-/// turn the other way round, have mirrored points.
+/// The point of a closed triangle that is nearest to `p`; the triangle may degenerate to a segment or a point. The
+/// point is in the plane if it is inside (Ericson 2005, "Real-Time Collision Detection", sec. 5.1.5), else on an edge.
+/// The result is the same to the bit for both orders of `b` and `c`, so that mirrored triangles, which have the
+/// opposite winding, have mirrored points.
 pub(crate) fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac);
@@ -309,7 +309,7 @@ pub(crate) fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     }
     let on_edges = [(a, b), (a, c), (b, c)].map(|(a, b)| nearest_on_edge(p, a, b));
     let [x, y, z] = on_edges;
-    // Lengths that are rounded to the same number may be those of different ways.
+    // Lengths that round to the same number may belong to different vectors.
     let nearer = |x: DVec3, y: DVec3| {
         let key = |x: DVec3| {
             let DVec3 { x, y, z } = (p - x).abs();
@@ -320,9 +320,9 @@ pub(crate) fn nearest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     nearer(nearer(x, y), z)
 }
 
-/// The way `apart` to `p` from the point of a triangle that is nearest to it, at a right angle to the edge
-/// that this point is on, if it is on one: the point is rounded along the edge, and a small way is turned by
-/// that, so that a ball that moves along the edge would seem to part from it.
+/// The vector `apart` from the nearest point of a triangle to `p`, made perpendicular to the edge that has this point,
+/// if it is on one. Rounding moves the point along the edge. This turns a short vector so much that a ball moving along
+/// the edge would seem to move away from it.
 fn square(apart: DVec3, (p, point): (DVec3, DVec3), [a, b, c]: [DVec3; 3]) -> DVec3 {
     let edges = [(a, b), (a, c), (b, c)];
     let is_between =
@@ -336,20 +336,20 @@ fn square(apart: DVec3, (p, point): (DVec3, DVec3), [a, b, c]: [DVec3; 3]) -> DV
     }
 }
 
-/// A direction as a unit vector, exact along an axis.
+/// The unit vector of a direction, exact along an axis.
 fn unit(way: DVec3) -> Option<DVec3> {
     let unit = way / way.length();
     unit.is_finite().then_some(unit)
 }
 
-/// Whether the point of a triangle that is nearest to `p` is none of its edges.
+/// Whether the point of a triangle that is nearest to `p` is on none of its edges.
 fn is_inside(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
     let normal = (b - a).cross(c - a);
     let area = |x: DVec3, y: DVec3| normal.dot((x - p).cross(y - p));
     normal != DVec3::ZERO && area(b, c) > 0.0 && area(c, a) > 0.0 && area(a, b) > 0.0
 }
 
-/// From the end that is nearer, so that it does not matter which one is the first.
+/// The nearest point of an edge. It is computed from the nearer end, so the order of the ends does not matter.
 fn nearest_on_edge(p: DVec3, a: DVec3, b: DVec3) -> DVec3 {
     let along = b - a;
     let length = along.length_squared();
@@ -412,7 +412,7 @@ mod tests {
         }
     }
 
-    /// Beside an edge, a tenth of a nanometre over a face, on a way that leads along the edge.
+    /// The ball is beside an edge, a tenth of a nanometre above a face, and moves along the edge.
     #[test]
     fn what_moves_along_an_edge_touches_the_face_beside_it() {
         let corner = |x: f32, y: f32, z: f32| crate::Vec3::new(x, y, z);
@@ -454,13 +454,13 @@ mod tests {
         }
     }
 
-    /// A triangle's mirror image turns the other way round. It is touched alike, to the bit.
+    /// The mirror image of a triangle has the opposite winding. Contacts are the same to the bit.
     #[test]
     fn mirrored_triangles_are_touched_alike() {
         let mut random = crate::test_random::Random(0x9e37_79b9_7f4a_7c15);
         let mut hits = 0;
         for round in 0..20_000 {
-            // On a lattice, where ways to two edges are of one length, and anywhere.
+            // On a lattice, where the distances to two edges are often equal; and anywhere.
             let (most, unit) = [(3, 0.5), (1 << 20, 0.5_f64.powi(19))][round % 2];
             let corners = [0; 3].map(|_| random.vector(most) * unit);
             let (from, aim) = (random.vector(3 * most) * unit, random.vector(most) * unit);
@@ -499,7 +499,7 @@ mod tests {
                 Some(touch) => {
                     hits += 1;
                     assert!((0..20).all(|k| !meets((touch.time - 1e-12) * f64::from(k) / 19.0)));
-                    // A point is on a surface for no time, and a small ball not for long.
+                    // A point is on a surface only for an instant, and a small ball not for long.
                     assert!(radius < 1e-6 || meets(touch.time + 1e-7), "{i} {touch:?}");
                     assert!(touch.normal.dot(motion) < 0.0);
                 }
@@ -509,7 +509,7 @@ mod tests {
         assert!(hits > 100);
     }
 
-    /// Plates of a tenth of a millimetre that are up to 1e30 m long are hit when short ones are.
+    /// Plates 0.1 mm thick and up to 1e30 m long are hit at the same time as short ones.
     #[test]
     fn long_plates_are_hit_no_earlier_than_short_ones() {
         let cube = cube();
@@ -527,7 +527,7 @@ mod tests {
                     let exact = (4.0 - 0.5_f64.powi(14) - radius) / 16.0;
                     let touch = touch.unwrap();
                     assert!(touch.time <= exact, "{touch:?}, not {exact}");
-                    // A nanometre does not show.
+                    // A nanometre is too small to show.
                     assert!(exact - touch.time < 1e-10, "{long}: {touch:?}, not {exact}");
                     assert_eq!(touch.normal, -unit);
                 }
@@ -535,8 +535,8 @@ mod tests {
         }
     }
 
-    /// When a moving point comes to a distance from a triangle: from a face, which is a plane's
-    /// distance inside its border, from the line of an edge between its ends, or from a corner.
+    /// The time at which a moving point reaches a given distance from a triangle: from the plane of a face inside its
+    /// border, from the line of an edge between its ends, or from a corner.
     fn closed_form(p: DVec3, d: DVec3, radius: f64, corners: [DVec3; 3]) -> Option<f64> {
         let mut times = vec![];
         let [a, b, c] = corners;
@@ -600,7 +600,7 @@ mod tests {
             assert_eq!(touch.is_some(), exact.is_some(), "{from} {motion} {radius}");
             if let Some((time, exact)) = touch.zip(exact) {
                 hits += 1;
-                // A graze has a square root of the rounding.
+                // A grazing contact has an error of the square root of the rounding.
                 assert!((time - exact).abs() < 1e-7, "{time} {exact}");
                 assert!(time <= exact + 1e-14, "{time} is later than {exact}");
             }

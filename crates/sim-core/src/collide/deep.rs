@@ -1,4 +1,4 @@
-//! Proves that two meshes overlap so deeply that no small translation parts them.
+//! Proves that two meshes overlap so deeply that no small translation separates them.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -11,18 +11,18 @@ use super::{
 };
 use crate::bvh::Bvh;
 
-/// Where the lines go through what two boxes share: beside the middle, where symmetric meshes have edges.
+/// The place of the lines in the intersection of the boxes. It is beside the middle, where symmetric meshes have edges.
 const ASIDE: DVec3 = DVec3::new(0.47, 0.53, 0.49);
 
-/// More than what widths and places of turned meshes are rounded by, of their size.
+/// A bound on the rounding of widths and positions of rotated meshes, relative to their size.
 const ROUNDING: f64 = 1e-12;
 
-/// Whether two meshes surely meet wherever the second one is moved by no more than `by`, m, from its placement.
+/// Whether two meshes certainly meet after every translation of the second one by at most `by`, m, from its placement.
 ///
-/// A point inside both that is farther than `by` from both surfaces stays inside both. Surfaces that were
-/// apart there would have to be one inside the other, as each hangs together and a room inside both
-/// is bounded by one of them; but then the inner one would be narrower along any direction. False where no
-/// such point is found: it is sought on three lines through what the boxes share.
+/// A point inside both meshes that is farther than `by` from both surfaces stays inside both. Suppose the surfaces were
+/// apart after such a translation. Then one would be inside the other, because each is connected and a region inside
+/// both is bounded by one of them. But then the inner one would be narrower along every direction. The answer is false
+/// if no such point is found; it is sought on three lines through the intersection of the boxes.
 pub(crate) fn stay_in_each_other(
     first: &Bvh,
     second: &Bvh,
@@ -37,7 +37,7 @@ pub(crate) fn stay_in_each_other(
     let ([low, high], (other_low, other_high)) = (ends(first), at.corners(&second.bounds()));
     let (low, high) = (low.max(other_low), high.min(other_high));
     let near_middle = low + ASIDE * (high - low);
-    // Twice as far, for what places and distances are rounded by.
+    // Twice as far, to cover the rounding of positions and distances.
     let is_deep = |mesh: &Bvh, point: DVec3| {
         locate(mesh, point) == Some(Place::Inside) && !ball_meets(mesh, point, 2.0 * by)
     };
@@ -56,7 +56,7 @@ fn ends(mesh: &Bvh) -> [DVec3; 2] {
     [mesh.bounds().min.as_dvec3(), mesh.bounds().max.as_dvec3()]
 }
 
-/// Whether one of two meshes may be wide enough along all directions for the other one to be inside it.
+/// Whether one of two meshes may be wide enough along all directions to enclose the other one.
 fn may_enclose(first: &Bvh, second: &Bvh, at: &Placement) -> bool {
     let size = |mesh: &Bvh| ends(mesh)[1] - ends(mesh)[0];
     let (own, other) = (size(first), size(second));
@@ -78,7 +78,8 @@ fn may_enclose(first: &Bvh, second: &Bvh, at: &Placement) -> bool {
     wider != (true, true)
 }
 
-/// Where a line along a unit vector crosses the surface of a mesh, m from a point on it, but for rounding.
+/// Where a line crosses the surface of a mesh, up to rounding: distances, m, from the point `through` along the unit
+/// vector `along`.
 fn crossings(mesh: &Bvh, through: DVec3, along: DVec3) -> Vec<f64> {
     let [low, high] = ends(mesh);
     let far = along * ((low - through).length() + (high - low).length());
@@ -89,7 +90,7 @@ fn crossings(mesh: &Bvh, through: DVec3, along: DVec3) -> Vec<f64> {
         (through - far).max(through + far),
         |_, corners| {
             let [a, b, c] = corners.map(|v| v.as_dvec3() - through);
-            // Twice the areas of the corners with the line, seen along it.
+            // Twice the areas of the triangles that the corners form with the line, in the projection along the line.
             let areas = [b.cross(c), c.cross(a), a.cross(b)].map(|area| area.dot(along));
             let (least, most) = areas
                 .into_iter()
@@ -108,7 +109,7 @@ fn crossings(mesh: &Bvh, through: DVec3, along: DVec3) -> Vec<f64> {
     found
 }
 
-/// The middle of the longest stretch that is inside of both, as told by crossings.
+/// The middle of the longest interval inside both meshes, from their crossings.
 fn longest_in_both(first: &[f64], second: &[f64]) -> Option<f64> {
     let stretches = |crossings: &[f64]| -> Vec<[f64; 2]> {
         crossings

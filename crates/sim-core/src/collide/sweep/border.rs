@@ -1,7 +1,7 @@
-//! Whether contacts at the borders of faces, at the ends of edges and at the start block the motion.
+//! Whether contacts at the borders of faces, at the ends of edges, and at the start block the motion.
 //!
-//! A contact inside a face, and of edges that cross, blocks the motion. At a border the surfaces may slip past
-//! each other, which [`slips_past`] decides for all triangles at the point together. At the start they may part.
+//! A contact inside a face, or of crossing edges, blocks the motion. At a border the surfaces may slip past each other:
+//! [`slips_past`] decides this for all triangles at the point together. At the start the surfaces may part.
 //!
 //! Every point at which the surfaces cannot slip past each other has a contact with a normal. Surfaces touch for the
 //! first time at a point that is a vertex of one of them or a crossing of edges ([`time_of_impact`]). If
@@ -36,32 +36,32 @@ use crate::collide::{
     triple::{Difference, Time, direction, sign},
 };
 
-/// What a perpendicular may be off by, of its length.
+/// A bound on the error of a perpendicular, relative to its length.
 const DIGITS: f64 = 1e-6;
 
-/// The surfaces at the spots that were looked at last.
+/// The surfaces at the two spots that were examined last.
 #[derive(Default)]
 pub(super) struct Around {
-    /// Of each spot the vertex, twice, or the ends of the edge.
+    /// For each spot, the vertex (twice) or the two ends of the edge.
     names: Option<[[u32; 2]; 2]>,
     cones: [Vec<Cone>; 2],
     blocks: bool,
 }
 
 impl Around {
-    /// Whether what touches goes into each other.
+    /// Whether the motion leads the two surfaces into each other.
     fn goes_in(&self, motion: DVec3) -> bool {
         meet_after(&self.cones[0], &self.cones[1], motion, false)
     }
 
-    /// Whether what touches has been in each other.
+    /// Whether the two surfaces were in each other before the contact.
     fn comes_out(&self, motion: DVec3) -> bool {
         meet_after(&self.cones[0], &self.cones[1], -motion, true)
     }
 }
 
 impl Search<'_> {
-    /// Whether an entering contact on the brink is one. Sets whether it is doubtful.
+    /// Whether an entering contact at a border or at the start blocks the motion. Sets whether it is doubtful.
     #[inline(never)]
     pub(super) fn counts(&mut self, contact: &mut Candidate) -> bool {
         contact.is_doubtful = !self.parts(contact);
@@ -74,7 +74,7 @@ impl Search<'_> {
             return self.around.blocks;
         }
         let is_start = contact.time.is_start();
-        // Meshes that are apart at the start come out of each other after an earlier contact.
+        // Meshes that are apart at the start can only leave each other after an earlier contact.
         if !is_start && !self.meet_at_start() {
             return true;
         }
@@ -88,7 +88,7 @@ impl Search<'_> {
         *self.meet_at_start.get_or_insert_with(meet)
     }
 
-    /// Collects the triangles around a contact on the border.
+    /// Collects the triangles around a contact at a border.
     fn look_around(&mut self, contact: &mut Candidate) {
         let names = contact.spots.map(|spot| match spot {
             Spot::Vertex(v, _) => [v; 2],
@@ -111,8 +111,8 @@ impl Search<'_> {
         };
     }
 
-    /// Whether a vertex comes to a face of a closed mesh from its inner side: with the vertex at the
-    /// face's border, or there from the start, it may be outside nevertheless.
+    /// Whether a vertex comes to a face of a closed mesh from its inner side. The vertex may be outside the mesh
+    /// nevertheless, if it is at the border of the face or there from the start.
     pub(super) fn comes_from_inside(&self, contact: &Candidate) -> bool {
         let (mesh, inside) = match contact.feature {
             Feature::FaceVertex { .. } => (self.first, Ordering::Greater),
@@ -123,9 +123,8 @@ impl Search<'_> {
         topology.closed && topology.oriented && contact.course == inside
     }
 
-    /// Whether the plane of a contact has the one mesh, near it, on one side and the other one on the
-    /// side from which it comes. Then what comes to touch is stopped, and what has touched and
-    /// leaves is not.
+    /// Whether the contact plane separates the meshes near the contact: each is on the side from which it comes. If
+    /// so, the contact stops a mesh that begins to touch, and does not stop one that has touched and leaves.
     fn parts(&self, contact: &Candidate) -> bool {
         let (first, second) = (contact.course, contact.course.reverse());
         let is_on = |side: Side, above: Ordering| {
@@ -145,9 +144,8 @@ impl Search<'_> {
         }
     }
 
-    /// Of edges whose perpendicular has fewer digits than [`DIGITS`], since they are parallel but for what
-    /// rounding turns them by when vertices are placed: that normal of a face at them which opposes the
-    /// motion most.
+    /// The normal of two edges whose perpendicular has fewer digits than [`DIGITS`]. Such edges are parallel except
+    /// for the rounding of placed vertices. The normal is that of the adjacent face which opposes the motion most.
     pub(super) fn normal_beside(&self, contact: &Candidate) -> Option<DVec3> {
         if !contact.is_edges() {
             return None;
@@ -186,7 +184,7 @@ impl Search<'_> {
         }
     }
 
-    /// Visits the triangles of a mesh at a contact on the border, where one of the spots is a vertex.
+    /// Visits the triangles of a mesh at a contact at a border; one of the spots is a vertex.
     fn each_cone(&self, side: Side, spots: &[Spot; 2], time: f64, mut visit: impl FnMut(Cone)) {
         let (mesh, offset) = self.placed(side);
         let (spot, other, way) = match side {
@@ -225,16 +223,16 @@ impl Search<'_> {
         }
     }
 
-    /// Where in a triangle of other vertices a vertex is.
+    /// The place of a vertex in a triangle that does not have it as a corner; `None` if it is not in the triangle.
     fn place_at(&self, vertex: DVec3, corners: [DVec3; 3]) -> Option<At> {
         let sides = line_sides(vertex, self.motion, corners);
         let is_in = line_passes(sides) && segment_meets_triangle(vertex, vertex, corners);
         is_in.then(|| At::line(sides))
     }
 
-    /// Where in a triangle of other vertices the point is in which a line along the motion, through
-    /// `p`, meets an edge. `None` if it is not there, nor where the edge and one of the triangle's,
-    /// not on one line, cross there: the surface then goes through itself.
+    /// The place, in a triangle of other vertices, of the point where a line along the motion through `p` meets an
+    /// edge. `None` if the point is not in the triangle. Also `None` if the edge crosses an edge of the triangle
+    /// there, not on one line: the surface then intersects itself.
     fn place_beside(&self, [a, b]: [DVec3; 2], p: DVec3, corners: [DVec3; 3]) -> Option<At> {
         let sides = line_sides(p, self.motion, corners);
         let [u, v, w] = corners;
@@ -246,7 +244,7 @@ impl Search<'_> {
         if sign([Difference(v, u), Difference(w, u), motion]) != Ordering::Equal {
             return Some(At::line(sides));
         }
-        // Along the motion, it has the point on its border.
+        // A triangle parallel to the motion has the point on its border.
         let along = Difference(b, a);
         let axes = DVec3::AXES.map(Difference::from);
         let axis = axes
@@ -266,8 +264,8 @@ impl Search<'_> {
     }
 }
 
-/// Whether a triangle lies on one side of a plane of contact. Of one that lies in it, the winding
-/// tells on which side a solid is. The plane is laid through a point of the mesh.
+/// Whether a triangle lies on one side of a contact plane. If the triangle lies in the plane, its winding tells on
+/// which side the solid is. The plane passes through a point of the mesh.
 fn is_on(side: Ordering, plane: &Time, spot: Spot, corners: [DVec3; 3], is_solid: bool) -> bool {
     let (Spot::Vertex(_, origin) | Spot::Edge(_, [origin, _])) = spot else {
         return true;
@@ -296,8 +294,8 @@ fn each_at(mesh: &Bvh, offset: DVec3, spot: Spot, mut visit: impl FnMut([DVec3; 
     });
 }
 
-/// Visits the triangles at a point, and some others: their vertices and corners. The point has come
-/// `way`, and has been rounded then.
+/// Visits the triangles at a point, and some others, with their vertices and corners. The point has moved by `way` and
+/// was rounded afterwards.
 fn each_near(
     mesh: &Bvh,
     offset: DVec3,
@@ -306,7 +304,7 @@ fn each_near(
     mut visit: impl FnMut([u32; 3], [DVec3; 3]),
 ) {
     let topology = mesh.topology();
-    // Around where the point was placed from.
+    // A box around the place from which the point was moved.
     let size = point.abs() + offset.abs() + way.abs();
     let slack = DVec3::splat(8.0 * f64::EPSILON) * size;
     let from = point - offset;

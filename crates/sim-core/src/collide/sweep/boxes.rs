@@ -1,4 +1,4 @@
-//! The time when the boxes of two trees, one of which moves, begin to meet.
+//! The time at which the boxes of two trees, one of which moves, begin to meet.
 
 use glam::DVec3;
 
@@ -9,11 +9,11 @@ use crate::collide::{
     pairs::{InLanes, Lanes, Reach, TILE},
 };
 
-/// The motion as boxes see it.
+/// The relative motion, prepared for tests of boxes.
 pub(super) struct Moving {
     offset: DVec3,
     motion: DVec3,
-    /// Where f32 is enough.
+    /// The same in f32, if its range is enough.
     swift: Option<Swift>,
     level: Level,
 }
@@ -28,7 +28,7 @@ impl Moving {
         }
     }
 
-    /// A bit for each pair of boxes that meet no later than the horizon, and when they begin to,
+    /// A bit for each pair of boxes that meet no later than the horizon, and the times at which they begin to meet,
     /// rounded down.
     pub(super) fn meet(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, [f32; TILE]) {
         match &self.swift {
@@ -46,8 +46,8 @@ impl Moving {
         }
     }
 
-    /// A bit for each pair of triangles of two leaves that a plane of one of them is seen to keep apart until
-    /// the horizon. Their boxes meet before.
+    /// A bit for each pair of triangles of two leaves that are proven to stay on two sides of the plane of one of
+    /// them until the horizon. Their boxes meet before.
     pub(super) fn parted(
         &self,
         first: (&Boxes, &Triangles),
@@ -64,7 +64,7 @@ impl Moving {
         self.level.run(StayApart { first, second, way })
     }
 
-    /// For meshes so large that f32 is of no use. It need not be fast.
+    /// For meshes too large for f32. Its speed does not matter.
     #[cold]
     fn meet_in_f64(&self, first: &Boxes, second: &Boxes, horizon: f64) -> (u32, [f32; TILE]) {
         let (mut bits, mut times) = (0, [f32::INFINITY; TILE]);
@@ -82,7 +82,7 @@ impl Moving {
         (bits, times)
     }
 
-    /// When two boxes begin to meet, rounded down; `None` if they do not within the motion.
+    /// The time at which two boxes begin to meet, rounded down; `None` if they do not meet within the motion.
     fn entry(&self, first: &Boxes, i: usize, second: &Boxes, j: usize) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
         for axis in 0..3 {
@@ -101,7 +101,7 @@ impl Moving {
             let inverse = 1.0 / motion;
             if inverse.is_finite() {
                 let (s, t) = (near * inverse, far * inverse);
-                // One more rounding than the slack has seen.
+                // One more rounding than the slack covers.
                 enter = enter.max(s.min(t) * (1.0 - f64::EPSILON));
                 leave = leave.min(s.max(t) * (1.0 + f64::EPSILON));
             } else if near > 0.0 || far < 0.0 {
@@ -115,24 +115,24 @@ impl Moving {
 /// Moving boxes in f32.
 struct Swift {
     offset: [f32; 3],
-    /// One over the motion; zero where there is so little that it counts as width.
+    /// The inverse of the motion; zero on an axis whose motion is so small that it is added to the margin instead.
     inverse: [f32; 3],
-    /// More than all roundings of distances, and than the motion that does not count.
+    /// A bound on the rounding of distances, plus the motion that is too small to count.
     margin: [f32; 3],
-    /// All of it, where planes can be looked at as well.
+    /// The whole motion, if the test with planes is possible too.
     way: Option<Way>,
 }
 
 impl Swift {
-    /// `None` if f32 does not reach so far.
+    /// `None` if the coordinates or the motion exceed the range of f32.
     fn new(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> Option<Swift> {
         let reach = Reach::new(first, second, &offset.into())?;
         let margin = reach.margin();
         if motion.abs().max_element() > 1e30 {
             return None;
         }
-        // Distances are below 2^127, so with a motion above 2^-100 quotients that are times from 0
-        // to 1 neither overflow nor underflow to what matters.
+        // Distances are below 2^127. With a motion above 2^-100, quotients that are times from 0 to 1 neither overflow
+        // nor underflow enough to matter.
         let counts = motion
             .to_array()
             .map(|m| m.abs() > f64::from(margin).max(1e-30));
@@ -142,7 +142,7 @@ impl Swift {
         let way = has_planes.then(|| Way {
             offset: reach.offset(),
             motion: motion.as_vec3().to_array(),
-            // Boxes that meet on the way are no farther apart before.
+            // Boxes that meet within the motion are no farther apart before.
             wide: [0, 1, 2].map(|axis| 2.0 * margin + (motion[axis].abs() * 2.01) as f32),
             miss: reach.miss(),
             shift: reach.shift(),
@@ -173,8 +173,8 @@ struct Meet<'a> {
 impl InLanes for Meet<'_> {
     type Output = u32;
 
-    /// Distances are known to within the margin ([`Reach::new`]), whose roundings here are a small
-    /// part of it. Quotients are rounded three times, by `2^-24` each.
+    /// Distances are known to within the margin ([`Reach::new`]); the roundings here are a small part of it.
+    /// Quotients are rounded three times, by `2^-24` each.
     #[inline(always)]
     fn run<L: Lanes>(self) -> u32 {
         const DOWN: f32 = 1.0 - 4.0 * f32::EPSILON;
@@ -189,7 +189,7 @@ impl InLanes for Meet<'_> {
             let between = L::rows(c).sub(moved);
             let reach = L::rows(h).add(L::columns(k));
             let reach = reach.add(L::splat(swift.margin[axis]));
-            // Not so where a lane holds nothing.
+            // Excludes empty lanes.
             meet &= L::splat(0.0).at_most(reach);
             let inverse = L::splat(swift.inverse[axis]);
             if swift.inverse[axis] == 0.0 {
@@ -197,7 +197,7 @@ impl InLanes for Meet<'_> {
             } else {
                 let middle = between.mul(inverse);
                 let around = reach.mul(inverse.abs());
-                // Both roundings are relative to the parts, not to what is left of them.
+                // Both roundings are relative to the terms, not to their difference.
                 let slack = middle.abs().add(around.abs());
                 let slack = slack.mul(L::splat(4.0 * f32::EPSILON));
                 enter = enter.max(middle.sub(around).sub(slack));
@@ -206,7 +206,7 @@ impl InLanes for Meet<'_> {
         }
         let enter = enter.mul(L::splat(DOWN));
         enter.store(self.enter);
-        // More than what quotients lose below the normal numbers.
+        // More than quotients lose below the normal numbers.
         let least = L::splat(f32::MIN_POSITIVE);
         let latest = leave.min(L::splat(self.horizon));
         let latest = latest.mul_add(L::splat(UP), least);
@@ -236,7 +236,7 @@ mod tests {
     use crate::{Mesh, test_meshes::cube, test_random::Random};
     use glam::{DQuat, Vec3};
 
-    /// When two boxes given as low and high corners begin to meet within the motion, as a fraction.
+    /// The time at which two boxes, given by low and high corners, begin to meet within the motion, as a fraction.
     fn exact(
         [low, high]: [[i64; 3]; 2],
         [others_low, others_high]: [[i64; 3]; 2],
@@ -268,7 +268,7 @@ mod tests {
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         let (mut meetings, mut misses) = (0, 0);
         for round in 0..4000 {
-            // A lattice on which boxes touch, and the ends of what f32 holds.
+            // A lattice on which boxes touch; and the limits of the precision of f32.
             let (most, unit) = [(4, 0.25), (1 << 23, 0.5_f64.powi(23))][round % 2];
             let size = cube().transformed(
                 DQuat::IDENTITY,
@@ -307,7 +307,7 @@ mod tests {
                 // Rounding to f64 is monotonic.
                 let time = over as f64 / under as f64;
                 assert!(f64::from(enter[pair]) <= time, "{round} {pair}");
-                // Nor where the horizon is the time itself.
+                // Also if the horizon is exactly that time.
                 let (pairs, _) = moving.meet(&first, &second, time);
                 assert!(pairs >> pair & 1 == 1, "{round} {pair} at the horizon");
             }

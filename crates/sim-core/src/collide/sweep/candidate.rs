@@ -11,35 +11,35 @@ use crate::collide::{
 /// A contact that may be the first.
 pub(super) struct Candidate {
     pub(super) time: Time,
-    /// On which side of the plane of contact the motion leads.
+    /// The side of the contact plane to which the motion leads.
     pub(super) course: Ordering,
-    /// The time is neither below nor above these.
+    /// Lower and upper bound on the time.
     pub(super) bounds: (f64, f64),
     /// The time rounded down, once that was needed.
     rounded: Option<f64>,
     /// The normal, once that was needed.
     normal: Option<DVec3>,
     pub(super) feature: Feature,
-    /// Where it is at time 0, and how that moves.
+    /// The contact point at time 0, and its velocity.
     pub(super) point: DVec3,
     pub(super) drift: DVec3,
-    /// Whether it is at the border of a face, at the end of an edge, or at the start of the motion.
+    /// Whether the contact is at the border of a face, at the end of an edge, or at the start of the motion.
     pub(super) is_on_brink: bool,
-    /// What touches of each mesh.
+    /// The feature of each mesh that touches.
     pub(super) spots: [Spot; 2],
-    /// Whether the plane of the contact does not part the meshes near it.
+    /// Whether the contact plane does not separate the meshes near the contact.
     pub(super) is_doubtful: bool,
-    /// Whether a vertex comes to a face of a closed mesh from its inner side.
+    /// Whether a vertex comes to a face of a closed mesh from the inner side of the face.
     pub(super) is_from_inside: bool,
 }
 
-/// What of a mesh touches, and where its vertices are at the start.
+/// The feature of a mesh that touches, and the positions of its vertices at the start.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Spot {
     Vertex(u32, DVec3),
-    /// Between its ends.
+    /// An edge, touched between its ends.
     Edge([u32; 2], [DVec3; 2]),
-    /// A face, within its border.
+    /// A face, touched inside its border.
     Face,
 }
 
@@ -88,7 +88,7 @@ impl Candidate {
         rounded
     }
 
-    /// Against the motion.
+    /// The unit normal, which opposes the motion.
     pub(super) fn normal(&mut self) -> DVec3 {
         let (time, course) = (&self.time, self.course);
         *self.normal.get_or_insert_with(|| {
@@ -101,8 +101,8 @@ impl Candidate {
         })
     }
 
-    /// The order of contacts at one time; neither it nor the times depend on which mesh is the first
-    /// one, unless features are all that is left.
+    /// The order of contacts at the same time. Neither the order nor the times depend on which mesh is the first,
+    /// unless the contacts differ only in their features.
     pub(super) fn is_before(&mut self, other: &mut Candidate) -> bool {
         let class = |c: &Candidate| (c.is_doubtful, c.is_from_inside, c.is_edges());
         let order = class(self).cmp(&class(other));
@@ -124,7 +124,7 @@ impl Candidate {
     }
 }
 
-/// The order of two normals, the one that opposes a motion most first.
+/// The order of two normals: first the one that opposes the motion most.
 pub(in crate::collide) fn opposing_cmp(n: DVec3, m: DVec3, motion: DVec3) -> Ordering {
     if n == m {
         return Ordering::Equal;
@@ -132,7 +132,7 @@ pub(in crate::collide) fn opposing_cmp(n: DVec3, m: DVec3, motion: DVec3) -> Ord
     let along = motion / motion.abs().max_element();
     let toward = along.to_array().into_iter().find(|&x| x != 0.0);
     let flip = toward.unwrap_or(1.0);
-    // One zero is as good as the other.
+    // Treats the two zeros as equal.
     let cmp = |x: f64, y: f64| (x + 0.0).total_cmp(&(y + 0.0));
     let keys = (0..3).map(|axis| cmp(n[axis] * flip, m[axis] * flip));
     cmp(n.dot(along), m.dot(along)).then_with(|| keys.fold(Ordering::Equal, Ordering::then))

@@ -16,21 +16,20 @@ use crate::collide::{
 };
 use crate::mesh::Topology;
 
-/// Meshes seen along the motion, in a plane of two axes, and quick tests in f64.
+/// The projection of the meshes along the motion onto a plane of two axes, with quick tests in f64.
 ///
-/// With `S` above all coordinates, `u = 2^-53` and ratios of the motion at most one, a point seen
-/// errs by `4 u S` and is at most `2 S` out, differences of such err by `12 u S`, and a
-/// cross product of these by `2 (2 · 4 S · 12 u S + 16 S² u) + 32 S² u = 256 u S²`. The normal of a
-/// triangle is at most `8 S²`, and errs by `32 u S²`; its product with a difference of points errs
-/// by `384 u S³`, with a motion of components up to `M` by `168 u S² M`. The bounds have room for
-/// products of errors.
+/// Bounds on the rounding: let `S` be above all coordinates and `u = 2^-53`. Ratios of the motion are at most one. A
+/// projected point errs by `4 u S` and is at most `2 S` from the origin. Differences of projected points err by
+/// `12 u S`, and a cross product of these by `2 (2 · 4 S · 12 u S + 16 S² u) + 32 S² u = 256 u S²`. The normal of a
+/// triangle is at most `8 S²`, and errs by `32 u S²`. Its product with a difference of points errs by `384 u S³`, and
+/// with a motion of components up to `M` by `168 u S² M`. The bounds have room for products of errors.
 pub(super) struct View {
-    /// The axes of the picture and the one along which the motion leads most.
+    /// The two axes of the projection, and the axis with the largest component of the motion.
     axes: [usize; 3],
-    /// The other components of the motion by the largest one.
+    /// The other components of the motion, divided by the largest one.
     slope: [f64; 2],
     motion: DVec3,
-    /// What sides, heights and falls err by at most.
+    /// Bounds on the errors of sides, heights and falls.
     side_error: f64,
     height_error: f64,
     fall_error: f64,
@@ -46,7 +45,7 @@ impl View {
         let most = motion.abs().max_element();
         let of = motion.to_array();
         let k = (0..3).find(|&k| of[k].abs() == most).unwrap_or(2);
-        // So that turning left is turning left whichever way the motion leads.
+        // A left turn stays a left turn for either sign of the motion.
         let (i, j) = match of[k] > 0.0 {
             true => ((k + 1) % 3, (k + 2) % 3),
             false => ((k + 2) % 3, (k + 1) % 3),
@@ -77,15 +76,14 @@ impl View {
         }
     }
 
-    /// The sign of what errs like a side, 0 if that leaves a doubt.
+    /// The sign of a number with the error of a side; 0 in doubt.
     #[inline(always)]
     fn tell(&self, side: f64) -> i8 {
         i8::from(side > self.side_error) - i8::from(side < -self.side_error)
     }
 
-    /// On which sides of a triangle's edges the corners of another one are: `[i][j]` is the sign of
-    /// `det(edge i, motion, its start - corner j)`, 0 in doubt. `None` if an edge has one triangle on
-    /// either side.
+    /// The sides of one triangle's edges on which the corners of another triangle are: `[i][j]` is the sign of
+    /// `det(edge i, motion, its start - corner j)`, 0 in doubt. `None` if an edge separates the two triangles.
     #[inline(always)]
     fn sides(&self, of: &Triangle, others: &Triangle) -> Option<[[i8; 3]; 3]> {
         let [a, b, c] = of.seen;
@@ -109,8 +107,8 @@ impl View {
         Some(sides)
     }
 
-    /// Heights of corners above a triangle's plane, and `way` times what the motion adds to them,
-    /// unless the corners stay on one side until a time.
+    /// The heights of corners above a triangle's plane, and the rate of these heights by the motion (to be multiplied
+    /// by `way`). `None` if the corners stay on one side of the plane until a time.
     #[inline(always)]
     fn heights(
         &self,
@@ -132,10 +130,11 @@ impl View {
         Some(Heights { heights, fall })
     }
 
-    /// Whether what is so high above a plane at least, and falls, stays above it until a time.
+    /// Whether a point at least `lowest` above a plane, whose height changes at the rate `fall`, stays above it until
+    /// a time.
     #[inline(always)]
     fn stays(&self, lowest: f64, fall: f64, until: f64) -> bool {
-        // Doubled for the roundings here.
+        // Doubled for the roundings in this function.
         let (lowest, fall) = (
             lowest - 2.0 * self.height_error,
             fall - 2.0 * self.fall_error,
@@ -143,8 +142,8 @@ impl View {
         lowest > 0.0 && lowest + until * fall > 0.0
     }
 
-    /// Whether a box, given by its centre and half extents, stays on one side of a triangle's plane until
-    /// a time; `way` is 1 if the box moves, -1 if the triangle does.
+    /// Whether a box, given by its centre and half extents, stays on one side of a triangle's plane until a time.
+    /// `way` is 1 if the box moves, -1 if the triangle does.
     #[inline(always)]
     pub(super) fn parts(
         &self,
@@ -160,13 +159,13 @@ impl View {
     }
 }
 
-/// Twice the area of a triangle, above zero if it turns left.
+/// Twice the area of a triangle; positive if it turns left.
 #[inline(always)]
 fn left(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// A triangle, and its corners seen along the motion.
+/// A triangle, and the projection of its corners along the motion.
 struct Triangle {
     corners: [DVec3; 3],
     seen: [[f64; 2]; 3],
@@ -177,12 +176,12 @@ struct Heights {
     fall: f64,
 }
 
-/// What the mesh of a triangle knows of it.
+/// The features of a triangle in its mesh.
 struct Names {
     face: u32,
     vertices: [u32; 3],
     edges: [u32; 3],
-    /// Of the vertices and of the edges those that are looked at with this triangle and no other.
+    /// The vertices and edges that are tested with this triangle and no other.
     owns_vertex: [bool; 3],
     owns_edge: [bool; 3],
 }
@@ -205,20 +204,20 @@ impl Names {
     }
 }
 
-/// A point that may touch a triangle.
+/// A vertex that may touch a triangle.
 struct Corner {
     point: DVec3,
-    /// Its name, and that of the contact.
+    /// The index of the vertex, and the features of the contact.
     vertex: u32,
     feature: Feature,
-    /// Of the triangle's edges, as [`View::sides`] has them.
+    /// Its sides of the triangle's edges, as in [`View::sides`].
     sides: [i8; 3],
-    /// 1 if it moves, -1 if the triangle does.
+    /// 1 if the vertex moves, -1 if the triangle does.
     way: f64,
 }
 
 impl Search<'_> {
-    /// Looks at a triangle of a leaf of each mesh.
+    /// Tests a triangle of a leaf of each mesh.
     #[inline(never)]
     pub(super) fn try_triangles(&mut self, (leaf, i): (&Node, usize), (other, j): (&Node, usize)) {
         let wide = |[a, b, c]: [Vec3; 3]| [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
@@ -232,7 +231,7 @@ impl Search<'_> {
         let Some(above_second) = self.view.heights(placed, corners, -1.0, self.horizon) else {
             return;
         };
-        // Most pairs have been found apart by now.
+        // Most pairs have been proven apart before this point.
         let (first, second) = (self.view.triangle(corners), self.view.triangle(placed));
         let Some(of_first) = self.view.sides(&first, &second) else {
             return;
@@ -247,7 +246,7 @@ impl Search<'_> {
         self.try_edges((&first, &s, &of_first), (&second, &t, &of_second));
     }
 
-    /// The corners of one triangle against another one; `way` is 1 where the corners move, else -1.
+    /// Tests the corners of one triangle against another one. `way` is 1 if the corners move, else -1.
     #[inline(always)]
     fn try_vertices(
         &mut self,
@@ -349,7 +348,7 @@ impl Search<'_> {
             let i_end = (i + 1) % 3;
             for j in (0..3).filter(|&j| t.owns_edge[j]) {
                 let j_end = (j + 1) % 3;
-                // Of the second edge's ends as the first edge has them, and the other way round.
+                // The sides of the second edge's ends relative to the first edge, and the other way round.
                 let of_first = [of_first[i][j], of_first[i][j_end]];
                 let of_second = [of_second[j][i], of_second[j][i_end]];
                 let is_apart = |sides: [i8; 2]| sides[0] * sides[1] > 0;
@@ -374,7 +373,7 @@ impl Search<'_> {
         }
     }
 
-    /// An edge `ab` against an edge `cd`, with the signs of [`edge_sides`] as far as they are known.
+    /// Tests an edge `ab` against an edge `cd`, with the signs of [`edge_sides`] as far as they are known.
     ///
     /// [`edge_sides`]: crate::collide::moving::edge_sides
     #[inline(never)]
@@ -439,14 +438,14 @@ impl Search<'_> {
         } else {
             gap.value
         };
-        // For the roundings of both sides.
+        // Covers the roundings of both sides.
         const UP: f64 = 1.0 + 4.0 * f64::EPSILON;
         let farthest = self.horizon * (fall.value.abs() + fall.error) * UP;
         ahead + gap.error >= 0.0 && ahead - gap.error <= farthest
     }
 }
 
-/// A sign that may be known.
+/// A sign, computed exactly if it is not known yet.
 #[inline(always)]
 fn known(side: i8, rows: impl FnOnce() -> [Difference; 3]) -> Ordering {
     match side {

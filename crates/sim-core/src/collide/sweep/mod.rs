@@ -1,9 +1,9 @@
 //! The search for the first contact of two trees, one of which moves.
 //!
-//! The search visits pairs of boxes in the order in which they meet ([`boxes`]), until that time is after
-//! the first contact so far. Pairs of triangles give contacts of features ([`features`]), in exact
-//! arithmetic if f64 leaves a doubt. Of contacts at one time the first one in order counts
-//! ([`candidate`]), and at the borders of faces only those that block the motion ([`border`]).
+//! The search visits pairs of boxes in the order in which they begin to meet ([`boxes`]), until that time is after the
+//! first contact so far. Pairs of triangles give contacts of features ([`features`]), in exact arithmetic if f64
+//! leaves a doubt. Of contacts at the same time, the first one in a fixed order counts ([`candidate`]). At the borders
+//! of faces, only contacts that block the motion count ([`border`]).
 
 mod border;
 mod boxes;
@@ -22,16 +22,16 @@ use candidate::Candidate;
 pub(super) use candidate::opposing_cmp;
 use features::View;
 
-/// Which contacts count.
+/// The contacts that count.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Those with a normal that opposes the motion, which they block.
+    /// Contacts whose normal opposes the motion: they block it.
     Entering,
-    /// All but two edges in a plane along the motion.
+    /// All contacts except those of two edges in a plane parallel to the motion.
     Any,
 }
 
-/// Pairs of triangles that are faster asked one by one than looked at in lanes first.
+/// Up to this many pairs of triangles are tested one by one, without the test in lanes first.
 const FEW: u32 = 2;
 
 pub(super) struct Search<'a> {
@@ -42,13 +42,13 @@ pub(super) struct Search<'a> {
     kind: Kind,
     boxes: Moving,
     view: View,
-    /// What comes after this time is not the first contact.
+    /// No contact after this time is the first one.
     horizon: f64,
     best: Option<Candidate>,
-    /// When a vertex first slides into a triangle, rounded down.
+    /// The first time at which a vertex slides into a triangle, rounded down.
     slide: Option<f64>,
     around: Around,
-    /// Once that was needed.
+    /// Whether the meshes meet at the start, once that was needed.
     meet_at_start: Option<bool>,
 }
 
@@ -80,7 +80,7 @@ impl<'a> Search<'a> {
         search
     }
 
-    /// The first contact, by the order of those at one time.
+    /// The first contact; [`candidate`] orders contacts at the same time.
     pub(super) fn best(mut self) -> Option<Touch> {
         let mut best = self.best.take()?;
         let time = best.rounded();
@@ -102,8 +102,8 @@ impl<'a> Search<'a> {
             .min_by(f64::total_cmp)
     }
 
-    /// Looks at all below two nodes or leaves, in the order in which boxes meet. A leaf against a node
-    /// stays for the node's children, once for all its triangles.
+    /// Visits all pairs below two nodes or leaves, in the order in which their boxes meet. If only one of the two is
+    /// a leaf, the leaf is passed on as a whole to the children of the node, once for all its triangles.
     fn visit(&mut self, a: u32, b: u32) {
         let (node, other) = (self.first.node(a), self.second.node(b));
         let (mut pairs, enter) = self.boxes.meet(&node.boxes, &other.boxes, self.horizon);
@@ -126,7 +126,7 @@ impl<'a> Search<'a> {
         }
         let (list, count) = in_order(pairs, &enter, among);
         for &(soonest, lane) in &list[..count] {
-            // Quotients lose no more than that below the normal numbers.
+            // Below the normal numbers, quotients lose no more than this.
             if f64::from(soonest) > self.horizon + f64::from(f32::MIN_POSITIVE) {
                 return;
             }
@@ -139,8 +139,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Of pairs of a leaf and a node, those whose box does not stay on one side of the plane of the
-    /// triangle: the box of a large triangle says little of where it is.
+    /// The pairs of a triangle (in the leaf) and a box (in the node) in which the box does not stay on one side of the
+    /// triangle's plane. The box of a large triangle says little about where the triangle is.
     fn not_parted(&self, pairs: u32, (a, first): (u32, &Node), second: &Node) -> u32 {
         let (mut left, mut kept) = (pairs, 0);
         while left != 0 {
@@ -178,7 +178,7 @@ impl<'a> Search<'a> {
         self.horizon = self.horizon.min(time.next_up());
     }
 
-    /// Keeps a contact if it is the first so far.
+    /// Keeps a contact if it is before the best one so far.
     fn add(&mut self, mut new: Candidate) {
         let mut is_tie = false;
         new.is_from_inside = self.comes_from_inside(&new);
@@ -189,7 +189,7 @@ impl<'a> Search<'a> {
             if new.bounds.1 >= old.bounds.0 {
                 let order = new.rounded().total_cmp(&old.rounded());
                 is_tie = order == Ordering::Equal;
-                // In doubt it would come later still.
+                // If rounding leaves a doubt, the new contact is the later one.
                 if order == Ordering::Greater || (is_tie && !new.is_before(old)) {
                     return;
                 }
@@ -210,17 +210,17 @@ impl<'a> Search<'a> {
     }
 }
 
-/// What is visited of the pairs of a tile.
+/// Which pairs of a tile are visited.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Among {
     Pairs,
-    /// For each of the first's lanes the soonest pair.
+    /// For each lane of the first mesh, its soonest pair.
     Rows,
-    /// For each of the second's lanes the soonest pair.
+    /// For each lane of the second mesh, its soonest pair.
     Columns,
 }
 
-/// The times and lanes of some pairs, the soonest first, and how many there are.
+/// The times and lanes of some pairs, soonest first, and their number.
 #[inline(never)]
 fn in_order(mut pairs: u32, enter: &[f32; TILE], among: Among) -> ([(f32, u32); TILE], usize) {
     let mut list = [(0.0, 0); TILE];
@@ -241,7 +241,7 @@ fn in_order(mut pairs: u32, enter: &[f32; TILE], among: Among) -> ([(f32, u32); 
             if list[known].0 <= time {
                 continue 'pairs;
             }
-            // To be put further ahead.
+            // Removed here, and inserted again further ahead.
             place = known;
             count -= 1;
         }

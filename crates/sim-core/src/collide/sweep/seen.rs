@@ -6,17 +6,17 @@ use glam::DVec3;
 
 use crate::collide::triple::{Difference, sign};
 
-/// Where in a triangle a point is.
+/// The place of a point in a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum At {
     Corner(usize),
-    /// Between this corner and the next one.
+    /// On the side between this corner and the next one.
     Side(usize),
     Inside,
 }
 
 impl At {
-    /// Where a line passes a triangle, given the sides on which it has the edges.
+    /// The place where a line passes through a triangle, from its sides of the triangle's edges.
     pub(super) fn line(sides: [Ordering; 3]) -> At {
         let on = |i: usize| sides[i] == Ordering::Equal;
         match [on(0), on(1), on(2)] {
@@ -30,7 +30,7 @@ impl At {
         }
     }
 
-    /// Ways that span what the triangle is about the point, those to its corners where these count.
+    /// Vectors that span the triangle's cone at the point. Those that matter lead from the point to corners.
     pub(super) fn ways(self, corners: [DVec3; 3]) -> [Difference; 3] {
         let origin = match self {
             At::Corner(i) | At::Side(i) => i,
@@ -44,23 +44,23 @@ impl At {
     }
 }
 
-/// What a triangle is about a point of it: all sums of multiples, none negative, of some ways.
+/// The cone of a triangle at one of its points: all linear combinations of some vectors with factors of at least 0.
 pub(super) struct Cone {
     ways: [Difference; 3],
     seen: Seen,
 }
 
-/// The same seen along the motion. Turning left is turning as [`turn`] has it.
+/// The projection of a cone along the motion. [`turn`] defines a left turn.
 enum Seen {
     All,
-    /// From one ray to the left to another one, a half-plane at most.
+    /// From one ray to the left up to another one, at most a half-plane.
     Sector(Difference, Difference),
-    /// The triangle is along the motion, and the rays are those of the ways that are not.
+    /// The triangle is parallel to the motion; its rays are those of the vectors that are not.
     Rays,
 }
 
 fn turn(u: Difference, v: Difference, motion: Difference) -> Ordering {
-    // Triangles side by side have an edge in common.
+    // Adjacent triangles share an edge.
     if (u.0, u.1) == (v.0, v.1) {
         return Ordering::Equal;
     }
@@ -68,7 +68,7 @@ fn turn(u: Difference, v: Difference, motion: Difference) -> Ordering {
 }
 
 impl Cone {
-    /// Of a triangle, by its ways, which lead to the corners where these are not the point.
+    /// The cone of a triangle, given its vectors from the point to the corners other than the point.
     pub(super) fn new([a, b, c]: [DVec3; 3], ways: [Difference; 3], motion: DVec3, at: At) -> Cone {
         let sector = |at: At| match at {
             At::Corner(i) => Some((ways[(i + 1) % 3], ways[(i + 2) % 3])),
@@ -88,26 +88,26 @@ impl Cone {
     }
 }
 
-/// Whether two surfaces that touch in a point, given by their triangles there, slip past each other
-/// along the motion after a small move of one of them.
+/// Whether two surfaces that touch in a point, given by their triangles there, slip past each other along the motion
+/// after a small move of one of them.
 ///
-/// About the point a surface is a cone, and seen along the motion a set of rays that start there. One
-/// of the sets, moved by however little, misses the other one if and only if it lies in a gap of that,
-/// a sector without rays but for those at its ends. A set that misses the other one hangs together and
-/// so is in one sector between rays of that, as are then all its directions, the ends included. The
-/// other way round, either the gap or what is left of the plane is convex, and a move into the gap,
-/// or of the other set out of it, along its bisector will do. Only where the one set is a single ray
-/// does its gap come round to both sides of it, and the other set may have the ray within.
+/// Near the point a surface is a cone. Its projection along the motion is a set of rays from the point. After an
+/// arbitrarily small move, one set misses the other if and only if it lies in a gap of the other: a sector without
+/// rays of the other set, except at its ends. Proof: a set that misses the other one is connected. So it lies in one
+/// sector between rays of the other set, and so do all its directions, the ends included. Conversely, either the gap
+/// or the rest of the plane is convex, and a move along its bisector is enough: of the one set into the gap, or of
+/// the other set out of it. Only if one set is a single ray does its gap reach both sides of this ray, and the other
+/// set may contain the ray inside.
 ///
-/// Surfaces that are apart before they touch and then have an edge of one at once pass through the
-/// inside of a triangle of the other one do not slip past. Where the edge passes through is seen on a
-/// ray of both surfaces, or in the point. A triangle that is seen as a sector has the ray within, and
-/// so no gap there. One along the motion is seen as rays, and an edge on these is in its plane, so the
-/// edge passes through in the point, with rays to both sides, and between them in the triangle is the
-/// way along the motion, with rays of it to both sides as well.
+/// Surfaces do not slip past each other if they are apart before they touch and an edge of one then at once passes
+/// through the inside of a triangle of the other. The place where the edge passes through projects onto a ray of both
+/// surfaces, or onto the point. If the triangle projects to a sector, it contains the ray, and so has no gap there.
+/// If the triangle is parallel to the motion, it projects to rays, and an edge on these is in its plane. So the edge
+/// passes through in the point, and has rays to both sides. Between them, in the triangle, is the direction of the
+/// motion, with rays of the triangle to both sides as well.
 pub(super) fn slips_past(first: &[Cone], second: &[Cone], motion: DVec3) -> bool {
     let motion = Difference::from(motion);
-    // Most that do not have a ray of a triangle inside another one.
+    // Decides most cases: a ray of one surface is inside a triangle of the other.
     if has_ray_of(first, second, motion) || has_ray_of(second, first, motion) {
         return false;
     }
@@ -138,7 +138,7 @@ pub(super) fn slips_past(first: &[Cone], second: &[Cone], motion: DVec3) -> bool
         })
 }
 
-/// Whether a triangle of one surface has, inside, a ray of one of the other surface.
+/// Whether a triangle of one surface has, inside its projection, a ray of the other surface.
 fn has_ray_of(cones: &[Cone], others: &[Cone], motion: Difference) -> bool {
     cones.iter().any(|cone| match cone.seen {
         Seen::All => true,
@@ -150,10 +150,10 @@ fn has_ray_of(cones: &[Cone], others: &[Cone], motion: Difference) -> bool {
     })
 }
 
-/// The rays from a point, by all that are ends of a sector of either surface and by what is between
-/// them: at even places those, at odd places what is to their left up to the next one.
+/// The directions around a point, cut at the ends of the sectors of both surfaces. Even places are these rays; an odd
+/// place is the sector to the left of a ray, up to the next one.
 struct Circle {
-    /// Whether the first and the second surface are there.
+    /// Whether the first and the second surface cover the place.
     covered: Vec<[bool; 2]>,
 }
 
@@ -162,13 +162,14 @@ impl Circle {
         self.covered.len()
     }
 
-    /// `None` if one of the surfaces is everywhere.
+    /// `None` if one of the surfaces covers all directions.
     fn new(surfaces: [&[Cone]; 2], motion: Difference) -> Option<Circle> {
         let most = 3 * (surfaces[0].len() + surfaces[1].len());
         let mut sectors: Vec<(usize, [usize; 2])> = Vec::with_capacity(most);
         let mut ends: Vec<(u8, Difference, usize)> = Vec::with_capacity(2 * most);
         let mut add = |of: usize, right: Difference, left: Difference| {
-            // By quarters that begin with a ray, so that those between are less than half a turn.
+            // Sorted by quarters that begin at one of the rays, so that two rays in a quarter are less than half a
+            // turn apart.
             let start = ends.first().map_or(right, |&(_, start, _)| start);
             let quarter = |way: Difference| match turn(start, way, motion) {
                 Ordering::Equal if along(start, way, motion) == Ordering::Less => 2,
@@ -220,12 +221,12 @@ impl Circle {
     }
 }
 
-/// Whether surfaces that touch, given by their triangles there, share a point as soon as the second
-/// one goes some way; certainly so if they do for all ways near it.
+/// Whether surfaces that touch, given by their triangles there, share a point as soon as the second one moves along a
+/// vector. With `certainly`, only if they do for all vectors near it.
 pub(super) fn meet_after(first: &[Cone], second: &[Cone], way: DVec3, certainly: bool) -> bool {
     first.iter().any(|one| {
         second.iter().any(|other| {
-            // The way is from a point of the second one to a point of the first one.
+            // The vector leads from a point of the second surface to a point of the first.
             let [a, b, c] = one.ways;
             let [d, e, f] = other.ways.map(|Difference(to, from)| Difference(from, to));
             let ways = [a, b, c, d, e, f];
@@ -239,7 +240,8 @@ pub(super) fn meet_after(first: &[Cone], second: &[Cone], way: DVec3, certainly:
     })
 }
 
-/// Whether a way is a sum of multiples, none negative, of three of some others that span the space.
+/// Whether a vector is a linear combination, with factors of at least 0, of three of the given ones that span the
+/// space.
 fn is_sum(ways: &[Difference; 6], way: Difference) -> bool {
     let spans = |i: usize, j: usize, k: usize| {
         let [u, v, w] = [ways[i], ways[j], ways[k]];
@@ -253,7 +255,7 @@ fn is_sum(ways: &[Difference; 6], way: Difference) -> bool {
     (0..6).any(|i| (i + 1..6).any(|j| (j + 1..6).any(|k| spans(i, j, k))))
 }
 
-/// Directions seen along the motion: the least sector that holds all.
+/// Directions in the projection along the motion: the least sector that contains all of them.
 struct Fan {
     motion: Difference,
     sector: Sector,
@@ -263,9 +265,9 @@ struct Fan {
 enum Sector {
     Nothing,
     Ray(Difference),
-    /// Both ways.
+    /// Two opposite directions.
     Line(Difference),
-    /// Less than a half-plane, counter-clockwise from the one to the other.
+    /// Less than a half-plane, counter-clockwise from the first direction to the second.
     Acute(Difference, Difference),
     /// To the left of a direction.
     Half(Difference),
@@ -320,8 +322,8 @@ impl Fan {
     }
 }
 
-/// Of two directions that are parallel, seen along the motion: whether they lead the same way, or
-/// `Equal` if one of them leads nowhere.
+/// Compares two directions that are parallel in the projection along the motion: whether they have the same sense, or
+/// `Equal` if one of them vanishes there.
 fn along(u: Difference, v: Difference, motion: Difference) -> Ordering {
     for axis in DVec3::AXES.map(Difference::from) {
         let [u, v] = [u, v].map(|way| sign([way, axis, motion]));
