@@ -1,4 +1,4 @@
-//! Which vertices, edges and faces touch in a contact: computed on request, not in the step.
+//! The vertices, edges and faces that touch in a contact: computed on request, not in the step.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use core::ops::ControlFlow;
@@ -10,29 +10,30 @@ use crate::{
     collide::{each_in_box, first_contact, nearest, snap},
 };
 
-/// Cosine of the angle to which the normal of a feature is that of the contact: 0.8 degrees.
+/// A feature belongs to a contact if the cosine of the angle between their normals is above this: 0.8 degrees.
 const SAME_NORMAL: f64 = 0.9999;
-/// That of an edge between two faces in one plane, which is none of the surface.
+/// If the cosine between the normals of two adjacent faces is above this, they are in one plane, and their edge is not
+/// a feature of the surface.
 const FLAT: f64 = 1.0 - 1e-9;
 
-/// What touches in one place of a contact.
+/// The features that touch at one point of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Touching {
     /// The vertices, edges or faces.
     pub feature: ContactFeature,
-    /// Where, on the first body, m, in the world.
+    /// The point on the first body, in the world, m.
     pub point: DVec3,
-    /// How far apart they are along the normal of the contact, m.
+    /// The distance of the features along the normal of the contact, m.
     pub gap: f64,
 }
 
-/// What touches what.
+/// The features that touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ContactFeature {
-    /// Of two meshes: a vertex in a face, or two edges that cross.
+    /// Of two meshes: a vertex in a face, or two crossing edges.
     Meshes(Feature),
-    /// A vertex of that body which is a mesh, against a sphere or a half-space.
+    /// A vertex of the mesh, against a sphere or a half-space.
     Vertex(u32),
     /// An edge of the mesh, against a sphere.
     Edge(u32),
@@ -43,16 +44,16 @@ pub enum ContactFeature {
 }
 
 impl World {
-    /// All features that touch in a contact of [`World::contacts`], where the bodies are now, in the order
-    /// of their indices: the corners of the area in which two faces lie on each other, or the one
-    /// place where round things touch. None where the bodies overlap.
+    /// All features that touch in a contact of [`World::contacts`], at the current positions of the bodies, in the
+    /// order of their indices. They are the corners of the area in which two faces lie on each other, or the single
+    /// point at which round shapes touch. Empty if the bodies overlap.
     ///
-    /// Features count that are no farther apart along the normal of the contact than its nearest ones,
-    /// but for [`World::flush`], and whose own normal is within 0.8 degrees of it: other contacts of the
-    /// same bodies have the others. A vertex is named once, with the lowest of the faces in which it
-    /// lies; edges between triangles in one plane are left out.
+    /// Features count if their distance along the normal of the contact exceeds that of its nearest ones by no more
+    /// than [`World::flush`], and if their own normal is within 0.8 degrees of it. Other features belong to other
+    /// contacts of the same bodies. A vertex is listed once, with the lowest of the faces in which it lies. Edges
+    /// between triangles in one plane are left out.
     ///
-    /// Costs time that grows with the triangles that are near the other body.
+    /// The cost grows with the number of triangles near the other body.
     pub fn contact_features(&self, contact: &RestingContact) -> Vec<Touching> {
         let (i, j) = contact.bodies;
         if contact.is_overlap || i.max(j) >= self.bodies.len() {
@@ -107,7 +108,7 @@ impl World {
             .collect()
     }
 
-    /// How far two bodies in contact are apart now along its normal, m.
+    /// The current distance of two bodies in contact along its normal, m.
     fn gap_of(&self, contact: &RestingContact, offset: DVec3) -> f64 {
         let (i, j) = contact.bodies;
         let hover = self.layout().hover_gap(i, j);
@@ -122,17 +123,17 @@ impl World {
     }
 }
 
-/// What is near in a contact, as seen from the first body.
+/// The features near a contact, in the frame of the first body.
 struct Near {
     normal: DVec3,
     offset: DVec3,
-    /// Gaps along the normal that count, m.
+    /// The greatest and the least gap along the normal that count, m.
     most: f64,
     least: f64,
     found: BTreeMap<ContactFeature, (DVec3, f64)>,
 }
 
-/// A triangle with its place in its mesh.
+/// A triangle with its indices in its mesh.
 struct Triangle {
     corners: [DVec3; 3],
     vertices: [u32; 3],
@@ -166,7 +167,7 @@ impl Near {
         normal.dot(self.normal).abs() >= SAME_NORMAL
     }
 
-    /// Where the way from a point along the normal comes to a triangle, and how long it is.
+    /// The point where the line from a point along the normal meets a triangle, and its distance, m.
     fn projected(&self, point: DVec3, triangle: &Triangle) -> Option<(DVec3, f64)> {
         let across = triangle.normal.dot(self.normal);
         let length = triangle.normal.dot(triangle.corners[0] - point) / across;
@@ -258,7 +259,7 @@ impl Near {
                 if !self.is_across(across) {
                     continue;
                 }
-                // Seen along the normal.
+                // In the projection along the normal.
                 let area = self.normal.dot(u.cross(w));
                 let along_own = self.normal.dot((r - p).cross(w)) / area;
                 let along_other = self.normal.dot((r - p).cross(u)) / area;
@@ -275,7 +276,7 @@ impl Near {
         }
     }
 
-    /// Of the faces in which a vertex lies, keeps the lowest.
+    /// For each vertex, keeps only the contact with the lowest of the faces in which it lies.
     fn name_vertices_once(&mut self) {
         let mut named: BTreeMap<(bool, u32), u32> = BTreeMap::new();
         self.found.retain(|feature, _| {
@@ -292,8 +293,8 @@ impl Near {
         });
     }
 
-    /// Of a sphere that touches a mesh, seen from the mesh, what it touches; `sign` is 1 if the mesh is
-    /// the first body.
+    /// The features of a mesh that a sphere touches, in the frame of the mesh. `sign` is 1 if the mesh is the first
+    /// body.
     fn ball(&mut self, (mesh, tree): (&Mesh, &Bvh), centre: DVec3, radius: f64, sign: f64) {
         let reach = DVec3::splat(radius + self.most.max(0.0));
         let slack = -self.least;
@@ -303,7 +304,7 @@ impl Near {
             let point = nearest(centre, triangle.corners);
             let way = centre - point;
             let gap = way.length() - radius;
-            // As near as rounding the way has no direction.
+            // A distance as short as rounding has no direction.
             let is_along =
                 |way: DVec3| sign * way.normalize_or_zero().dot(self.normal) >= SAME_NORMAL;
             if way.length() > slack && !is_along(way) {
@@ -311,7 +312,7 @@ impl Near {
             }
             let from = match sign > 0.0 {
                 true => point,
-                // On the sphere.
+                // The point on the sphere.
                 false => radius * self.normal,
             };
             if self.is_across(triangle.normal) {
@@ -332,15 +333,14 @@ impl Near {
             }
             ControlFlow::Continue(())
         });
-        // Over a plane it touches one face of it, and neither its edges nor its corners.
+        // Over a plane the sphere touches one face, and neither edges nor corners.
         if let Some(&(face, point, gap)) = flat.iter().min_by_key(|&&(face, ..)| face) {
             self.found.clear();
             self.add(ContactFeature::Face(face), point, gap);
         }
     }
 
-    /// The vertices of a mesh that are at a plane through a point of its frame; `sign` is 1 if the mesh
-    /// is the second body.
+    /// The vertices of a mesh near a plane through a point of its frame. `sign` is 1 if the mesh is the second body.
     fn corners(&mut self, mesh: &Mesh, plane: DVec3, sign: f64) {
         for (vertex, place) in mesh.vertices().iter().enumerate() {
             let place = place.as_dvec3();
@@ -354,7 +354,7 @@ impl Near {
     }
 }
 
-/// Of the edges in some crossings those between triangles in one plane, in order.
+/// The edges in some crossings that lie between triangles in one plane, in order.
 fn flat_edges(
     mesh: &Mesh,
     crossings: &[((u32, u32), DVec3, f64)],

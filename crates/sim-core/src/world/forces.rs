@@ -10,32 +10,32 @@ use crate::{
     force::{BodyMotion, PairMotion, Reach},
 };
 
-/// The forces of a world beside the constant resultants of its bodies.
+/// The forces of a world, except the constant resultants of its bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Forces {
     pub(super) list: Vec<Force>,
-    /// Acceleration by all weights, m/s².
+    /// The sum of all weights, as an acceleration, m/s².
     weight: DVec3,
-    /// Who is stepped with whom, as of when it was made.
+    /// Which bodies are stepped together. It is valid only if `is_planned`.
     pub(super) plan: Plan,
-    /// Whether that is still so: neither bodies nor forces have changed.
+    /// Whether the plan is valid: neither bodies nor forces have changed since it was made.
     is_planned: bool,
 }
 
 impl Forces {
-    /// Bodies or forces have changed.
+    /// Invalidates the plan, because bodies or forces have changed.
     pub(super) fn forget_plan(&mut self) {
         self.is_planned = false;
     }
 }
 
 impl World {
-    /// Adds a force beside the constant resultants of the bodies, and returns its place in
-    /// [`World::forces`].
+    /// Adds a force to the constant resultants of the bodies, and returns its index in [`World::forces`].
     ///
     /// # Errors
     ///
-    /// [`WorldError::Force`] of a number out of range, [`WorldError::NoBody`] of a body that it names.
+    /// [`WorldError::Force`] if a number is out of range, [`WorldError::NoBody`] if the force names a body that does
+    /// not exist.
     pub fn add_force(&mut self, force: Force) -> Result<usize, WorldError> {
         let index = self.forces.list.len();
         self.check_force(index, &force)?;
@@ -45,7 +45,7 @@ impl World {
         Ok(index)
     }
 
-    /// Puts another force in the place of one.
+    /// Replaces a force by another one.
     ///
     /// # Errors
     ///
@@ -61,7 +61,7 @@ impl World {
         Ok(())
     }
 
-    /// Removes a force; those after it move up by one place.
+    /// Removes a force; the indices of the forces after it decrease by one.
     ///
     /// # Errors
     ///
@@ -76,13 +76,13 @@ impl World {
         Ok(force)
     }
 
-    /// The forces beside the constant resultants of the bodies.
+    /// The forces that were added to the constant resultants of the bodies.
     pub fn forces(&self) -> &[Force] {
         &self.forces.list
     }
 
-    /// Potential energy of all forces that have one, J: 0 for a constant force or weight on a body
-    /// at the origin, for a spring at rest, and for attraction from infinitely far away.
+    /// The potential energy of all forces that have one, J. It is 0 for a constant force or weight on a body at the
+    /// origin, for a spring at its rest length, and for attraction from infinitely far away.
     pub fn potential_energy(&self) -> f64 {
         let bodies = self.movable();
         let constant: f64 = bodies
@@ -121,9 +121,8 @@ impl World {
         energy
     }
 
-    /// The sum of all forces on a body where it is and as it moves now, N, but for those of contacts;
-    /// 0 on an immovable one. For one body after the other: time grows with the number of forces, and
-    /// under gravitation with that of bodies.
+    /// The sum of all forces on a body at its current position and motion, without those of contacts, N; 0 on an
+    /// immovable body. The time grows with the number of forces, and under gravitation with the number of bodies.
     pub fn applied_force(&self, body: usize) -> DVec3 {
         if !self.bodies.is_movable(body) {
             return DVec3::ZERO;
@@ -133,8 +132,8 @@ impl World {
         forces.fold(constant, |sum, force| sum + self.force_by(force, body))
     }
 
-    /// The torque of all forces on a body about its centre of mass where it is and as it moves now, N m, but for that
-    /// of contacts; 0 on one that does not turn or that nothing moves.
+    /// The torque of all forces on a body about its centre of mass at its current position and motion, without that of
+    /// contacts, N m; 0 on a body that cannot rotate or is immovable.
     pub fn applied_torque(&self, body: usize) -> DVec3 {
         let slot = self.bodies.turners.slot(body);
         let Some(slot) = slot.filter(|_| self.bodies.is_movable(body)) else {
@@ -153,7 +152,7 @@ impl World {
         })
     }
 
-    /// A force on a body that can be moved, N; of weight nothing, which is in the constant acceleration.
+    /// One force on a movable body, N; zero for weight, which is part of the constant acceleration.
     fn force_by(&self, force: &Force, body: usize) -> DVec3 {
         let on_first = |force: &Force, i, j| force.on_pair(&self.pair_motion(force, i, j));
         match force.reach() {
@@ -171,17 +170,17 @@ impl World {
         }
     }
 
-    /// Where a point of a body is, m, which is given in the frame of its shape, m.
+    /// The position of a point of a body in the world, m; the point is given in the frame of its shape, m.
     pub fn point_of(&self, body: usize, point: DVec3) -> DVec3 {
         self.position(body) + self.lever(body, point).0
     }
 
-    /// A point of a body as seen from its position, m, and how it moves about that, m/s.
+    /// A point of a body relative to the body's position, m, and its velocity relative to the body's, m/s.
     fn lever(&self, body: usize, point: DVec3) -> (DVec3, DVec3) {
         self.bodies.lever_in(&self.current.turned, body, point)
     }
 
-    /// What constant forces and weight do to a body, m/s²; nothing to an immovable one.
+    /// The acceleration of a body by constant forces and weight, m/s²; zero for an immovable body.
     pub(super) fn constant_acceleration(&self, body: usize) -> DVec3 {
         if !self.bodies.is_movable(body) {
             return DVec3::ZERO;
@@ -189,7 +188,8 @@ impl World {
         self.bodies.force[body] / self.bodies.mass[body] + self.forces.weight
     }
 
-    /// Forces have changed, a weight among them or not: many are added one by one.
+    /// Updates the world after a change of forces. `is_weight` tells whether one of them is a weight: forces are
+    /// often added one by one, and only a weight changes the acceleration of all bodies.
     fn forces_changed(&mut self, is_weight: bool) {
         self.forces.forget_plan();
         self.continuous.wake_all();
@@ -210,7 +210,7 @@ impl World {
         }
     }
 
-    /// Makes the plan of who is stepped with whom, unless it is there.
+    /// Makes the plan of bodies that are stepped together, unless it is valid.
     #[inline(always)]
     pub(super) fn make_plan(&mut self) {
         if !self.forces.is_planned {
@@ -226,8 +226,8 @@ impl World {
         self.forces.is_planned = true;
     }
 
-    /// The order in which bodies that forces couple are stepped, if there is a plan and their motion
-    /// has had a say in it: it stays while neither bodies nor forces are added.
+    /// The order in which bodies that forces couple are stepped, if a plan exists whose order depends on their
+    /// motion. The order stays the same until bodies or forces are added.
     pub(super) fn planned_order(&self) -> Option<Vec<usize>> {
         let plan = self.forces.is_planned.then_some(&self.forces.plan)?;
         if plan.each_pair.is_empty() {
@@ -237,7 +237,7 @@ impl World {
         Some(groups.flat_map(|group| &group.bodies).copied().collect())
     }
 
-    /// Makes a plan with bodies in an order that was planned before: those that are not in it come last.
+    /// Makes a plan with the bodies in an earlier order; bodies that are not in that order come last.
     pub(super) fn plan_in_order(&mut self, order: &[usize]) {
         let mut places = alloc::vec![i64::MAX; self.len()];
         for (place, &body) in (0..).zip(order) {
@@ -248,8 +248,7 @@ impl World {
         self.forces.is_planned = true;
     }
 
-    /// Removes the forces that name a body, which is gone; those on others follow them to their new
-    /// places.
+    /// Removes the forces that name a removed body. Forces on bodies after it get the new indices of these bodies.
     pub(super) fn remove_forces_of(&mut self, gone: usize) {
         let renumber = |body: usize| match body.cmp(&gone) {
             Ordering::Less => Some(body),
@@ -271,7 +270,7 @@ impl World {
         Ok(())
     }
 
-    /// The motion of a body, or of the point of it, on which a force acts.
+    /// The motion of a body, or of the point of it on which a force acts.
     fn body_motion(&self, force: &Force, i: usize) -> BodyMotion {
         let lever = force.point().map(|point| self.lever(i, point));
         let (arm, turning) = lever.unwrap_or_default();
@@ -283,7 +282,7 @@ impl World {
         }
     }
 
-    /// The same of two bodies.
+    /// The same for two bodies.
     fn pair_motion(&self, force: &Force, i: usize, j: usize) -> PairMotion {
         let levers = force.points();
         let levers = levers.map(|[p, q]| (self.lever(i, p), self.lever(j, q)));

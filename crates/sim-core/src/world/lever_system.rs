@@ -18,32 +18,32 @@ use crate::{
     rotation::{Coordinates, Flight, Rotor, chart, into_body},
 };
 
-/// What torques do to rotors, and forces to bodies.
+/// The accelerations of bodies by forces, and of rotors by torques.
 pub(super) struct Kicks<'a> {
     pub(super) part: Part<'a>,
-    /// In the order of places.
+    /// In the order of their places in the part.
     pub(super) rotors: &'a [Rotor],
 }
 
-/// The same with what rotors do by themselves.
+/// The same, together with the free rotation of the rotors.
 pub(super) struct LeverSystem<'a>(pub(super) Kicks<'a>);
 
-/// A point on which a force acts, as seen from its body.
+/// A point on which a force acts, relative to its body.
 #[derive(Clone, Copy, Default)]
 struct Lever {
     arm: DVec3,
     velocity: DVec3,
-    /// Which rotor it turns.
+    /// The rotor of the body.
     rotor: Option<usize>,
 }
 
 impl Kicks<'_> {
-    /// How many bodies there are: rotors come after them.
+    /// The number of bodies; rotors come after them.
     fn bodies(&self) -> usize {
         self.part.mass.len()
     }
 
-    /// The point of a body, by its place in the part, and how it moves about the body's position.
+    /// A point of a body, given the body's place in the part, and the motion of the point about the body's position.
     fn lever(&self, place: usize, point: DVec3, x: &[DVec3], v: &[DVec3]) -> Lever {
         let Ok(k) = self
             .rotors
@@ -65,7 +65,7 @@ impl Kicks<'_> {
         }
     }
 
-    /// Writes accelerations of bodies, and of rotors the torques on them, N m in the world.
+    /// Writes the accelerations of bodies, and the torques on rotors, N m in the world.
     fn loads(&self, time: f64, x: &[DVec3], v: &[DVec3], loads: &mut [DVec3]) {
         let (part, bodies) = (&self.part, self.bodies());
         loads[..bodies].copy_from_slice(part.acceleration);
@@ -106,7 +106,7 @@ impl Kicks<'_> {
         });
     }
 
-    /// Turns torques into second derivatives of rotation vectors; with what rotors do by themselves or without.
+    /// Converts torques to second derivatives of rotation vectors; with the free rotation if `is_whole`.
     fn turn(&self, x: &[DVec3], v: &[DVec3], loads: &mut [DVec3], is_whole: bool) {
         let bodies = self.bodies();
         for (k, rotor) in self.rotors.iter().enumerate() {
@@ -158,11 +158,11 @@ impl System for LeverSystem<'_> {
         }
         for (k, rotor) in self.0.rotors.iter().enumerate() {
             let (theta, rate) = (&mut x[bodies + k], &mut v[bodies + k]);
-            // As seen from the axes where the drift begins.
+            // In the frame of the axes at the start of the drift.
             let momentum = rotor.moments * chart::spin(*theta, *rate);
             let flight = Flight::new(rotor.moments, DQuat::IDENTITY, momentum, DVec3::ZERO, h);
             let Ok(flight) = flight else {
-                // Which the end of the step reports.
+                // The end of the step reports this.
                 *theta = DVec3::NAN;
                 continue;
             };
@@ -174,8 +174,8 @@ impl System for LeverSystem<'_> {
 }
 
 impl Scene<'_> {
-    /// The acceleration of one of the bodies of a part, m/s², and if it turns the torque on it, N m, where all of them
-    /// are as told.
+    /// The acceleration of one body of a part, m/s², and the torque on it if it turns, N m, for given positions and
+    /// velocities of all bodies of the part.
     pub(super) fn loads(
         &self,
         part: Part<'_>,
@@ -208,7 +208,7 @@ impl Scene<'_> {
 }
 
 impl Bodies {
-    /// A body of a part that turns, by its place there, as it is turned where a step begins.
+    /// The rotor of a turning body, given the body's place in the part and the rotations at the start of the step.
     pub(super) fn rotor(
         &self,
         (body, place): (usize, usize),
@@ -231,7 +231,7 @@ impl Bodies {
         })
     }
 
-    /// Notes how a body is turned at the end of a step; not if that cannot be told, or is no number.
+    /// Stores the rotation of a body at the end of a step. Returns false if it cannot be computed or is not finite.
     #[must_use]
     pub(super) fn note_turned(
         &self,
@@ -243,15 +243,15 @@ impl Bodies {
             return false;
         };
         let momentum = rotation * (rotor.moments * spin);
-        // What nothing turns goes on by itself.
+        // An immovable body keeps its free rotation.
         if rotor.is_movable {
             turned[rotor.slot] = Turned { rotation, momentum };
         }
         momentum.is_finite()
     }
 
-    /// A point of a body (m, in the frame of its shape) as seen from its position, and how that moves about it,
-    /// in the world, m and m/s.
+    /// A point of a body (m, in the frame of its shape) relative to the body's position, and its velocity about that
+    /// position, in the world, m and m/s.
     pub(super) fn lever_in(&self, turned: &[Turned], body: usize, point: DVec3) -> (DVec3, DVec3) {
         let Some(slot) = self.turners.slot(body) else {
             return (point, DVec3::ZERO);

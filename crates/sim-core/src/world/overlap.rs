@@ -1,7 +1,7 @@
 //! Pairs of bodies that were placed in overlap.
 //!
-//! One search finds them for all newly placed bodies, before the next step or on request. A search for each
-//! new body alone would compare it with all bodies before it.
+//! One search finds these pairs for all newly placed bodies, before the next step or on request. A separate search for
+//! each new body would compare it with all bodies before it.
 
 use alloc::{boxed::Box, collections::BTreeMap, vec::Vec};
 use once_cell::race::OnceBox;
@@ -9,21 +9,21 @@ use once_cell::race::OnceBox;
 use super::World;
 use crate::collide::Broad;
 
-/// So many bodies or fewer are compared with all others one by one: to put all in order takes longer.
+/// Up to this many bodies are compared with all others one by one: to sort all bodies takes longer.
 const FEW: usize = 8;
 
-/// Pairs that are in overlap since they were placed, and who is to be looked at.
+/// Pairs in overlap since they were placed, and the bodies whose overlaps are not known yet.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Overlaps {
-    /// Pairs that began in overlap, in order; without those of bodies that have just been placed.
+    /// Pairs that began in overlap, in order; without pairs of newly placed bodies.
     pub(super) pairs: Vec<(usize, usize)>,
     placed: Placed,
-    /// How deep they were in each other where they were placed, m.
+    /// The depth of pairs where they were placed, m.
     depth_at_start: BTreeMap<(usize, usize), f64>,
 }
 
 impl Overlaps {
-    /// Pairs in order, and how deep some of them were where they were placed, m.
+    /// Restores the pairs, in order, and the depths of some of them where they were placed, m.
     #[cfg(feature = "serde")]
     pub(super) fn known(
         pairs: Vec<(usize, usize)>,
@@ -36,12 +36,12 @@ impl Overlaps {
         }
     }
 
-    /// How deep two bodies in overlap were in each other where they were placed, m.
+    /// The depth of two overlapping bodies where they were placed, m.
     pub(super) fn depth_at_start(&self, pair: (usize, usize)) -> Option<f64> {
         self.depth_at_start.get(&pair).copied()
     }
 
-    /// Notes how deep bodies are in each other where they have been placed.
+    /// Stores the depth of two bodies where they were placed.
     pub(super) fn note_depth(&mut self, pair: (usize, usize), depth: f64) {
         self.depth_at_start.entry(pair).or_insert(depth);
     }
@@ -54,7 +54,7 @@ impl Overlaps {
             .retain(|pair, _| pairs.binary_search(pair).is_ok());
     }
 
-    /// Takes out a body of which no overlap is known; those after it move up.
+    /// Removes a body without known overlaps; the indices of the bodies after it decrease by one.
     pub(super) fn remove_body(&mut self, body: usize) {
         let moved = |other: usize| other - usize::from(other > body);
         for (i, j) in &mut self.pairs {
@@ -76,24 +76,22 @@ impl Overlaps {
     }
 }
 
-/// Bodies that have been placed since overlaps were last sought.
+/// Bodies that were placed since the last search for overlaps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Placed {
     bodies: Vec<usize>,
-    /// By body, whether it is one of them.
+    /// For each body, whether it is in the list.
     is_listed: Vec<bool>,
-    /// All pairs in overlap, once somebody has asked. It can be found while the world is looked at
-    /// from several threads.
+    /// All pairs in overlap, once they were requested. Several threads that read the world may compute it.
     overlapping: OnceBox<Vec<(usize, usize)>>,
 }
 
 impl World {
-    /// Pairs of bodies that meet where they have been put into the world, and have not parted since, in
-    /// order; to touch is to meet. [`World::overlaps`] tells those that are in each other by more than
-    /// rounding, and how deep.
+    /// Pairs of bodies that met where they were placed and have not parted since, in order; bodies that touch meet.
+    /// [`World::overlaps`] returns those that overlap by more than rounding, and their depths.
     ///
-    /// Such pairs may part, and get no deeper; in the discrete modes an elastic impulse along their
-    /// centres keeps them from moving closer. [`World::separate`] moves them apart.
+    /// Such pairs may part, and get no deeper. In the discrete modes an elastic impulse along the line of their
+    /// centres keeps them from approaching. [`World::separate`] moves them apart.
     pub fn overlapping(&self) -> &[(usize, usize)] {
         if self.overlaps.placed.bodies.is_empty() {
             return &self.overlaps.pairs;
@@ -102,7 +100,7 @@ impl World {
         self.overlaps.placed.overlapping.get_or_init(found)
     }
 
-    /// Seeks overlaps of the bodies that have been placed.
+    /// Finds the overlaps of newly placed bodies.
     #[inline(always)]
     pub(super) fn seek_overlaps(&mut self) {
         if !self.overlaps.placed.bodies.is_empty() {
@@ -119,7 +117,7 @@ impl World {
         self.overlaps.placed.overlapping = OnceBox::new();
     }
 
-    /// Forgets whom a body touches or overlaps: it is about to be placed.
+    /// Removes the contacts and overlaps of a body that is about to be placed.
     pub(super) fn forget_contacts_of(&mut self, body: usize) {
         self.keep_found_overlaps();
         self.overlaps.retain(|&(i, j)| i != body && j != body);
@@ -128,14 +126,14 @@ impl World {
         self.continuous.wake_all();
     }
 
-    /// What has been asked for need not be sought again.
+    /// If the overlaps were requested, keeps them, so that they need not be searched again.
     fn keep_found_overlaps(&mut self) {
         if self.overlaps.placed.overlapping.get().is_some() {
             self.seek_overlaps();
         }
     }
 
-    /// Notes that a body has been placed, which forgets nothing of others.
+    /// Registers that a body was placed; keeps the overlaps of others.
     pub(super) fn note_placed(&mut self, body: usize) {
         self.keep_found_overlaps();
         self.continuous.placed = true;
@@ -154,8 +152,8 @@ impl World {
         }
     }
 
-    /// All pairs in overlap: those that are known, and those of bodies that have been placed. Always
-    /// through the trees: placing bodies is not what naive steps are measured for.
+    /// All pairs in overlap: the known ones, and those of newly placed bodies. Always uses the trees: a naive step
+    /// does not measure the placing of bodies.
     fn all_overlapping(&self) -> Vec<(usize, usize)> {
         let mut pairs = self.overlaps.pairs.clone();
         let mut ask = |i: usize, j: usize| {
@@ -169,7 +167,7 @@ impl World {
             for &body in &self.overlaps.placed.bodies {
                 let own = self.bodies.swept_box(body, at(body), at(body));
                 for &other in &self.bodies.solid {
-                    // Of two that have been placed, the pair is asked once.
+                    // Test a pair of two newly placed bodies once.
                     if other == body || is_placed(other) && other < body {
                         continue;
                     }
@@ -201,7 +199,7 @@ impl World {
         pairs
     }
 
-    /// Forgets pairs that have parted since they began in overlap.
+    /// Removes pairs that were placed in overlap and have parted since.
     pub(super) fn forget_parted_overlaps(&mut self) {
         if self.overlaps.pairs.is_empty() {
             return;
@@ -223,7 +221,7 @@ mod tests {
     use super::*;
     use crate::{Body, BodyKind, Settings, Shape, test_meshes::cube, test_random::Random};
 
-    /// All pairs in overlap, one by one.
+    /// All pairs in overlap, tested one by one.
     fn brute_force(world: &World) -> Vec<(usize, usize)> {
         let pairs = (0..world.len()).flat_map(|i| (i + 1..world.len()).map(move |j| (i, j)));
         let is_overlap = |&(i, j): &(usize, usize)| {
@@ -319,7 +317,7 @@ mod tests {
             world.step().unwrap();
             assert!(world.kinetic_energy() <= energy * (1.0 + 1e-14));
         }
-        // Alone, each would have left long ago.
+        // Without other bodies, each would have left long ago.
         assert!(
             world.overlapping().len() < 100,
             "{}",

@@ -1,9 +1,9 @@
-//! The depth of overlapping bodies, and the translation that parts them.
+//! The depth of overlapping bodies, and the shortest translation that separates them.
 //!
-//! For spheres and half-spaces the least translation that parts a pair has a closed form. For other pairs
-//! it is searched. The length is doubled or halved until, by the exact test, one of many directions parts the pair
-//! at this length and none at half of it. The lengths along these directions are bisected. The surface that
-//! touches at the end of the best translation gives the next direction, as long as this makes the translation shorter.
+//! For spheres and half-spaces the least translation that separates a pair has a closed form. For other pairs it is
+//! searched. The length is doubled or halved until, by the exact test, one of many directions separates the pair at
+//! this length and none at half of it. The lengths along these directions are bisected. The surface that touches at
+//! the end of the best translation gives the next direction, as long as this makes the translation shorter.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -14,13 +14,13 @@ use crate::{
     collide::{Form, ball_meets, first_contact, parting_normals, reach, snap, stay_in_each_other},
 };
 
-/// Halvings of the length at which a direction parts a pair: as good as 12 digits.
+/// The number of bisections of the length that separates a pair along a direction: 12 correct digits.
 const HALVINGS: usize = 40;
-/// Rounds in which the surface that is touched gives the next direction; of faces one is enough.
+/// The most rounds in which the surface that touches gives the next direction; for faces one round is enough.
 const TURNS: usize = 16;
-/// Roundings of f32 vertices by which bodies that are meant to be flush may overlap.
+/// Bodies placed flush may overlap by this many roundings of f32 vertices,
 const FLUSH_ROUNDINGS: f64 = 4.0;
-/// Gaps of bodies in contact that it may miss by.
+/// and by this many gaps of bodies in contact.
 const FLUSH_GAPS: f64 = 16.0;
 
 /// Two bodies that overlap more deeply than by rounding.
@@ -29,30 +29,30 @@ const FLUSH_GAPS: f64 = 16.0;
 pub struct Overlap {
     /// The bodies, the lower index first.
     pub bodies: (usize, usize),
-    /// The direction of the shortest known translation that moves the second body out of the first, a unit vector; the
-    /// first body moves out the opposite way.
+    /// Unit vector: the direction of the shortest known translation that moves the second body out of the first. The
+    /// first body moves out in the opposite direction.
     pub normal: DVec3,
     /// The length of that translation, m: after it the bodies touch.
     ///
     /// A mesh is a surface, open or closed, so the translation may lead into the space that it encloses.
     pub depth: f64,
-    /// Whether no translation that parts them is shorter, except for rounding.
+    /// Whether no shorter translation separates the bodies, except for rounding.
     ///
-    /// This is known for spheres and half-spaces, for a sphere and a mesh if no edge or second face blocks the
-    /// translation, and for two boxes of which neither fits into the other. Otherwise `depth` is an upper
-    /// bound: that of the shortest translation along the normals of up to 32 faces that meet, the
-    /// line of the centres, and the 26 directions to the faces, edges and corners of a cube, improved
-    /// by the surfaces that are met on the way. If one of two bodies turns, the directions are the line of
-    /// the centres and 26 such directions in the world and in the frame of each turning body.
+    /// This is known for spheres and half-spaces; for a sphere and a mesh if no edge or second face blocks the
+    /// translation; and for two boxes of which neither fits into the other. Otherwise `depth` is an upper bound: the
+    /// length of the shortest translation along the normals of up to 32 faces that meet, the line of the centres, and
+    /// the 26 directions to the faces, edges and corners of a cube, improved by the surfaces that touch on the way.
+    /// If one of two bodies turns, the directions are the line of the centres and 26 such directions in the world and
+    /// in the frame of each turning body.
     pub is_least: bool,
 }
 
-/// A translation out of an overlap.
+/// A translation that ends an overlap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Penetration {
-    /// The direction of the second body.
+    /// The direction in which the second body moves.
     pub(super) normal: DVec3,
-    /// How far, m.
+    /// The length of the translation, m.
     pub(super) depth: f64,
     pub(super) is_least: bool,
 }
@@ -61,12 +61,13 @@ impl World {
     /// The pairs of overlapping bodies of which one is movable, in order: those that were placed
     /// in overlap and have not parted since.
     ///
-    /// No start is refused. Bodies in overlap get no deeper and gain no energy. If one of them turns, they
-    /// pass through each other until they are apart. Two immovable bodies never touch each other. A mesh is a surface,
-    /// so a body wholly inside a closed mesh does not overlap it. [`World::separate`] moves overlapping bodies apart.
+    /// No initial placement is refused. Overlapping bodies get no deeper and gain no energy. If one of them turns,
+    /// they pass through each other until they are apart. Two immovable bodies never touch each other. A mesh is a
+    /// surface, so a body wholly inside a closed mesh does not overlap it. [`World::separate`] moves overlapping
+    /// bodies apart.
     ///
-    /// An overlap less deep than [`World::flush`] counts as a contact. Depths are
-    /// measured at the current places of the bodies, which takes some hundred exact tests for a pair of meshes.
+    /// An overlap less deep than [`World::flush`] counts as a contact. Depths are measured at the current positions
+    /// of the bodies, which takes some hundred exact tests for a pair of meshes.
     pub fn overlaps(&self) -> Vec<Overlap> {
         let layout = self.layout();
         let mut last: Option<((usize, usize), Option<Overlap>)> = None;
@@ -104,26 +105,26 @@ impl World {
         })
     }
 
-    /// The depth, m, along a normal, or along up to three at once, up to which overlapping bodies count as
-    /// touching: four times the rounding of the `f32` of their vertices, radii and distances from their
-    /// origins together, and 16 of the gaps at which bodies in contact are kept, 1024
-    /// units in the last place of their coordinates.
+    /// The depth, m, along a normal, or along up to three at once, up to which overlapping bodies count as touching.
+    /// It is the sum of two parts. One is four times the rounding of the `f32` of their vertices, radii and distances
+    /// from their origins together. The other is 16 of the gaps at which bodies in contact are kept, 1024 units in
+    /// the last place of their coordinates.
     ///
-    /// Positions that are computed for bodies to lie flush, on a slope or by turned meshes, have errors of this
-    /// size. The next step moves such bodies apart when it begins, and then they touch.
+    /// Computed positions of bodies that are meant to lie flush, on a slope or by turned meshes, have errors of this
+    /// size. At its start the next step moves such bodies apart, and then they touch.
     pub fn flush(&self, i: usize, j: usize) -> f64 {
         self.layout().flush(i, j)
     }
 }
 
 impl Layout<'_> {
-    /// How deep two bodies may be in each other and still be meant to touch ([`World::flush`]), m.
+    /// The depth up to which two overlapping bodies count as touching ([`World::flush`]), m.
     pub(super) fn flush(&self, i: usize, j: usize) -> f64 {
         let sizes = self.bodies.extent(i).farthest + self.bodies.extent(j).farthest;
         FLUSH_ROUNDINGS * f64::from(f32::EPSILON) * sizes + FLUSH_GAPS * self.hover_gap(i, j)
     }
 
-    /// Whether two pairs are of the same shapes in the same places, so that both are as deep in each other.
+    /// Whether two pairs have the same shapes in the same positions, and so the same depth.
     pub(super) fn are_copies(&self, (i, j): (usize, usize), (k, l): (usize, usize)) -> bool {
         let is_copy = |body: usize, other: usize| {
             let is_there = |at: &[DVec3]| at[body] == at[other];
@@ -140,7 +141,7 @@ impl Layout<'_> {
         contacts.any(|contact| contact.is_overlap)
     }
 
-    /// The shortest way out that is known of two bodies that meet, the second one at `offset` from the
+    /// The shortest known translation that separates two bodies that meet; the second one is at `offset` from the
     /// first.
     pub(super) fn penetration(&self, i: usize, j: usize, offset: DVec3) -> Penetration {
         self.bodies.need_bvh(i);
@@ -169,14 +170,14 @@ impl Layout<'_> {
         }
     }
 
-    /// Whether two bodies that meet surely do at all offsets that are no farther than `by`, m, from this one.
+    /// Whether two bodies that meet certainly do so at all offsets no farther than `by`, m, from this one.
     pub(super) fn is_surely_deeper(&self, (i, j): (usize, usize), offset: DVec3, by: f64) -> bool {
         let Some((first, second)) = self.bodies.forms(i, j) else {
             return false;
         };
         let exact = in_closed_form(first, second, offset);
         if let Some(exact) = exact.or_else(|| self.out_of_box((i, j), offset)) {
-            // Twice as far, for rounding.
+            // Twice as far, to cover rounding.
             return exact.depth > 2.0 * by;
         }
         match (first, second) {
@@ -191,7 +192,7 @@ impl Layout<'_> {
         }
     }
 
-    /// The same of two bodies of which one turns, as they are turned.
+    /// The same for two bodies of which one turns, at their current rotations.
     fn turning_penetration(&self, i: usize, j: usize, offset: DVec3) -> Penetration {
         let out_of = |normal: DVec3, body: usize, place: DVec3| {
             let depth = self.reach_against(body, normal)? - normal.dot(place);
@@ -228,7 +229,7 @@ impl Layout<'_> {
         }
     }
 
-    /// Farther than any pair that meets has to be moved, m.
+    /// A length greater than any translation that a pair needs to be separated, m.
     fn farthest_out(&self, i: usize, j: usize) -> f64 {
         4.0 * (self.bodies.extent(i).farthest + self.bodies.extent(j).farthest)
     }
@@ -258,8 +259,8 @@ impl Layout<'_> {
         ways
     }
 
-    /// The shortest way out along one of some directions: at a length none of them parts the pair, and at
-    /// twice that some do.
+    /// The shortest separating translation along one of some directions. It first finds a length at which a direction
+    /// separates the pair, while none does at half of it.
     fn shortest_out(
         &self,
         (i, j): (usize, usize),
@@ -269,10 +270,11 @@ impl Layout<'_> {
         let is_apart = |by: DVec3| !self.meet(i, j, offset + by);
         let some_part = |far: f64| directions.iter().any(|&way| is_apart(far * way));
         let (least, most) = (self.hover_gap(i, j), self.farthest_out(i, j));
-        // What is held is about as deep as it was.
+        // A pair held in overlap is about as deep as it was at the start.
         let known = self.overlaps.depth_at_start((i, j));
         let known = known.map(|depth| 0.125 * depth);
-        // Else from what is about deep on: where surfaces nearly coincide, each look takes longest.
+        // Otherwise begin at a depth that counts as deep: where surfaces nearly coincide, each exact test takes
+        // longest.
         let size = |body: usize| self.bodies.extent(body).farthest;
         let deep = || (0.25 * size(i).min(size(j))).max(self.flush(i, j));
         let mut far = known.unwrap_or_else(deep).max(least);
@@ -298,7 +300,7 @@ impl Layout<'_> {
         best
     }
 
-    /// A way out that no turn to the surface that is touched at its end makes shorter.
+    /// A separating translation that becomes no shorter along the normal of the surface that touches at its end.
     fn turned_out(
         &self,
         (i, j): (usize, usize),
@@ -318,7 +320,7 @@ impl Layout<'_> {
                 break;
             };
             let along = normal.dot(touch.normal) * depth;
-            // Beyond the plane that it touches.
+            // Just beyond the plane of this surface.
             let reach = along * (1.0 + 1e-12) + hover;
             if reach >= depth || !is_apart(reach * touch.normal) {
                 break;
@@ -329,8 +331,8 @@ impl Layout<'_> {
         best
     }
 
-    /// The way out of boxes along the axes of which neither fits into the other: past a face; of several the one
-    /// that parts them most.
+    /// The shortest separating translation of two boxes along the axes, of which neither fits into the other: past a
+    /// face. Of equal ones, the one that leads most along the line of the centres.
     fn out_of_box(&self, (i, j): (usize, usize), offset: DVec3) -> Option<Penetration> {
         let ends = |body: usize| Some(self.bodies.bvh(body)?.cuboid()?.ends);
         let ([low, high], [other_low, other_high]) = (ends(i)?, ends(j)?);
@@ -356,7 +358,7 @@ impl Layout<'_> {
     }
 }
 
-/// The least length from `low` to `high` at which something is so, as it is at `high`.
+/// The least length from `low` to `high` at which a condition holds, by bisection; the condition holds at `high`.
 fn halved(mut low: f64, mut high: f64, is_so: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
@@ -378,7 +380,7 @@ pub(super) fn compass() -> impl Iterator<Item = DVec3> {
     all.filter_map(DVec3::try_normalize)
 }
 
-/// The way out of spheres and half-spaces.
+/// The shortest separating translation of spheres and half-spaces.
 fn in_closed_form(first: Form<'_>, second: Form<'_>, offset: DVec3) -> Option<Penetration> {
     let least = |normal: DVec3, depth: f64| {
         Some(Penetration {
@@ -403,8 +405,8 @@ fn in_closed_form(first: Form<'_>, second: Form<'_>, offset: DVec3) -> Option<Pe
     }
 }
 
-/// Whether no translation of a sphere out of a mesh is shorter: its middle is nearer to the surface than
-/// its radius by as much, and a translation takes it no farther away than its length.
+/// Whether no shorter translation moves a sphere out of a mesh: the distance of its centre from the surface is less
+/// than the radius by `depth`, and a translation increases this distance by at most its length.
 fn is_least(first: Form<'_>, second: Form<'_>, offset: DVec3, depth: f64) -> bool {
     let (mesh, centre, radius) = match (first, second) {
         (Form::Mesh(mesh), Form::Sphere(radius)) => (mesh, offset, radius),

@@ -1,10 +1,9 @@
 //! Which bodies must be stepped together.
 //!
-//! Bodies with only constant forces belong to no section. Forces on single
-//! bodies make sections that can be cut anywhere. Forces between bodies make sections that contain
-//! every body they reach, and all between these in the columns. In such a section, bodies connected by forces
-//! are a group, which is stepped by itself and in an order of its own: sums over
-//! bodies round, and their rounding must not depend on places in the columns.
+//! Bodies with only constant forces belong to no section. Forces on single bodies make sections that can be cut
+//! anywhere. A force between bodies makes a section that contains every body on which it acts, and all bodies between
+//! these in the columns. In such a section, the bodies that forces connect are a group. Each group is stepped by itself
+//! and in an order of its own: sums over bodies round, and this rounding must not depend on places in the columns.
 
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
@@ -15,17 +14,17 @@ use crate::{
     pieces::Pieces,
 };
 
-/// The forces of a world by whom they act on, and the bodies by who moves whom. Forces are
-/// indices into the world's list.
+/// The forces of a world, sorted by the bodies on which they act, and the bodies that must be stepped together. A force
+/// is given by its index in the world's list.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Plan {
-    /// Runs of bodies, in order and apart.
+    /// Ranges of bodies, in order and disjoint.
     pub(super) sections: Vec<Section>,
     /// Forces on every body.
     pub(super) each: Vec<usize>,
-    /// Forces on one body, in the order of bodies.
+    /// Forces on one body: the body and the force, in the order of bodies.
     pub(super) single: Vec<(usize, usize)>,
-    /// Forces between two bodies, in the order of the lower one.
+    /// Forces between two bodies, in the order of the lower body.
     pub(super) pairs: Vec<([usize; 2], usize)>,
     /// Forces between every two bodies.
     pub(super) each_pair: Vec<usize>,
@@ -35,33 +34,33 @@ pub(super) struct Plan {
     pub(super) levered: Vec<usize>,
 }
 
-/// A run of bodies that forces act on.
+/// A range of bodies on which forces act.
 #[derive(Clone, Debug)]
 pub(super) struct Section {
     pub(super) bodies: Range<usize>,
     /// Whether forces act between them.
     pub(super) is_coupled: bool,
-    /// If they do, all of these bodies by who hangs together.
+    /// If so, these bodies by connected component.
     pub(super) groups: Vec<Group>,
 }
 
-/// Bodies that are stepped together, of a coupled section.
+/// Bodies of a coupled section that are stepped together.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
-    /// In the order in which they are stepped: those that forces between two name first, as these name
-    /// them, and then the others by their motion when forces were last set.
+    /// In the order in which they are stepped: first the bodies named by forces between two bodies, in the order of
+    /// these forces; then the others, by their motion when forces were last set.
     pub(super) bodies: Vec<usize>,
-    /// Where they are, if that is the order of the columns, without a gap.
+    /// The range of the bodies in the columns, if they are in this order there, without a gap.
     pub(super) run: Option<Range<usize>>,
-    /// Forces on one of them, and between two: by places in the group, in the order of forces.
+    /// Forces on one body and between two bodies, by places in the group, in the order of forces.
     pub(super) single: Vec<(usize, usize)>,
     pub(super) pairs: Vec<([usize; 2], usize)>,
-    /// Those of them on which forces act at points, by places in the group.
+    /// The bodies on which forces act at points, by places in the group.
     pub(super) levered: Vec<usize>,
 }
 
 impl Plan {
-    /// `key` tells bodies apart that forces do not.
+    /// `key` orders the bodies that forces do not order.
     pub(super) fn new(forces: &[Force], bodies: usize, key: impl Fn(usize) -> Key) -> Plan {
         let mut plan = Plan::default();
         for (force, what) in forces.iter().enumerate() {
@@ -88,8 +87,8 @@ impl Plan {
         plan
     }
 
-    /// The runs from the lower to the higher body of each pair, united where they share a body; and bodies with
-    /// levers, as forces couple how they turn to where they are.
+    /// The ranges from the lower to the higher body of each pair, joined if they share a body. A body on which forces
+    /// act at points has a section too, because such forces couple its rotation to its position.
     fn coupled_sections(&self, bodies: usize) -> Vec<Section> {
         let everyone = (!self.each_pair.is_empty() && bodies > 1).then_some(0..bodies);
         let pairs = self.pairs.iter();
@@ -114,7 +113,7 @@ impl Plan {
         sections
     }
 
-    /// Cuts coupled sections into groups.
+    /// Divides coupled sections into groups.
     fn add_groups(&mut self, bodies: usize, key: impl Fn(usize) -> Key) {
         if self.sections.is_empty() {
             return;
@@ -130,7 +129,7 @@ impl Plan {
                 pieces.join(0, body);
             });
         }
-        // Who is named first, last of all who is named by none.
+        // The place at which a body is first named; bodies that no force names come last.
         let mut named = vec![usize::MAX; bodies];
         for (place, body) in pairs.iter().flat_map(|&(pair, _)| pair).enumerate() {
             named[body] = named[body].min(place);
@@ -144,7 +143,7 @@ impl Plan {
             let by_force = named[one].cmp(&named[other]);
             by_force.then_with(|| key(one).cmp(&key(other)))
         });
-        // By the lowest body of each group, which is in the section of all.
+        // Indexed by the lowest body of each group, which is in the same section as the whole group.
         let mut groups: Vec<Vec<usize>> = vec![Vec::new(); bodies];
         let mut place = vec![0; bodies];
         for body in in_order {
@@ -182,7 +181,7 @@ impl Plan {
         }
     }
 
-    /// The other bodies that a force acts on: all of them, or those that forces name.
+    /// Adds sections for the other bodies on which forces act: all bodies, or those that forces name.
     fn add_uncoupled_sections(&mut self, bodies: usize) {
         let mut runs: Vec<Range<usize>> = Vec::new();
         if self.each.is_empty() {
@@ -195,7 +194,7 @@ impl Plan {
         } else {
             runs.push(0..bodies);
         }
-        // Cut out what is in a coupled section already.
+        // Without the parts that are in a coupled section already.
         let coupled = self.sections.len();
         for mut run in runs {
             let before = |section: &Section| section.bodies.end <= run.start;
@@ -224,18 +223,18 @@ impl Plan {
         }
     }
 
-    /// Whether forces act on a body at points of it.
+    /// Whether forces act at points of a body.
     #[inline]
     pub(super) fn is_levered(&self, body: usize) -> bool {
         !self.levered.is_empty() && self.levered.binary_search(&body).is_ok()
     }
 
-    /// Whether nothing but constant forces acts on a group.
+    /// Whether only constant forces act on a group.
     pub(super) fn is_free(&self, group: &Group) -> bool {
         group.bodies.len() == 1 && self.each.is_empty() && group.single.is_empty()
     }
 
-    /// The section that a body is in.
+    /// The section that contains a body.
     pub(super) fn section_at(&self, body: usize) -> Option<&Section> {
         let after = self
             .sections
@@ -244,7 +243,7 @@ impl Plan {
         section.filter(|section| section.bodies.start <= body)
     }
 
-    /// The forces on single bodies of a run.
+    /// The forces on single bodies of a range.
     pub(super) fn single_in(&self, bodies: &Range<usize>) -> &[(usize, usize)] {
         let list = &self.single[..];
         let start = list.partition_point(|&(body, _)| body < bodies.start);

@@ -1,11 +1,11 @@
 //! Moving overlapping bodies apart.
 //!
-//! First all bodies move together, by as little as possible. Each pair that meets has a plane across the
-//! shortest translation that parts it, and bodies move to the nearest places, in the norm of their masses, on
-//! the far sides of all planes. Pairs that meet at these places get a new plane, and so on until no two bodies
-//! meet. If the planes allow no such place, as for a body between two immovable ones that face each other,
-//! bodies are placed one after the other, heavy ones first: each takes the shortest of many directions to
-//! a place where it meets no body placed before it.
+//! First all bodies move together, by as little as possible. Each pair that meets gets a plane perpendicular to the
+//! shortest translation that separates it. Bodies move to the nearest positions, in the norm weighted by their
+//! masses, on the far sides of all planes. Pairs that meet at these positions get a new plane, and so on until no two
+//! bodies meet. If the planes allow no such position, as for a body between two immovable ones that face each other,
+//! bodies are placed one after the other, heavy ones first. Each takes the shortest of many directions to a position
+//! where it meets no body placed before it.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use glam::DVec3;
@@ -16,19 +16,19 @@ use crate::{
     collide::{first_contact, snap},
 };
 
-/// Rounds in which planes are added, at most.
+/// The most rounds in which planes are added.
 const ROUNDS: usize = 64;
-/// Sweeps over planes in a round, at most, and fewer where there are many: what is left is for the next
-/// round.
+/// The most sweeps over the planes in a round. There are fewer sweeps if there are many planes; the next round
+/// continues.
 const SWEEPS: usize = 20_000;
-/// Planes looked at in a round, at most.
+/// The most visits of planes in a round.
 const LOOKS: usize = 2_000_000;
-/// Part of what is missing that shows planes which have no common far side.
+/// If the missing distance has not fallen to this part, the planes have no common far side.
 const UNSOLVED: f64 = 1e-4;
-/// Factor by which a plane is done too much for in a sweep, as others undo some of it.
+/// Factor by which a plane's correction is exceeded in a sweep, because other planes undo a part of it.
 const RELAXATION: f64 = 1.5;
 
-/// Why bodies cannot be moved out of each other.
+/// The reason why overlapping bodies cannot be moved apart.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SeparateError {
     /// A body does not fit between half-spaces.
@@ -38,38 +38,37 @@ pub enum SeparateError {
     Caught {
         /// Index of the body.
         body: usize,
-        /// The half-spaces that leave it no place.
+        /// The half-spaces between which it does not fit.
         walls: Vec<usize>,
     },
-    /// No place was found for a body, though there may be one.
+    /// No position was found for a body, though there may be one.
     #[error(
         "no place was found for body {body}, which overlaps bodies {others:?}: move it, or one of them"
     )]
     NoRoom {
         /// Index of the body.
         body: usize,
-        /// Those that it overlaps, and cannot be moved out of.
+        /// The bodies that it overlaps and from which it cannot be moved apart.
         others: Vec<usize>,
     },
 }
 
-/// A plane that keeps two bodies apart: the least offset along its normal, m.
+/// A plane that keeps two bodies apart: `level` is the least offset along the normal, m.
 struct Plane {
     bodies: (usize, usize),
     normal: DVec3,
     level: f64,
-    /// What it has pushed so far, kg m.
+    /// The sum of its pushes so far, kg m.
     pushed: f64,
 }
 
 impl World {
-    /// Moves overlapping bodies apart, so that none overlap, and returns the bodies that were moved,
-    /// in order. Velocities do not change; a body that did not overlap moves only if others
-    /// are moved into it.
+    /// Moves overlapping bodies apart, so that none overlap. Returns the bodies that were moved, in order. Velocities
+    /// do not change. A body that did not overlap moves only if others are moved into it.
     ///
-    /// The lighter one of two bodies moves farther, by the ratio of their masses, and immovable bodies stay:
-    /// the sum of mass times square of the distance is the least that moves all of them along their shortest
-    /// translations ([`World::overlaps`]). Afterwards these bodies touch, as if placed face to face.
+    /// Of two bodies the lighter one moves farther, by the ratio of their masses; immovable bodies stay. The sum of
+    /// mass times square of the distance is the least that moves all bodies along their shortest translations
+    /// ([`World::overlaps`]). Afterwards these bodies touch, as if placed face to face.
     ///
     /// On an error the world stays as it was.
     pub fn separate(&mut self) -> Result<Vec<usize>, SeparateError> {
@@ -105,7 +104,7 @@ struct Separation<'a> {
 }
 
 impl Separation<'_> {
-    /// Pairs that meet at some places, one of which may move.
+    /// Pairs that meet at given positions, one of which is movable.
     fn meeting_at(&self, place: &[DVec3]) -> Vec<(usize, usize)> {
         let mut pairs = self
             .layout
@@ -115,7 +114,7 @@ impl Separation<'_> {
         pairs
     }
 
-    /// The nearest places at which nobody meets, in the norm of masses; `None` where none are found.
+    /// The nearest positions, in the norm of masses, at which no bodies meet; `None` if none are found.
     fn places_together(&self, at: &[DVec3]) -> Option<Vec<DVec3>> {
         let mut place = at.to_vec();
         let mut planes: BTreeMap<(usize, usize), Plane> = BTreeMap::new();
@@ -151,8 +150,8 @@ impl Separation<'_> {
         found
     }
 
-    /// Turns planes to where those that they have pushed would touch now, and tells whether some do not: what is
-    /// round has been moved along a plane as well.
+    /// Turns planes to the surfaces that the bodies would touch now. Returns whether a pair that a plane has pushed
+    /// does not touch: round bodies were moved along another plane as well.
     fn tighten<'a>(&self, planes: impl Iterator<Item = &'a mut Plane>, place: &[DVec3]) -> bool {
         let mut is_wide = false;
         for plane in planes.filter(|plane| plane.pushed > 0.0) {
@@ -174,9 +173,9 @@ impl Separation<'_> {
         is_wide
     }
 
-    /// Moves bodies to the far sides of planes, by the least in the norm of masses (Hildreth 1957, "A
-    /// quadratic programming procedure": plane after plane, over and over), and tells whether there
-    /// is hope that they have a common one.
+    /// Moves bodies to the far sides of planes, with the least motion in the norm of masses (Hildreth 1957, "A
+    /// quadratic programming procedure": plane after plane, repeatedly). Returns whether the planes may have a common
+    /// far side.
     fn push_beyond(&self, planes: &mut [&mut Plane], place: &mut [DVec3]) -> bool {
         let inverse = |body: usize| 1.0 / self.layout.bodies.mass[body];
         let sweeps = SWEEPS.min(1 + LOOKS / planes.len());
@@ -191,7 +190,7 @@ impl Separation<'_> {
                 let (i, j) = plane.bodies;
                 let missing = plane.level - plane.normal.dot(place[j] - place[i]);
                 worst = worst.max(missing);
-                // What has been pushed touches.
+                // Done if no distance is missing, and the pairs of pushed planes touch.
                 let slack = 0.25 * self.layout.hover_gap(i, j);
                 is_done &= missing <= slack && (plane.pushed == 0.0 || missing >= -slack);
                 let push = RELAXATION * missing / (inverse(i) + inverse(j));
@@ -208,11 +207,11 @@ impl Separation<'_> {
                 return true;
             }
         }
-        // Of few planes all has been done that could be.
+        // For few planes these sweeps were enough to reach a common far side. For many planes the next round continues.
         worst <= UNSOLVED * first || sweeps < SWEEPS
     }
 
-    /// Places at which nobody meets, found for one body after the other.
+    /// Positions at which no bodies meet, found for one body after the other.
     fn places_one_by_one(&self, at: &[DVec3]) -> Result<Vec<DVec3>, SeparateError> {
         let mut place = at.to_vec();
         let (mut there, mut movable): (Vec<usize>, Vec<usize>) = self
@@ -233,7 +232,7 @@ impl Separation<'_> {
         Ok(place)
     }
 
-    /// The nearest place for a body along one of many directions where it meets none of some others.
+    /// The nearest position of a body along one of many directions at which it meets none of some others.
     fn free_place(
         &self,
         body: usize,
@@ -318,7 +317,7 @@ impl Separation<'_> {
         Err(SeparateError::NoRoom { body, others })
     }
 
-    /// The planes of half-spaces against a body, at which its position is kept.
+    /// The planes that limit the position of a body outside half-spaces.
     fn wall_planes(&self, body: usize, walls: &[usize], place: &[DVec3]) -> Vec<(DVec3, f64)> {
         let of = |&wall: &usize| {
             let &Shape::HalfSpace { normal } = self.layout.bodies.shape(wall)? else {
@@ -331,7 +330,7 @@ impl Separation<'_> {
         walls.iter().filter_map(of).collect()
     }
 
-    /// The place nearest to one at which a body is out of half-spaces, if there is one.
+    /// The position outside all half-spaces that is nearest to a given one, if there is one.
     fn out_of_walls(
         &self,
         body: usize,
@@ -364,9 +363,9 @@ impl Separation<'_> {
         None
     }
 
-    /// Half-spaces of a few that leave a body no place.
+    /// A minimal subset of the half-spaces that leaves a body no position.
     fn walls_about(&self, body: usize, at: DVec3, walls: &[usize], place: &[DVec3]) -> Vec<usize> {
-        // Without any one of them there is one.
+        // Drop each half-space without which there is still no position.
         let mut few = walls.to_vec();
         for &wall in walls {
             let others: Vec<usize> = few.iter().copied().filter(|&other| other != wall).collect();

@@ -1,8 +1,7 @@
 //! Integration: from the previous state to the current one, without contacts.
 //!
-//! Bodies under constant forces alone go through one loop over their columns, which also
-//! checks the range. The method steps the others, in blocks small enough for the
-//! processor's first cache if no force couples them.
+//! Bodies with only constant forces go through one loop over their columns, which also checks the range. The method
+//! steps the others, in blocks that fit into the processor's first cache if no force couples them.
 
 use alloc::vec::Vec;
 use core::{mem, ops::Range};
@@ -23,26 +22,26 @@ use glam::DVec3;
 use crate::integrate::{Failure, Method, Scratch, Step, Watch, ballistic, stability};
 use crate::rotation::{Coordinates, FlightError};
 
-/// Bodies in a block: some 200 bytes each for state, acceleration and a few stages fill about
-/// the 32 KiB of a first cache.
+/// Bodies in a block. With some 200 bytes for state, acceleration and a few stages each, they about fill a first cache
+/// of 32 KiB.
 const BLOCK: usize = 128;
 
-/// Growth of the greatest speed since forces or motion were last set, after which it is asked
-/// whether the method is stable here.
+/// If the greatest speed has grown by this factor since forces or motion were last set, the step checks whether the
+/// method is stable here.
 const GROWTH: f64 = 1e6;
 
-/// What integration keeps from step to step.
+/// The data that integration keeps from step to step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Integrator {
     scratch: Scratch,
-    /// Greatest component of a velocity, m/s, from which growth is counted; `None` before the
-    /// first step under a force that depends on the motion.
+    /// The greatest component of a velocity, m/s, from which growth is measured; `None` before the first step under a
+    /// force that depends on the motion.
     speed_scale: Option<f64>,
-    /// The motion from which growth is counted, and on the way since.
+    /// The motion from which growth is measured, and later motions.
     marks: Marks,
 }
 
-/// Where integration leads to, as far as contact lets it.
+/// The output of integration, and the contacts that limit it.
 pub(super) struct Way<'a> {
     pub(super) contacts: &'a ContactSet,
     pub(super) end: &'a mut State,
@@ -51,24 +50,24 @@ pub(super) struct Way<'a> {
 
 #[cfg(feature = "serde")]
 impl Integrator {
-    /// What growth is counted from, once something is.
+    /// The speed and the motions from which growth is measured, if any.
     pub(super) fn growth(&self) -> Option<(f64, &Marks)> {
         self.speed_scale.map(|scale| (scale, &self.marks))
     }
 
-    /// Goes on counting.
+    /// Restores the speed and the motions from which growth is measured.
     pub(super) fn resume_growth(&mut self, scale: f64, marks: Marks) {
         (self.speed_scale, self.marks) = (Some(scale), marks);
     }
 }
 
 impl Integrator {
-    /// Forgets what growth is counted from: bodies or forces have been set.
+    /// Starts the measurement of growth anew, because bodies or forces were set.
     pub(super) fn forget_growth(&mut self) {
         self.speed_scale = None;
     }
 
-    /// Moves all bodies from where the step starts to its end.
+    /// Moves all bodies from the start of the step to its end.
     pub(super) fn integrate(
         &mut self,
         scene: Scene<'_>,
@@ -83,7 +82,7 @@ impl Integrator {
         self.integrate_sections(scene, &mut way)
     }
 
-    // Apart, so that free bodies do not pay for its frame.
+    // A separate function, so that free bodies do not pay for its stack frame.
     #[inline(never)]
     fn integrate_sections(
         &mut self,
@@ -101,7 +100,7 @@ impl Integrator {
         self.watch_growth(scene, fastest)
     }
 
-    /// Bodies on which constant forces alone act.
+    /// Steps bodies with only constant forces.
     fn free(
         &mut self,
         scene: Scene<'_>,
@@ -120,7 +119,7 @@ impl Integrator {
         self.forced(scene, way, &section, fastest)
     }
 
-    /// Bodies that other forces act on.
+    /// Steps bodies with other forces.
     fn forced(
         &mut self,
         scene: Scene<'_>,
@@ -132,7 +131,7 @@ impl Integrator {
         let all = section.bodies.clone();
         let length = match section.is_coupled {
             true => all.len(),
-            // Each body chooses its own steps.
+            // An adaptive method chooses partial steps for each body by itself.
             false if method.adaptive => 1,
             false => BLOCK,
         };
@@ -163,9 +162,9 @@ impl Integrator {
         Ok(())
     }
 
-    /// Speaks up when speeds have grown out of all proportion and the method is unstable here.
-    /// Where it is unstable at every step, as forward Euler is without damping, it may go on:
-    /// that is its nature, and worth watching.
+    /// Returns an error if speeds have grown out of all proportion and the method is unstable here. A method that is
+    /// unstable at every step, as forward Euler is without damping, may go on: instability is its nature, and worth
+    /// watching.
     fn watch_growth(
         &mut self,
         scene: Scene<'_>,
@@ -177,7 +176,7 @@ impl Integrator {
             return Ok(());
         };
         if self.marks.is_due(speed) {
-            // Of many bodies that no force couples, the one that grows.
+            // If no force couples the bodies, keep the motion of the growing one only.
             let section = company(&scene.forces.plan, body);
             let bodies = section.map_or(body..body + 1, |section| section.bodies);
             let time = scene.time;
@@ -195,7 +194,7 @@ impl Integrator {
         }
     }
 
-    /// Counts growth from the motion before this step.
+    /// Measures growth from the motion before this step.
     fn count_growth_from(&mut self, scene: Scene<'_>, speed: f64) {
         let coupled = scene
             .forces
@@ -212,14 +211,14 @@ impl Integrator {
         }
     }
 
-    /// The largest `dt` at which the method is stable on a body's forces where its growth began: at
-    /// the first motion at which it is below the world's, of those kept, of that before this step,
-    /// and of where each of them leads in a step. 0 if all that is known is that the method is stable
-    /// at no `dt`; `None` where it is stable, and where that cannot be told.
+    /// The largest `dt` at which the method is stable for a body's forces where its growth began. The candidates are
+    /// the motions kept, the motion before this step, and the motion one step after each of these. The first one
+    /// whose limit is below the world's `dt` decides. 0 if it is only known that the method is stable at no `dt`;
+    /// `None` if the method is stable, or if this cannot be decided.
     pub(super) fn stable_dt(&self, scene: Scene<'_>, body: usize) -> Option<f64> {
         let section = company(&scene.forces.plan, body)?;
         let bodies = section.bodies.clone();
-        // How stiff a force is that also turns what it pulls at, no place alone tells.
+        // The stiffness of a force with a lever arm does not follow from positions alone.
         if bodies
             .clone()
             .any(|body| scene.forces.plan.is_levered(body))
@@ -235,7 +234,7 @@ impl Integrator {
             bodies: bodies.clone(),
             group: None,
         };
-        // Without a scale, what is kept is from before bodies or forces were last set.
+        // Without a scale, the marks are from before bodies or forces were last set.
         let marks = self.speed_scale.map(|_| self.marks.of(bodies.clone()));
         let kept = marks.into_iter().flatten();
         let last = (
@@ -252,7 +251,7 @@ impl Integrator {
             limit.filter(|&dt| 0.0 < dt && dt < scene.settings.dt)
         };
         for (time, x, v) in kept.chain([last]) {
-            // What begins at rest may have blown up within its first step.
+            // A motion that begins at rest may have blown up within its first step.
             let limit = is_below(time, x, v).or_else(|| {
                 let (x, v) = followed(&part, time, scene.settings.dt, (x, v))?;
                 is_below(time + scene.settings.dt, &x, &v)
@@ -266,8 +265,8 @@ impl Integrator {
 }
 
 impl Scene<'_> {
-    /// One call of the method, or of coupled bodies one for each group; a method with error control tells
-    /// a watch the steps that it takes, by whose motion they are, and stops where that says so.
+    /// Calls the method once; for coupled bodies, once for each group. An adaptive method reports each partial step,
+    /// and the bodies that it moves, to `watch`, and stops if `watch` asks for it.
     pub(super) fn step_block(
         &self,
         block: Block<'_>,
@@ -298,7 +297,7 @@ impl Scene<'_> {
         })
     }
 
-    /// Moves a body of a block on which constant forces alone act; its range is looked at later.
+    /// Moves a body of a block with only constant forces; the caller checks its range later.
     fn fall_in(&self, block: &Block<'_>, body: usize, fall: f64, to: &mut State) {
         let (own, in_block) = (body..body + 1, body - block.bodies.start);
         ballistic::step(
@@ -313,7 +312,7 @@ impl Scene<'_> {
         );
     }
 
-    /// One call of the method for bodies that stand side by side: a block, or a group of one.
+    /// Calls the method once for bodies that are adjacent in the columns: a block, or one of its groups.
     fn step_run(
         &self,
         block: &Block<'_>,
@@ -351,8 +350,8 @@ impl Scene<'_> {
         stepped.map_err(|failure| (start + body_of(&failure), Cause::Failure(failure)))
     }
 
-    /// The same for the bodies of a group, which are put side by side for it, and beside them what turns of those on
-    /// which forces act at points.
+    /// Calls the method once for the bodies of a group. They are copied side by side for it, followed by the rotors
+    /// of those on which forces act at points.
     fn step_gathered(
         &self,
         block: &Block<'_>,
@@ -361,7 +360,7 @@ impl Scene<'_> {
         watch: Option<&mut BlockWatch<'_>>,
     ) -> Result<(), (usize, Cause)> {
         let count = group.bodies.len();
-        // Out of the scratch while the method has it.
+        // Taken out of the scratch, because the method borrows the scratch.
         let mut gathered = scratch.gathered.take().unwrap_or_default();
         let mut rotors = mem::take(&mut gathered.rotors);
         rotors.clear();
@@ -451,8 +450,7 @@ impl Scene<'_> {
     }
 }
 
-/// Bodies on which constant forces alone act, in one loop, by a method of which it is known where it puts
-/// them.
+/// Steps bodies with only constant forces in one loop. The method must have a known end position for them (`fall`).
 fn fall_all(
     scene: Scene<'_>,
     bodies: Range<usize>,
@@ -479,7 +477,7 @@ fn fall_all(
     Err((lost.unwrap_or(bodies.start), Cause::Range))
 }
 
-/// The first of some bodies whose motion has left the range.
+/// The first body of a range whose motion is out of the allowed range.
 fn beyond(end: &State, bodies: Range<usize>) -> Option<usize> {
     let start = bodies.start;
     let first = end.beyond(bodies, error::LARGEST);
@@ -487,7 +485,7 @@ fn beyond(end: &State, bodies: Range<usize>) -> Option<usize> {
 }
 
 impl World {
-    /// Puts every body back, and says why.
+    /// Puts every body back to the start of the step, and returns the error.
     #[cold]
     pub(super) fn failed(&mut self, body: usize, cause: Cause) -> StepError {
         let error = self.step_error(body, cause);
@@ -541,7 +539,7 @@ impl World {
         }
     }
 
-    /// The nearest of the bodies that forces tie one to, where the step starts.
+    /// The nearest of the bodies that forces connect to a body, at the start of the step.
     fn nearest_tied(&self, body: usize) -> Option<usize> {
         let scene = scene!(self);
         let section = scene.forces.plan.section_at(body)?;
@@ -554,8 +552,8 @@ impl World {
     }
 }
 
-/// Where a motion leads in a step, by a method that is stable at every step; `None` if it finds no
-/// way. That nothing is hit on it does not matter here.
+/// The motion after one step of a method that is stable at every `dt`; `None` if the method fails. Contacts do not
+/// matter here.
 fn followed(
     part: &Part<'_>,
     time: f64,
@@ -578,7 +576,7 @@ fn followed(
     Some((new_x, new_v))
 }
 
-/// The bodies that a body must be stepped with, or the body alone; `None` under constant forces.
+/// The bodies that must be stepped together with a body (perhaps the body alone); `None` under constant forces.
 fn company(plan: &Plan, body: usize) -> Option<Section> {
     let mut sections = plan.sections.iter();
     let section = sections.find(|section| section.bodies.contains(&body))?;
@@ -593,47 +591,47 @@ fn company(plan: &Plan, body: usize) -> Option<Section> {
     })
 }
 
-/// The body at which a method failed, by its place among those that it stepped.
+/// The body at which a method failed, by its place among the bodies of the call.
 fn body_of(failure: &Failure) -> usize {
     match *failure {
         Failure::NotConverged { body, .. } | Failure::TooManySteps { body, .. } => body,
     }
 }
 
-/// Told the time after a step within a block's, s from its start, which body has which place in
-/// it, and where they are before and after it, m; says whether to stop there.
+/// Called after each partial step of a block. Receives the time, s from the start of the block; the map from places in
+/// the block to bodies; and the positions before and after the partial step, m. Returns whether to stop there.
 pub(super) type BlockWatch<'a> =
     dyn FnMut(f64, &dyn Fn(usize) -> usize, &[DVec3], &[DVec3]) -> bool + 'a;
 
-/// Bodies that are stepped at once, and how.
+/// Bodies that one call steps, and its parameters.
 #[derive(Clone)]
 pub(super) struct Block<'a> {
     pub(super) bodies: Range<usize>,
     pub(super) is_coupled: bool,
-    /// What constant forces do to these bodies, m/s².
+    /// The accelerations of these bodies by constant forces, m/s².
     pub(super) acceleration: &'a [DVec3],
-    /// The motion of all bodies before.
+    /// The motion of all bodies at the start of the block.
     pub(super) from: &'a State,
-    /// When that is after the start of the world's step, s, and how long the block's is.
+    /// The start of the block, s after the start of the world's step, and its length, s.
     pub(super) since: f64,
     pub(super) length: f64,
 }
 
-/// Why a step failed at a body.
+/// The reason why a step failed at a body.
 #[derive(Debug)]
 pub(super) enum Cause {
     Range,
-    /// No room is left between these bodies.
+    /// Another body has no room left between these bodies.
     Squeezed((usize, usize)),
-    /// Another impact after so many, without an end.
+    /// The number of impacts reached this limit without an end.
     Impacts(u64),
-    /// To follow a body takes more than a step may cost.
+    /// To follow a body costs more than a step may.
     Work,
     /// Speeds have grown, and the method is unstable above this `dt`, s.
     Growth {
         stable_dt: f64,
     },
     Failure(Failure),
-    /// A rotation that cannot be followed.
+    /// A rotation that cannot be computed.
     Turning(FlightError),
 }

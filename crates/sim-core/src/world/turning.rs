@@ -1,4 +1,4 @@
-//! The inertia and rotation of turning bodies. Columns are by slot, and empty in a world without turning
+//! The inertia and rotation of turning bodies. Columns are indexed by slot, and are empty in a world without turning
 //! bodies.
 
 use alloc::vec::Vec;
@@ -21,17 +21,17 @@ use crate::{
     rotation::{self, Flight},
 };
 
-/// What the bodies that turn are.
+/// The inertias, torques and sizes of turning bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Turners {
-    /// By body its slot, or [`NONE`]; as long as the last body that turns needs it.
+    /// For each body its slot, or [`NONE`]; only as long as the last turning body needs.
     slot: Vec<u32>,
-    /// By slot the body.
+    /// For each slot the body.
     pub(super) body: Vec<usize>,
     pub(super) inertia: Vec<Inertia>,
-    /// Constant, about the centre of mass, N m.
+    /// The constant torque about the centre of mass, N m.
     pub(super) torque: Vec<DVec3>,
-    /// The farthest point of the shape from the centre of mass, m.
+    /// The distance of the farthest point of the shape from the centre of mass, m.
     pub(super) radius: Vec<f64>,
 }
 
@@ -50,7 +50,7 @@ impl Turners {
         (slot != NONE).then_some(slot as usize)
     }
 
-    /// The inverse inertia in the world of a body whose principal axes are turned by a rotation, 1/(kg m²).
+    /// The inverse inertia of a body in the world, 1/(kg m²). `axes` is the rotation of its principal axes.
     pub(super) fn inverse_inertia(&self, slot: usize, axes: DQuat) -> DMat3 {
         let axes = DMat3::from_quat(axes);
         let inverse = DMat3::from_diagonal(self.inertia[slot].moments().recip());
@@ -66,7 +66,7 @@ impl Turners {
         self.radius.push(turn.radius);
     }
 
-    /// Forgets a body, whose followers have an index less from then on; tells its slot, if it had one.
+    /// Removes a body; the index of each body after it decreases by one. Returns its slot, if it had one.
     pub(super) fn remove(&mut self, body: usize) -> Option<usize> {
         let slot = self.slot(body);
         if body < self.slot.len() {
@@ -89,7 +89,7 @@ impl Turners {
 }
 
 impl Bodies {
-    /// Whether a body shows that it turns: a ball about its centre of mass does not.
+    /// Whether the rotation of a body changes its shape in space. It does not for a ball about its centre of mass.
     #[inline]
     pub(super) fn tumbles(&self, body: usize) -> bool {
         !self.turners.is_empty() && self.slot_that_shows(body).is_some()
@@ -108,7 +108,7 @@ impl Bodies {
         !self.turners.is_empty() && (self.tumbles(i) || self.tumbles(j))
     }
 
-    /// How far a body's shape reaches about its position, however it is turned.
+    /// The extent of a body's shape about its position for all rotations.
     #[inline(always)]
     pub(super) fn extent_however_turned(&self, body: usize) -> Extent {
         match self.turners.is_empty() {
@@ -117,7 +117,7 @@ impl Bodies {
         }
     }
 
-    // Apart, so that worlds in which nothing turns do not pay for its frame.
+    // A separate function, so that worlds without turning bodies do not pay for its stack frame.
     #[inline(never)]
     fn extent_among_turning(&self, body: usize) -> Extent {
         match self.slot_that_shows(body) {
@@ -126,12 +126,12 @@ impl Bodies {
         }
     }
 
-    /// Turns a body's shape into the world.
+    /// The rotation from a body's shape into the world.
     pub(super) fn rotation_in(&self, state: &State, body: usize) -> DQuat {
         self.rotation_among(&state.turned, body)
     }
 
-    /// The same with how bodies are turned by slot.
+    /// The same, given the rotations by slot.
     pub(super) fn rotation_among(&self, turned: &[Turned], body: usize) -> DQuat {
         match self.turners.slot(body) {
             Some(slot) => self.rotation_of(slot, &turned[slot]),
@@ -139,23 +139,24 @@ impl Bodies {
         }
     }
 
-    /// The same of a body that turns, by its slot.
+    /// The same for a turning body, given its slot.
     pub(super) fn rotation_of(&self, slot: usize, turned: &Turned) -> DQuat {
         (turned.rotation * self.turners.inertia[slot].axes().inverse()).normalize()
     }
 
-    /// The centre of mass in the shape's frame, m, of a body that turns; of others the place is the origin.
+    /// The centre of mass of a turning body in the shape's frame, m. The position of other bodies is the origin of the
+    /// frame.
     pub(super) fn centre_of(&self, body: usize) -> DVec3 {
         let slot = self.turners.slot(body);
         slot.map_or(DVec3::ZERO, |slot| self.turners.inertia[slot].centre())
     }
 
-    /// Where the origin of a body's shape is, m.
+    /// The position of the origin of a body's shape, m.
     pub(super) fn origin_in(&self, state: &State, body: usize) -> DVec3 {
         state.position[body] - self.rotation_in(state, body) * self.centre_of(body)
     }
 
-    /// Whether two bodies meet where a state has them, by the exact test.
+    /// Whether two bodies meet in a state, by the exact test.
     pub(super) fn meet_in(&self, state: &State, i: usize, j: usize) -> bool {
         if !self.pair_tumbles(i, j) {
             return self.meet_at(i, j, state.position[j] - state.position[i]);
@@ -164,7 +165,7 @@ impl Bodies {
         self.meet_placed((i, placed(i)), (j, placed(j)))
     }
 
-    /// The same by every edge of one mesh against every triangle of the other, where both are meshes.
+    /// The same for two meshes by every edge of one against every triangle of the other.
     pub(super) fn meet_naively_in(&self, state: &State, i: usize, j: usize) -> bool {
         let (Some(first), Some(second)) = (self.mesh(i), self.mesh(j)) else {
             return self.meet_in(state, i, j);
@@ -180,7 +181,7 @@ impl Bodies {
             .is_some_and(|place| collide::naive::intersect(first, second, place))
     }
 
-    /// From the origin of one body's shape to that of another one's, placed and turned as told, m.
+    /// The vector from the origin of one body's shape to that of another one, for given positions and rotations, m.
     fn between(
         &self,
         (i, (x, first)): (usize, (DVec3, DQuat)),
@@ -189,7 +190,7 @@ impl Bodies {
         (y - second * self.centre_of(j)) - (x - first * self.centre_of(i))
     }
 
-    /// Whether two bodies meet at their places and turned as told, by the exact test.
+    /// Whether two bodies meet at given positions and rotations, by the exact test.
     pub(super) fn meet_placed(
         &self,
         (i, (x, first)): (usize, (DVec3, DQuat)),
@@ -206,7 +207,7 @@ impl Bodies {
                 turned_place(first, second, between)
                     .is_some_and(|place| collide::tree::intersect(a, b, place))
             }
-            // Balls and planes do not turn: in the frame of the other one.
+            // The rotation of a ball or half-space does not matter: test it in the frame of the mesh.
             (Some(Shape::Mesh(_)), Some(other)) => {
                 self.meets_unturned(i, other, first.inverse() * between, first)
             }
@@ -220,7 +221,7 @@ impl Bodies {
         }
     }
 
-    /// Whether two meshes surely meet wherever one of them is moved by no more than `by`, m, as a state has them.
+    /// Whether two meshes in a state certainly meet after every translation of one of them by at most `by`, m.
     pub(super) fn stay_in_each_other(
         &self,
         state: &State,
@@ -237,7 +238,7 @@ impl Bodies {
             .is_some_and(|place| collide::stay_in_each_other(a, b, place, by))
     }
 
-    /// Whether a mesh meets a ball or a half-space at an offset in the mesh's frame, turned by a rotation.
+    /// Whether a mesh with a given rotation meets a ball or a half-space at an offset in the mesh's frame.
     fn meets_unturned(&self, mesh: usize, other: &Shape, offset: DVec3, turned: DQuat) -> bool {
         let Some(form) = self.form(mesh) else {
             return false;
@@ -250,8 +251,7 @@ impl Bodies {
         collide::meet(form, other, collide::snap(offset))
     }
 
-    /// A body as the search for turning contacts takes it: at a place, with a velocity and an
-    /// acceleration.
+    /// A body as input of the search for turning contacts, with given position, velocity and acceleration.
     pub(super) fn moving<'a>(
         &'a self,
         body: usize,
@@ -273,7 +273,7 @@ impl Bodies {
         })
     }
 
-    /// How a body moves in a state.
+    /// The velocity and angular velocity of a body in a state.
     pub(super) fn twist_in(&self, state: &State, body: usize) -> Twist {
         let spin = self.turners.slot(body).map_or(DVec3::ZERO, |slot| {
             let Turned { rotation, momentum } = state.turned[slot];
@@ -285,7 +285,7 @@ impl Bodies {
         }
     }
 
-    /// What impulses do to a body as it is turned in a state.
+    /// The response of a body to impulses in a state: its inverse mass and inverse inertia.
     pub(super) fn yielding_in(&self, state: &State, body: usize) -> Yielding {
         if !self.is_movable(body) {
             return Yielding {
@@ -306,14 +306,15 @@ impl Bodies {
     }
 }
 
-/// Where a mesh is in the frame of another one, both turned, their origins apart by a vector in the world, m.
+/// The placement of a mesh in the frame of another one. Both are rotated; `between` is the vector between their origins
+/// in the world, m.
 fn turned_place(first: DQuat, second: DQuat, between: DVec3) -> Option<Placement> {
     let to_first = first.inverse();
     Placement::turned((to_first * second).normalize(), to_first * between)
 }
 
 impl Turned {
-    /// With an angular velocity in the world, rad/s.
+    /// A rotation with the angular momentum of an angular velocity in the world, rad/s.
     fn spinning(inertia: &Inertia, rotation: DQuat, spin: DVec3) -> Turned {
         Turned {
             rotation,
@@ -322,7 +323,7 @@ impl Turned {
     }
 }
 
-/// What a body that turns is, and how it is turned.
+/// The inertia and the rotations of a turning body, as stored in a snapshot.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -330,11 +331,11 @@ pub(super) struct TurningState {
     pub(super) inertia: Inertia,
     pub(super) torque: DVec3,
     pub(super) now: Turned,
-    /// Where the last step began.
+    /// The rotation at the start of the last step.
     pub(super) before: Turned,
 }
 
-/// What turns of a body, checked.
+/// The checked data of a turning body.
 pub(super) struct Prepared {
     inertia: Inertia,
     torque: DVec3,
@@ -342,7 +343,7 @@ pub(super) struct Prepared {
     turned: Turned,
 }
 
-/// Checks what turns of a body that has been checked otherwise.
+/// Checks the rotation data of a body whose other data has been checked.
 pub(super) fn prepared(index: usize, turn: Turn, body: &Body) -> Result<Prepared, WorldError> {
     error::check_vector(index, "spin", turn.spin)?;
     error::check_vector(index, "torque", turn.torque)?;
@@ -363,7 +364,7 @@ pub(super) fn prepared(index: usize, turn: Turn, body: &Body) -> Result<Prepared
     let mut inertia = turn.inertia.map_or_else(of_shape, Ok).map_err(refused)?;
     let mut torque = turn.torque;
     if !is_movable {
-        // Nothing changes its spin, whatever its moments are.
+        // The body is immovable: its spin is constant for any moments.
         let steady = Inertia::new(DVec3::ONE, DQuat::IDENTITY, inertia.centre());
         inertia = steady.map_err(refused)?;
         torque = DVec3::ZERO;
@@ -379,7 +380,7 @@ pub(super) fn prepared(index: usize, turn: Turn, body: &Body) -> Result<Prepared
     })
 }
 
-/// The farthest point of a shape from a centre in its frame, m.
+/// The distance of the farthest point of a shape from a centre in its frame, m.
 fn radius_about(shape: Option<&Shape>, centre: DVec3) -> f64 {
     match shape {
         Some(Shape::Mesh(mesh)) => mesh
@@ -393,7 +394,7 @@ fn radius_about(shape: Option<&Shape>, centre: DVec3) -> f64 {
 }
 
 impl World {
-    /// Lets a body turn that has just been added, as it was turned before and is now, to the bit.
+    /// Makes a body that was just added a turning body, and restores its previous and current rotation to the bit.
     #[cfg(feature = "serde")]
     pub(super) fn resume_turn(&mut self, body: usize, turn: TurningState) {
         let prepared = Prepared {
@@ -408,7 +409,7 @@ impl World {
         }
     }
 
-    /// What a body that turns is, and how it was turned before and is now.
+    /// The inertia of a turning body, and its previous and current rotation.
     #[cfg(feature = "serde")]
     pub(super) fn turning_state(&self, body: usize) -> Option<TurningState> {
         let slot = self.bodies.turners.slot(body)?;
@@ -420,19 +421,19 @@ impl World {
         })
     }
 
-    /// Lets a body turn that has just been added.
+    /// Makes a body that was just added a turning body.
     pub(super) fn push_turn(&mut self, body: usize, turn: Prepared) {
         self.current.turned.push(turn.turned);
         self.previous.turned.push(turn.turned);
         self.bodies.turners.push(body, turn);
     }
 
-    /// The bodies that turn.
+    /// The turning bodies.
     pub(crate) fn turning_bodies(&self) -> impl Iterator<Item = usize> + '_ {
         self.bodies.turners.body.iter().copied()
     }
 
-    /// Turns all bodies that do as if nothing met, but for those that the method has turned.
+    /// Rotates all turning bodies as in free flight, except those that the method has rotated.
     pub(super) fn turn_freely(&mut self) -> Result<(), (usize, Cause)> {
         let Turners {
             body,
@@ -457,7 +458,7 @@ impl World {
         Ok(())
     }
 
-    /// Turns a body's shape as given, a unit quaternion; it keeps its spin.
+    /// Sets the rotation of a body's shape, a unit quaternion. The body keeps its spin.
     pub fn set_rotation(&mut self, body: usize, rotation: DQuat) -> Result<(), WorldError> {
         self.check_body(body)?;
         if !rotation.is_finite() || !rotation.is_normalized() {
@@ -475,7 +476,7 @@ impl World {
         Ok(())
     }
 
-    /// Sets the angular velocity of a body that turns, in the world, rad/s.
+    /// Sets the angular velocity of a turning body, in the world, rad/s.
     pub fn set_spin(&mut self, body: usize, spin: DVec3) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_vector(body, "spin", spin)?;
@@ -493,7 +494,7 @@ impl World {
         slot.ok_or(WorldError::DoesNotTurn { body })
     }
 
-    /// Gives a body that turns the inertia of another mass, with its spin.
+    /// Scales the inertia of a turning body to another mass. The body keeps its spin.
     pub(super) fn scale_inertia(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
         let Some(slot) = self.bodies.turners.slot(body) else {
             return Ok(());
@@ -514,7 +515,7 @@ impl World {
         Ok(())
     }
 
-    /// How a body is turned and turns, if it does.
+    /// The rotation of a body and how it changes; `None` if the body cannot rotate.
     pub fn turn(&self, body: usize) -> Option<Turn> {
         let slot = self.bodies.turners.slot(body)?;
         Some(Turn {
@@ -525,18 +526,18 @@ impl World {
         })
     }
 
-    /// Whether a body turns.
+    /// Whether a body can rotate.
     pub fn turns(&self, body: usize) -> bool {
         self.bodies.turners.slot(body).is_some()
     }
 
-    /// Turns a body's shape into the world.
+    /// The rotation from a body's shape into the world.
     pub fn rotation(&self, body: usize) -> DQuat {
         self.bodies.rotation_in(&self.current, body)
     }
 
-    /// Where the origin of a body's shape is, m: its position, unless it turns about a centre of mass that is
-    /// elsewhere.
+    /// The position of the origin of a body's shape, m. It differs from the body's position if the body turns about a
+    /// centre of mass elsewhere.
     pub fn origin(&self, body: usize) -> DVec3 {
         match self.turns(body) {
             true => self.bodies.origin_in(&self.current, body),
@@ -549,22 +550,22 @@ impl World {
         self.bodies.twist_in(&self.current, body).spin
     }
 
-    /// Angular momentum of a body about its centre of mass, kg m²/s; zero of one that does not turn, and of
-    /// one that nothing moves.
+    /// Angular momentum of a body about its centre of mass, kg m²/s; zero for a body that cannot rotate or is
+    /// immovable.
     pub fn angular_momentum(&self, body: usize) -> DVec3 {
         let slot = self.bodies.turners.slot(body);
         let slot = slot.filter(|_| self.bodies.is_movable(body));
         slot.map_or(DVec3::ZERO, |slot| self.current.turned[slot].momentum)
     }
 
-    /// Inertia of a body that turns.
+    /// Inertia of a turning body.
     pub fn inertia(&self, body: usize) -> Option<&Inertia> {
         let slot = self.bodies.turners.slot(body)?;
         Some(&self.bodies.turners.inertia[slot])
     }
 
-    /// Place of a shape's origin (m) and rotation between the last two states: 0 gives the previous one, 1 the
-    /// current one. Rotations are interpolated on the sphere, the short way.
+    /// Position of a shape's origin (m) and rotation between the last two states: 0 gives the previous state, 1 the
+    /// current one. Rotations are interpolated on the sphere, along the shorter arc.
     pub fn interpolated_pose(&self, body: usize, fraction: f64) -> (DVec3, DQuat) {
         let place = self.interpolated(body, fraction);
         if !self.turns(body) {

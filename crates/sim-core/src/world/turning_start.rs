@@ -1,8 +1,8 @@
-//! Turning bodies that touch where they have been placed.
+//! Turning bodies that touch where they were placed.
 //!
-//! For the exact test, bodies that touch meet. A turning body that is placed in touch with another one is moved off
-//! it by the least translation along the normal of the contact, no more than the rounding of `f32` vertices.
-//! A deeper overlap stays: the two pass through each other until they are apart.
+//! For the exact test, bodies that touch meet. A turning body that is placed in contact with another one is moved
+//! away by the least translation along the normal of the contact, at most by the rounding of `f32` vertices. A deeper
+//! overlap stays: the two bodies pass through each other until they are apart.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -16,13 +16,13 @@ use crate::{
     impulse::{Joined, project},
 };
 
-/// Rounds in which one that is moved off another one may come to meet a third.
+/// The most rounds. In each, a body moved away from another one may come to meet a third.
 const ROUNDS: usize = 16;
-/// Halvings of what bodies may be moved by to the least.
+/// The most halvings of the translation.
 const HALVINGS: i32 = 24;
 
 impl World {
-    /// Moves turning bodies off what they touch since they were placed.
+    /// Moves turning bodies away from the bodies that they touch since they were placed.
     pub(super) fn part_turning(&mut self) {
         if self.bodies.turners.is_empty() {
             return;
@@ -38,7 +38,7 @@ impl World {
                 }
                 let most = self.layout().flush(i, j);
                 let known = planes.iter_mut().find(|plane| (plane.0, plane.1) == (i, j));
-                // Once more as far where others have moved them back.
+                // Other planes have moved the bodies back: double the translation.
                 if let Some(plane) = known {
                     plane.3 = (2.0 * plane.3).min(most);
                     met = true;
@@ -84,8 +84,8 @@ impl World {
 }
 
 impl Bodies {
-    /// A normal along which two bodies that meet are apart when they are moved by no more than a length, and
-    /// how far: the least that is found.
+    /// A normal along which a translation of at most `most`, m, separates two bodies that meet, and the length of this
+    /// translation: the least one found.
     fn way_apart(&self, state: &State, (i, j): (usize, usize), most: f64) -> Option<(DVec3, f64)> {
         let place = |body: usize| (state.position[body], DVec3::ZERO, DVec3::ZERO);
         let turning = |body: usize| Turning::Still(self.rotation_in(state, body));
@@ -117,7 +117,7 @@ impl Bodies {
             }
             moved.position[j] = state.position[j];
         }
-        // With as much more as a search from there needs to tell it from a contact.
+        // Increased by the gap that a search needs to distinguish it from a contact.
         let (normal, by) = least?;
         let size = self.extent_however_turned(i).farthest.max(0.0)
             + self.extent_however_turned(j).farthest
@@ -126,5 +126,5 @@ impl Bodies {
     }
 }
 
-/// Roundings in which a search tells a gap.
+/// The least gap that a search distinguishes from a contact, in roundings.
 const SEEN: f64 = 128.0;
