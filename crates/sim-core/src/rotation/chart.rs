@@ -1,7 +1,7 @@
-//! Rotations near a base rotation as vectors, so that a method for `x'' = a(t, x, v)` can step them.
+//! Rotations near a base rotation, represented by vectors, so that a method for `x'' = a(t, x, v)` can step them.
 //!
-//! A rotation is `base · exp(θ)` with a *rotation vector* `θ` in the body, rad, whose length is the angle. With
-//! `s = |θ|²` the angular velocity in the body `Ω` belongs to its rate `θ'` by
+//! A rotation is `base · exp(θ)`. The *rotation vector* `θ` is in the frame of the body, rad; its length is the angle.
+//! With `s = |θ|²` the angular velocity in the body `Ω` and the rate `θ'` are related by
 //!
 //! ```text
 //! Ω  = θ' - a θ×θ' + b θ×(θ×θ')      a = (1 - cos |θ|)/s,   b = (|θ| - sin |θ|)/(s |θ|)
@@ -16,14 +16,14 @@ use glam::{DQuat, DVec3};
 
 use super::flight::about;
 
-/// The rotation of a vector.
+/// The rotation of a rotation vector.
 pub(crate) fn rotation(theta: DVec3) -> DQuat {
     about(theta, 1.0)
 }
 
-/// The vector of a rotation, no longer than half a turn.
+/// The rotation vector of a rotation, at most half a turn long.
 pub(crate) fn vector(rotation: DQuat) -> DVec3 {
-    // Both signs of a quaternion are one rotation.
+    // Both signs of a quaternion are the same rotation.
     let q = if rotation.w < 0.0 {
         -rotation
     } else {
@@ -37,7 +37,7 @@ pub(crate) fn vector(rotation: DQuat) -> DVec3 {
     }
 }
 
-/// The angular velocity in the body, rad/s, where the vector changes at a rate, rad/s.
+/// The angular velocity in the body, rad/s, for a rotation vector and its rate, rad/s.
 pub(crate) fn spin(theta: DVec3, rate: DVec3) -> DVec3 {
     let s = theta.length_squared();
     let angle = libm::sqrt(s);
@@ -52,15 +52,15 @@ pub(crate) fn spin(theta: DVec3, rate: DVec3) -> DVec3 {
     rate - a * across + b * theta.cross(across)
 }
 
-/// The rate of the vector that belongs to an angular velocity in the body, both rad/s.
+/// The rate of the rotation vector for an angular velocity in the body, both rad/s.
 pub(crate) fn rate(theta: DVec3, spin: DVec3) -> DVec3 {
     let (c, _) = cotangent(theta.length_squared());
     let across = theta.cross(spin);
     spin + 0.5 * across + c * theta.cross(across)
 }
 
-/// What of the vector's second derivative, rad/s², is there where the angular velocity stays as it is in the body:
-/// the rest is the [`rate`] that belongs to the angular acceleration.
+/// The second derivative of the rotation vector at constant angular velocity in the body, rad/s². An angular
+/// acceleration adds its own [`rate`].
 pub(crate) fn bend(theta: DVec3, rate: DVec3, spin: DVec3) -> DVec3 {
     let (c, slope) = cotangent(theta.length_squared());
     let across = theta.cross(spin);
@@ -68,7 +68,7 @@ pub(crate) fn bend(theta: DVec3, rate: DVec3, spin: DVec3) -> DVec3 {
     0.5 * rate.cross(spin) + 2.0 * slope * theta.dot(rate) * theta.cross(across) + c * turned
 }
 
-/// Below this the closed forms cancel, and series end within rounding.
+/// Below this the closed forms cancel, and the series are exact up to rounding.
 const NEAR: f64 = 0.25;
 
 /// `(|θ| - sin |θ|)/|θ|³` by powers of `s`.
@@ -120,7 +120,7 @@ fn series(s: f64, terms: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Vectors of all lengths below a turn, also those at which closed forms take over.
+    /// Vectors of all lengths below a turn, with lengths on both sides of the change to closed forms.
     fn vectors() -> impl Iterator<Item = DVec3> {
         let lengths = [0.0, 1e-200, 1e-9, 0.1, 0.4999, 0.5001, 1.0, 2.0, 3.0];
         let axes = [DVec3::new(0.6, -0.48, 0.64), DVec3::Z];
@@ -154,7 +154,7 @@ mod tests {
         }
     }
 
-    /// Of what a vector does on a curve through it, by differences.
+    /// Compares with finite differences of a vector on a curve.
     #[test]
     fn spins_and_bends_are_those_of_a_curve() {
         let (first, second) = (DVec3::new(0.3, 1.1, -0.7), DVec3::new(-0.9, 0.2, 0.5));

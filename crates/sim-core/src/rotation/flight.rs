@@ -5,10 +5,10 @@ use glam::{DQuat, DVec3};
 
 use super::series::{FARTHEST, ROOT_3, Series, order, rate};
 
-/// How a body is turned at a time, and how it goes on.
+/// The rotation of a body at a time, with its first two derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Turns principal axes into the world; of unit length.
+    /// The rotation from principal axes into the world; of unit length.
     pub rotation: DQuat,
     /// Angular momentum about the centre of mass in the world, kg m²/s.
     pub momentum: DVec3,
@@ -18,51 +18,51 @@ pub struct Pose {
     pub acceleration: DVec3,
 }
 
-/// The angular velocity (world, rad/s) that belongs to a momentum (world, kg m²/s).
+/// The angular velocity (world, rad/s) for an angular momentum (world, kg m²/s).
 pub fn spin(moments: DVec3, rotation: DQuat, momentum: DVec3) -> DVec3 {
     rotation * (rotation.inverse() * momentum / moments)
 }
 
-/// Why a rotation cannot be followed.
+/// The reason why a rotation cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FlightError {
-    /// Something is not a number, or beyond all numbers on the way.
+    /// A value is not finite, or becomes infinite within the duration.
     #[error(
         "its angular momentum and torque, and what becomes of them, must be finite: lower the spin, the torque or \
          the forces, or take shorter steps"
     )]
     NotFinite,
-    /// It turns by half a turn or more while forces act at points of it.
+    /// The body rotates by half a turn or more while forces act at points of it.
     #[error(
         "a body turns by half a turn or more in {duration:e} s while forces act at points of it: take shorter steps, \
          or a symplectic method if this is none"
     )]
     HalfTurn {
-        /// In how long, s.
+        /// The duration, s.
         duration: f64,
     },
-    /// It tumbles too often.
+    /// The body tumbles too often.
     #[error(
         "a body tumbles more than {MOST_PIECES} times {FARTHEST} rad in {duration:e} s: take shorter steps"
     )]
     TooFar {
-        /// How long it was to be followed, s.
+        /// The duration of the flight, s.
         duration: f64,
     },
 }
 
-/// No flight has more pieces, of about a quarter of a radian each.
+/// The most pieces of a flight, of about a quarter of a radian each.
 const MOST_PIECES: usize = 1 << 16;
 
-/// Pieces for which a flight costs about as much as an impact.
+/// The number of pieces for which a flight costs about as much as an impact.
 const AFFORDABLE: usize = 256;
 
-/// A rotation for some time: under no torque, or under one that is constant in the world.
+/// The rotation of a body over some time: without torque, or under a torque that is constant in the world.
 ///
-/// Exact to rounding for any moments at any speed. The momentum is that of the start plus torque times
-/// time, and nothing else. Where all moments are equal and nothing pulls the rotation is one about an
-/// axis; where two are, it is two; else Taylor polynomials, as many and of such an order that what
-/// they leave out is below rounding.
+/// Exact to rounding for any moments at any speed. The angular momentum is that of the start plus torque times time,
+/// and nothing else. If all moments are equal and there is no torque, the rotation is one about a fixed axis; if two
+/// are equal, it is the product of two such rotations; otherwise it is a sequence of Taylor polynomials, of a number
+/// and an order for which the remainder is below rounding.
 #[derive(Clone, Debug)]
 pub struct Flight {
     moments: DVec3,
@@ -79,14 +79,14 @@ pub struct Flight {
     reason = "an allocation would cost more than most flights"
 )]
 enum Kind {
-    /// About an axis that stays, with this angular velocity in the world, rad/s.
+    /// About a fixed axis, with this angular velocity in the world, rad/s.
     Steady(DVec3),
-    /// About the momentum in the world with the first, and about the body's own axis with the second,
-    /// rad/s.
+    /// About the angular momentum in the world with the first angular velocity, and about the body's own axis with the
+    /// second, rad/s.
     Symmetric(DVec3, DVec3),
-    /// All of it in one piece.
+    /// One polynomial for the whole flight.
     One(Series),
-    /// One after the other, each with where it starts.
+    /// Polynomials one after the other, each with its start.
     Pieces(Vec<Piece>),
 }
 
@@ -97,25 +97,24 @@ struct Piece {
     series: Series,
 }
 
-/// Bounds on a rotation from a time on.
+/// Bounds on a rotation after a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// On the angular speed, rad/s.
+    /// Bound on the angular speed, rad/s.
     pub spin: f64,
-    /// A point of the body at a distance `r` from its centre of mass is accelerated by at most this
-    /// times `r`, 1/s², relative to that centre.
+    /// A point of the body at a distance `r` from its centre of mass has, relative to this centre, an acceleration of
+    /// at most this times `r`, 1/s²,
     pub second: f64,
-    /// And the third derivative of its place is at most this times `r`, 1/s³.
+    /// and a third derivative of its position of at most this times `r`, 1/s³.
     pub third: f64,
 }
 
 impl Flight {
-    /// From principal `moments` (kg m², of a body: see [`Inertia`](crate::Inertia)), from a `rotation`
-    /// of unit length and a `momentum` (kg m²/s), under a `torque` (N m, constant in the world), for
-    /// a `duration` in s, which may be negative.
+    /// The flight of a body with principal `moments` (kg m², see [`Inertia`](crate::Inertia)) from a `rotation` of
+    /// unit length and a `momentum` (kg m²/s), under a `torque` (N m, constant in the world), for a `duration` in s,
+    /// which may be negative.
     ///
-    /// An error where these are not finite, or where a body whose moments all differ tumbles more than some
-    /// 2,000 times.
+    /// An error if these are not finite, or if a body whose moments all differ tumbles more than some 2,000 times.
     pub fn new(
         moments: DVec3,
         rotation: DQuat,
@@ -139,7 +138,7 @@ impl Flight {
         Ok(flight)
     }
 
-    /// For how much of a duration a body may be followed at a cost that is bounded, s: for all of it where there is a
+    /// The part of a duration, s, over which a rotation can be computed at a bounded cost: all of it if there is a
     /// closed form.
     pub(crate) fn affordable(
         moments: DVec3,
@@ -172,7 +171,7 @@ impl Flight {
         let spin = inside / self.moments;
         if self.torque == DVec3::ZERO {
             let DVec3 { x, y, z } = self.moments;
-            // Where the momentum is along the spin, the latter stays where it is.
+            // If the momentum is parallel to the spin, the spin is constant.
             if inside.cross(spin) == DVec3::ZERO || x == y && y == z {
                 return Ok(Kind::Steady(self.rotation * spin));
             }
@@ -221,7 +220,7 @@ impl Flight {
                 series,
             });
             let end = time + length.copysign(left);
-            // What is left may be less than time has digits for.
+            // The rest may be too short to change the time.
             let end = if length == left.abs() || end == time {
                 self.duration
             } else {
@@ -240,7 +239,7 @@ impl Flight {
         Series::new(self.moments, spin, torque, order)
     }
 
-    /// How long it lasts, s.
+    /// The duration, s.
     pub fn duration(&self) -> f64 {
         self.duration
     }
@@ -273,7 +272,7 @@ impl Flight {
         }
     }
 
-    /// All about the rotation at a time from the start, s, from 0 to [`Flight::duration`].
+    /// The pose at a time from the start, s, from 0 to [`Flight::duration`].
     pub fn at(&self, t: f64) -> Pose {
         let (rotation, momentum) = (self.rotation_at(t), self.momentum_at(t));
         let inverse = rotation.inverse();
@@ -288,11 +287,11 @@ impl Flight {
         }
     }
 
-    /// Bounds that hold from where it has a pose for `left` more, s.
+    /// Bounds that hold from the time of `pose` for `left` more, s.
     ///
-    /// From Euler's equations, with `k = max |I_j - I_k| / I_i <= 1` and `a` a bound on what the torque
-    /// does: `|Ω'| <= k|Ω|²/√3 + a`, `|Ω''| <= (2k/√3)|Ω||Ω'| + a|Ω|`, put into `r'' = ω'×r + ω×(ω×r)` and
-    /// its derivative. The speed is bounded by that of `y' = k y²/√3 + a`, and by momentum and energy.
+    /// From Euler's equations, with `k = max |I_j - I_k| / I_i <= 1` and `a` a bound on the effect of the torque:
+    /// `|Ω'| <= k|Ω|²/√3 + a`, `|Ω''| <= (2k/√3)|Ω||Ω'| + a|Ω|`, put into `r'' = ω'×r + ω×(ω×r)` and its derivative.
+    /// The speed is bounded by the solution of `y' = k y²/√3 + a`, and by momentum and energy.
     pub fn bounds(&self, pose: &Pose, left: f64) -> Bounds {
         let (least, left) = (self.moments.min_element(), left.abs());
         let pull = self.torque.length();
@@ -303,7 +302,7 @@ impl Flight {
         };
         let spin = pose.spin.length() * (1.0 + ROUNDING);
         let fastest = match self.kind {
-            // Of the same speed always: own and outer parts keep their angle.
+            // The speed is constant: the two angular velocities keep their angle.
             Kind::Steady(_) | Kind::Symmetric(..) => spin,
             _ => {
                 let start = spin + a * left;
@@ -320,7 +319,7 @@ impl Flight {
             }
         } * (1.0 + ROUNDING);
         let turning = match self.kind {
-            // The own axis goes about the momentum.
+            // The own axis precesses about the momentum.
             Kind::Symmetric(outer, own) => outer.length() * own.length(),
             _ => k / ROOT_3 * fastest * fastest + a,
         };
@@ -338,7 +337,7 @@ impl Flight {
     }
 }
 
-/// More than what rounding does to a bound, relative.
+/// A bound on the relative rounding of a bound.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 impl Piece {
@@ -347,7 +346,7 @@ impl Piece {
     }
 }
 
-/// `max |I_j - I_k| / I_i`, at most 1 of a body.
+/// `max |I_j - I_k| / I_i`; at most 1 for a real body.
 fn lopsidedness(moments: DVec3) -> f64 {
     let DVec3 { x, y, z } = moments;
     (DVec3::new(y - z, z - x, x - y) / moments)
@@ -355,9 +354,9 @@ fn lopsidedness(moments: DVec3) -> f64 {
         .max_element()
 }
 
-/// The rotation with an angular velocity (rad/s) in a time, s.
+/// The rotation by an angular velocity (rad/s) over a time, s.
 pub(super) fn about(spin: DVec3, t: f64) -> DQuat {
-    // To half an ulp also where squares would be no numbers.
+    // Right to half an ulp, also where squares overflow or underflow.
     let scale = spin.abs().max_element();
     if scale == 0.0 {
         return DQuat::IDENTITY;

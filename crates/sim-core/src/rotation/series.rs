@@ -1,23 +1,22 @@
 //! Taylor polynomials of a rotation.
 //!
-//! With `δ` the rotation since the start of a piece, in the frame that the body had there, `Ω` the
-//! angular velocity and `g` the torque, both in the frame of the body,
+//! Let `δ` be the rotation since the start of a piece, in the frame of the body at that start. Let `Ω` be the angular
+//! velocity and `g` the torque, both in the frame of the body. Then the equations
 //!
 //! ```text
 //! δ' = ½ δ Ω,   Ω' = I⁻¹(IΩ × Ω + g),   g' = g × Ω
 //! ```
 //!
-//! have products on their right-hand sides, so each coefficient is a sum over those before it.
+//! have products on their right-hand sides, so each coefficient is a sum over the ones before it.
 
 use glam::{DQuat, DVec3};
 
-/// No polynomial is of a higher order.
+/// The highest order of a polynomial.
 pub(super) const MOST: usize = 24;
 
-/// The least order whose remainder is a ten-thousandth of rounding, of a piece that goes a part
-/// `reach` of the way to where its series may diverge: what follows order `n` is at most
-/// `reach^(n+1) / (1 - reach)`. It is left out to one side in every step, so that more of it would add
-/// up.
+/// The least order whose remainder is a ten-thousandth of rounding, for a piece that covers the part `reach` of the
+/// radius of convergence: the terms after order `n` are at most `reach^(n+1) / (1 - reach)`. The remainder has the same
+/// sign in every step, so that a larger one would add up.
 pub(super) fn order(reach: f64) -> usize {
     let mut rest = reach / (1.0 - reach);
     let mut order = 0;
@@ -28,16 +27,16 @@ pub(super) fn order(reach: f64) -> usize {
     order
 }
 
-/// Pieces go as far as this: order [`MOST`] is enough there.
+/// The greatest reach of a piece; order [`MOST`] is enough for it.
 pub(super) const FARTHEST: f64 = 0.16;
 
-/// Which part of the way to where its series may diverge a rotation goes in a second, with an angular
-/// speed (rad/s) at the start and a bound `a` on what a torque does to it, rad/s².
+/// The reach of a rotation per second, as a part of the radius of convergence. `spin` is the angular speed at the start
+/// (rad/s), and `a` a bound on the effect of the torque, rad/s².
 ///
-/// Of a real body `|I_j - I_k| <= I_i`, so that without torque `y' = y²/√3` majorises the speed, which has
-/// its pole at `√3/|Ω|`. With one, `y' = y²/√3 + a z, z' = z y` does, where `z` majorises the torque in the
-/// frame of the body. Over the rate `|Ω| + √a` all terms of that are at most those of
-/// `y' = y²/√3 + z, z' = z y, y(0) = z(0) = 1`, which has its pole at 1.02126.
+/// For a real body `|I_j - I_k| <= I_i`. So without torque `y' = y²/√3` majorises the speed; it has its pole at
+/// `√3/|Ω|`. With a torque, `y' = y²/√3 + a z, z' = z y` majorises it, where `z` majorises the torque in the frame of
+/// the body. With time in units of `1/(|Ω| + √a)`, all terms of that are at most those of `y' = y²/√3 + z, z' = z y,
+/// y(0) = z(0) = 1`, which has its pole at 1.02126.
 pub(super) fn rate(spin: f64, a: f64) -> f64 {
     match a > 0.0 {
         true => (spin + libm::sqrt(a)) / 1.0212,
@@ -45,7 +44,7 @@ pub(super) fn rate(spin: f64, a: f64) -> f64 {
     }
 }
 
-/// Exponents of units whose squares are numbers.
+/// The greatest exponent of units whose squares are in the range of f64.
 const MOST_UNITS: i32 = 500;
 
 pub(super) const ROOT_3: f64 = 1.732_050_807_568_877_2;
@@ -54,15 +53,15 @@ pub(super) const ROOT_3: f64 = 1.732_050_807_568_877_2;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Series {
     order: usize,
-    /// Units of time in a second, a power of two: a unit is about what the body turns by a radian in, as powers
-    /// of its speed in seconds may be no numbers. That changes no digit.
+    /// Units of time in a second, a power of two. The body rotates by about a radian in a unit, because powers of its
+    /// speed in seconds may be out of range. The unit changes no digit.
     units: f64,
-    /// Of `x, y, z, w`.
+    /// Coefficients of `x, y, z, w`.
     turn: [[f64; 4]; MOST + 1],
 }
 
 impl Series {
-    /// Of a body with principal moments, of an angular velocity and a torque in its frame.
+    /// The series for a body with principal moments, an angular velocity and a torque in its frame.
     pub(super) fn new(moments: DVec3, spin: DVec3, torque: Option<DVec3>, order: usize) -> Series {
         let inverse = moments.recip();
         let pull = torque.map_or(0.0, |torque| (inverse * torque).abs().max_element());
