@@ -2,14 +2,15 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-/// Rounds in which each pair of axes is turned once. The error squares in each, so that five do.
+/// The most rounds, in each of which every pair of axes is rotated once. The error squares in each round, so five are
+/// enough.
 const ROUNDS: usize = 12;
 
-/// Eigenvalues and the rotation from coordinate axes to eigenvectors of the matrix with a diagonal
-/// and with entries `yz, zx, xy` beside it, by Jacobi's rotations.
+/// Eigenvalues of a symmetric matrix, and the rotation from coordinate axes to eigenvectors, by Jacobi's rotations. The
+/// matrix has the diagonal `values` and the off-diagonal entries `yz, zx, xy`.
 ///
-/// What is beside the diagonal and not more than `noise` counts as nothing, and values that differ by
-/// no more are equal: axes that rounding would choose stay those of the coordinates.
+/// Off-diagonal entries of at most `noise` count as zero, and values that differ by no more count as equal: axes that
+/// only rounding would choose stay those of the coordinates.
 pub(super) fn diagonalised(
     mut values: [f64; 3],
     mut beside: [f64; 3],
@@ -23,7 +24,7 @@ pub(super) fn diagonalised(
             if entry.abs() <= noise {
                 continue;
             }
-            // The lesser of the angles that take the entry to 0 (Golub, Van Loan, sec. 8.5).
+            // The smaller of the angles that make the entry zero (Golub, Van Loan, sec. 8.5).
             let slope = (values[j] - values[i]) / (2.0 * entry);
             let tangent = 1.0_f64.copysign(slope) / (slope.abs() + libm::hypot(slope, 1.0));
             let cosine = 1.0 / libm::hypot(tangent, 1.0);

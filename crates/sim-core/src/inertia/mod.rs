@@ -18,8 +18,7 @@ use glam::{DMat3, DQuat, DVec3};
 use crate::{Mesh, expansion::two_sum};
 use eigen::diagonalised;
 
-/// Where the mass of a body is: its centre, and how hard it is to turn about each of three axes
-/// through it.
+/// The mass distribution of a body: its centre of mass, and its moments of inertia about three axes through it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -32,7 +31,7 @@ pub struct Inertia {
     centre: DVec3,
 }
 
-/// An inertia as it is read.
+/// An inertia before its values are checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -48,20 +47,20 @@ impl TryFrom<Unchecked> for Inertia {
 
     fn try_from(read: Unchecked) -> Result<Inertia, InertiaError> {
         let inertia = Inertia::new(read.moments, read.axes, read.centre)?;
-        // What has been written is read to the bit: to make it of length 1 once more would round it.
+        // Written axes are read to the bit: to normalise them again would round them.
         let is_unit = (read.axes.length_squared() - 1.0).abs() <= 8.0 * f64::EPSILON;
         let axes = if is_unit { read.axes } else { inertia.axes };
         Ok(Inertia { axes, ..inertia })
     }
 }
 
-/// Why something has no inertia of a body. Whoever knows a name for it puts that in front.
+/// The reason why a mesh or a body has no inertia. Callers put the name of the object in front.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum InertiaError {
-    /// Some edge has not two triangles, so that no inside is.
+    /// Some edge does not have two triangles, so the mesh has no inside.
     #[error("the mesh is open: close it, or give its inertia")]
     Open,
-    /// Neighbouring triangles are wound against each other.
+    /// Adjacent triangles have opposite winding.
     #[error("triangles of the mesh are wound both ways: make them one, or give its inertia")]
     NotOriented,
     /// Triangles are wound inward.
@@ -70,10 +69,10 @@ pub enum InertiaError {
         /// The negative volume, m³.
         volume: f64,
     },
-    /// The volume is no more than rounding of the parts it is summed from.
+    /// The volume is no more than the rounding of the terms of its sum.
     #[error("the mesh encloses no volume: give it some thickness, or give its inertia")]
     NoVolume,
-    /// Parts that are wound inward, or overlap, leave moments that no mass has.
+    /// Parts that are wound inward, or overlap, give moments that no mass distribution has.
     #[error("parts of the mesh are inside out: reverse their triangles, or give its inertia")]
     NotSolid,
     /// A moment is not a positive number.
@@ -84,7 +83,7 @@ pub enum InertiaError {
         /// The moments, kg m².
         moments: DVec3,
     },
-    /// One moment is more than the two others together.
+    /// One moment is greater than the sum of the two others.
     #[error(
         "moments of inertia [{:e}, {:e}, {:e}] kg m² are those of no body: none may be more than \
          the two others together", moments.x, moments.y, moments.z
@@ -96,36 +95,36 @@ pub enum InertiaError {
     /// The axes are not a rotation.
     #[error("the principal axes are not a unit quaternion")]
     Axes,
-    /// The centre of mass is no place.
+    /// The centre of mass is not finite.
     #[error("the centre of mass must be finite")]
     Centre,
-    /// The mass is not one.
+    /// The mass is not positive and finite.
     #[error("the mass {mass:e} kg of what turns must be positive and finite")]
     Mass {
-        /// It, kg.
+        /// The mass, kg.
         mass: f64,
     },
-    /// There is no shape with an inside.
+    /// The body has no shape with an inside.
     #[error("a body without a mesh or a ball has no moments of inertia: give its inertia")]
     Shapeless,
-    /// The radius is not one of a ball that can turn.
+    /// A ball of this radius has no moment of inertia.
     #[error("a ball of radius {radius:e} m has no moment of inertia: give one")]
     Radius {
-        /// It, m.
+        /// The radius, m.
         radius: f64,
     },
 }
 
 impl Inertia {
-    /// Of principal moments (kg m²) about axes through a centre of mass (m), the latter two in the
-    /// frame of the body's shape: `axes` turns the coordinate axes into the principal ones.
+    /// The inertia with principal moments (kg m²) about axes through a centre of mass (m). Axes and centre are in the
+    /// frame of the body's shape: `axes` is the rotation from the coordinate axes to the principal axes.
     ///
-    /// Moments must be positive, and none more than the two others together, but for rounding.
+    /// Moments must be positive, and none greater than the sum of the two others, up to rounding.
     pub fn new(moments: DVec3, axes: DQuat, centre: DVec3) -> Result<Inertia, InertiaError> {
         if !(moments.is_finite() && moments.cmpgt(DVec3::ZERO).all()) {
             return Err(InertiaError::NotPositive { moments });
         }
-        // Each of the two others was rounded, and so was what they are compared with.
+        // Each of the two others was rounded, and so was the moment compared with them.
         let rest = moments.element_sum() - moments.max_element();
         if moments.max_element() > rest * (1.0 + 4.0 * f64::EPSILON) {
             return Err(InertiaError::Triangle { moments });
@@ -143,7 +142,7 @@ impl Inertia {
         })
     }
 
-    /// Of a solid ball about its middle: radius in m, mass in kg.
+    /// The inertia of a solid ball about its centre: radius in m, mass in kg.
     pub fn ball(radius: f64, mass: f64) -> Result<Inertia, InertiaError> {
         let mass = checked(mass)?;
         let moment = 0.4 * mass * radius * radius;
@@ -153,7 +152,7 @@ impl Inertia {
         Inertia::new(DVec3::splat(moment), DQuat::IDENTITY, DVec3::ZERO)
     }
 
-    /// Of a body of the same density everywhere within a closed mesh: mass in kg.
+    /// The inertia of a body of uniform density within a closed mesh: mass in kg.
     pub fn solid(mesh: &Mesh, mass: f64) -> Result<Inertia, InertiaError> {
         Solid::of(mesh)?.inertia(mass)
     }
@@ -163,7 +162,7 @@ impl Inertia {
         self.moments
     }
 
-    /// Turns coordinate axes into principal ones, in the shape's frame.
+    /// The rotation from the coordinate axes to the principal axes, in the shape's frame.
     pub fn axes(&self) -> DQuat {
         self.axes
     }
@@ -181,7 +180,7 @@ fn checked(mass: f64) -> Result<f64, InertiaError> {
     }
 }
 
-/// The inside of a closed mesh, filled evenly.
+/// The inside of a closed mesh, with uniform density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solid {
     volume: f64,
@@ -200,7 +199,7 @@ impl Solid {
         if !mesh.is_oriented() {
             return Err(InertiaError::NotOriented);
         }
-        // About the middle of the box, so that a mesh far from its origin loses no digits.
+        // About the centre of the box, so that a mesh far from its origin loses no digits.
         let middle = mesh.bounds().centre();
         let [mut volume, mut size] = [Sum::ZERO; 2];
         let mut first = [Sum::ZERO; 3];
@@ -216,7 +215,7 @@ impl Solid {
         if six < -noise {
             return Err(InertiaError::InsideOut { volume: six / 6.0 });
         }
-        // Not more than rounding, or less than any number.
+        // No more than rounding, or below the normal numbers.
         if six <= noise || !six.is_normal() {
             return Err(InertiaError::NoVolume);
         }
@@ -260,23 +259,23 @@ impl Solid {
         self.centre
     }
 
-    /// Its inertia with so much mass in it, kg.
+    /// The inertia with a given mass, kg.
     pub fn inertia(&self, mass: f64) -> Result<Inertia, InertiaError> {
         let DVec3 { x, y, z } = self.spread;
-        // Sums of what is positive: no moment is more than the two others.
+        // Sums of positive numbers: no moment is greater than the sum of the two others.
         let moments = checked(mass)? * DVec3::new(y + z, z + x, x + y);
         Inertia::new(moments, self.axes, self.centre)
     }
 }
 
-/// Bounds what rounding does to a sum of compensated terms, as part of the sum of their greatest
-/// values: differences, products and sums of each are below 12 units of 2^-53.
+/// Bounds the rounding of a sum of compensated terms, relative to the sum of their greatest values: the error of the
+/// differences, products and sums of each is below 12 units of 2^-53.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Rows and columns of `xx, yy, zz, xy, yz, zx`.
+/// Rows and columns of the entries `xx, yy, zz, xy, yz, zx`.
 const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
 
-/// Corners of all triangles as seen from a point.
+/// The corners of all triangles relative to a point.
 fn tetrahedra(mesh: &Mesh, from: DVec3) -> impl Iterator<Item = [DVec3; 3]> {
     (0..mesh.triangles().len()).map(move |i| mesh.corners(i).map(|v| v.as_dvec3() - from))
 }
@@ -285,13 +284,13 @@ fn determinant(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     DMat3::from_cols(a, b, c).determinant()
 }
 
-/// The same of magnitudes, all added: what its rounding is part of.
+/// The same with absolute values, all added: a bound on the scale of its rounding.
 fn permanent(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let [a, b, c] = [a.abs(), b.abs(), c.abs()];
     a.x * (b.y * c.z + b.z * c.y) + a.y * (b.z * c.x + b.x * c.z) + a.z * (b.x * c.y + b.y * c.x)
 }
 
-/// A sum with what rounding has taken from it.
+/// A sum, and its rounding errors.
 #[derive(Clone, Copy)]
 struct Sum(f64, f64);
 

@@ -9,8 +9,8 @@ fn mesh(vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
     Mesh::new(vertices, triangles.to_vec()).unwrap()
 }
 
-/// Triangles of what is convex about its origin, from all triples of vertices that leave the others
-/// on one side: plain, and by another way than anything here.
+/// Triangles of a convex hull about its origin, from all triples of vertices that have the others on one side: simple,
+/// and by another method than the code under test.
 fn hull(vertices: &[Vec3]) -> Mesh {
     let mut faces: Vec<Vec<u32>> = vec![];
     let n = vertices.len() as u32;
@@ -24,7 +24,7 @@ fn hull(vertices: &[Vec3]) -> Mesh {
         if (0..n).any(|i| height(i) > 1e-5) {
             continue;
         }
-        // All corners of the face, in order about its middle.
+        // All corners of the face, in order around its centre.
         let mut face: Vec<u32> = (0..n).filter(|&i| height(i).abs() <= 1e-5).collect();
         let middle = face.iter().map(|&i| at(i)).sum::<DVec3>() / face.len() as f64;
         let (x, y) = (at(face[0]) - middle, normal.cross(at(face[0]) - middle));
@@ -48,7 +48,7 @@ fn hull(vertices: &[Vec3]) -> Mesh {
     Mesh::new(vertices.to_vec(), faces.iter().flat_map(fan).collect()).unwrap()
 }
 
-/// Each coordinate of some points with all signs that change something.
+/// Points with every sign combination of the coordinates of some points.
 fn signs(points: &[[f64; 3]]) -> Vec<Vec3> {
     let mut all: Vec<Vec3> = vec![];
     for p in points {
@@ -112,7 +112,7 @@ fn a_box_keeps_its_axes_and_a_cube_has_equal_moments_to_the_bit() {
         (inertia.axes(), inertia.centre()),
         (DQuat::IDENTITY, DVec3::ZERO)
     );
-    // Sides that f32 has no digits for.
+    // Side lengths that f32 cannot represent.
     let sides = DVec3::new(0.1, 0.7, 1.3);
     let boxed = cube().transformed(DQuat::IDENTITY, sides).unwrap();
     let exact = boxed.bounds().half_extent() * 2.0;
@@ -219,7 +219,7 @@ fn what_has_no_inside_is_refused_by_name() {
         refused(&with(inward)),
         InertiaError::InsideOut { volume: -1.0 }
     );
-    // A sheet of two sides, and one that lies on no axis.
+    // A sheet with two sides, and one that is parallel to no axis.
     let sheet = [[0, 1, 2], [0, 2, 1]];
     let lying = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
     let aslant = [[0.1, 0.2, 0.3], [1.1, -0.7, 0.4], [0.3, 0.9, -0.8]];
@@ -241,7 +241,7 @@ fn what_has_no_inside_is_refused_by_name() {
 #[test]
 fn given_moments_must_be_those_of_a_body() {
     let new = |x, y, z| Inertia::new(DVec3::new(x, y, z), DQuat::IDENTITY, DVec3::ZERO);
-    // A plate, by numbers that rounding puts on the wrong side.
+    // A plate: rounding puts the sum of two moments on the wrong side of the third.
     assert!(
         new(0.1, 0.7, 0.8).is_ok() && new(1.0, 1.0, 2.0).is_ok() && new(1e-12, 1.0, 1.0).is_ok()
     );
