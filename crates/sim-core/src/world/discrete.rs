@@ -1,10 +1,9 @@
 //! The discrete modes, as in the course: collisions at the end of a step only.
 //!
-//! Bodies that meet exchange an impulse along the contact normal and go back to where the step began.
-//! A body that goes back may meet a third one, so this repeats until no two bodies meet. It ends, because each
-//! round puts back at least one more body, and no bodies met at the start of the step. It restores
-//! the invariant that the next step relies on: no two bodies meet, except pairs that were placed
-//! in overlap.
+//! Bodies that meet exchange an impulse along the contact normal and go back to the start of the step. A body that goes
+//! back may meet a third one, so this repeats until no two bodies meet. It ends, because each round puts back at least
+//! one more body, and no bodies met at the start of the step. The result restores the invariant that the next step
+//! relies on: no two bodies meet, except pairs that were placed in overlap.
 //!
 //! Pairs that touch first on their trajectories go first, and pairs that touch at the same time go together. So
 //! the result does not depend on the order of bodies. `turning` has the differences for turning bodies.
@@ -32,21 +31,20 @@ use crate::{
     pieces::Pieces,
 };
 
-/// Of so many bodies or fewer, all pairs are looked at: to put them in order takes longer.
+/// Up to this many bodies, all pairs are tested: to sort the bodies takes longer.
 const FEW: usize = 16;
 
-/// What is kept from step to step to find pairs that come near. It saves time, and a copy starts
-/// without.
+/// The data that is kept from step to step to find near pairs. It only saves time, and a copy starts without it.
 #[derive(Debug, Default)]
 pub(super) struct Discrete {
     broad: Broad,
-    /// Pairs whose boxes meet on the way of the step, and those that meet where it ends.
+    /// Pairs whose boxes meet during the step, and pairs that meet at its end.
     near: Vec<(usize, usize)>,
     meeting: Vec<(usize, usize)>,
-    /// What is to be answered, and what is answered at once.
+    /// Meetings to be resolved, and those that are resolved together.
     meetings: BinaryHeap<Meeting>,
     group: Vec<Meeting>,
-    /// Who has been put back in this step, and who just now; empty between steps.
+    /// The bodies put back in this step, and those put back last; empty between steps.
     is_back: Vec<bool>,
     put_back: Vec<usize>,
 }
@@ -60,19 +58,19 @@ impl Clone for Discrete {
 /// Two bodies that meet.
 #[derive(Debug)]
 struct Meeting {
-    /// Part of the step at which they touch.
+    /// The time at which they touch, as a part of the step.
     time: f64,
     bodies: (usize, usize),
-    /// Whether each had been put back when this was found.
+    /// Whether each body had been put back when this meeting was found.
     were_back: (bool, bool),
-    /// Its point is in the world; `None` where nothing moves them.
+    /// The contact, with its point in the world; `None` if the bodies do not move relative to each other.
     contact: Option<Contact>,
-    /// How near each other features are there that touch, m; 0 where neither turns.
+    /// The distance up to which features touch there, m; 0 if neither body turns.
     near: f64,
 }
 
 impl Ord for Meeting {
-    /// The earliest is the greatest; at the same time the one of the lowest bodies.
+    /// The earliest meeting is the greatest; at equal times the one of the lowest bodies.
     fn cmp(&self, other: &Meeting) -> Ordering {
         let time = other.time.total_cmp(&self.time);
         time.then(other.bodies.cmp(&self.bodies))
@@ -93,7 +91,7 @@ impl PartialEq for Meeting {
 
 impl Eq for Meeting {}
 
-/// A step of bodies that are where it ends already.
+/// The end of a step: bodies are already at their end positions.
 pub(super) struct DiscreteStep<'a> {
     scene: Scene<'a>,
     end: &'a mut State,
@@ -102,9 +100,9 @@ pub(super) struct DiscreteStep<'a> {
 }
 
 impl World {
-    /// Lets bodies that meet bounce, and puts them back to where the step began.
+    /// Resolves the collisions of bodies that meet, and puts these bodies back to the start of the step.
     pub(super) fn collide_discretely(&mut self) {
-        // What this mode does to bodies in contact it does where a step ends.
+        // This mode treats contacts at the end of the step only.
         self.contacts.clear();
         self.continuous.placed = true;
         let mut step = self.discrete_step();
@@ -127,7 +125,7 @@ impl World {
 }
 
 impl DiscreteStep<'_> {
-    /// Lets bodies that meet bounce, and puts them back to where the step began.
+    /// Resolves the collisions of bodies that meet, and puts these bodies back to the start of the step.
     fn collide(&mut self) {
         self.find_meeting_pairs();
         if !self.memory.meeting.is_empty() {
@@ -135,7 +133,7 @@ impl DiscreteStep<'_> {
         }
     }
 
-    /// Finds the pairs that meet now and were apart.
+    /// Finds the pairs that meet now and were apart at the start.
     fn find_meeting_pairs(&mut self) {
         let mut meeting = mem::take(&mut self.memory.meeting);
         meeting.clear();
@@ -157,7 +155,7 @@ impl DiscreteStep<'_> {
         self.memory.meeting = meeting;
     }
 
-    /// Finds the pairs that may meet on the way of the step.
+    /// Finds the pairs that may meet during the step.
     fn find_near_pairs(&mut self) {
         let mut broad = mem::take(&mut self.memory.broad);
         let way = |body: usize| (self.scene.before.position[body], self.end.position[body]);
@@ -180,9 +178,9 @@ impl DiscreteStep<'_> {
         self.scene.bodies.solid.len() <= FEW
     }
 
-    /// Bounces and puts back until no pair collides.
+    /// Resolves collisions and puts bodies back until no pair collides.
     fn bounce_all(&mut self) {
-        // Out of the world while it is changed.
+        // Taken out of the memory while `self` is changed.
         let mut meetings = mem::take(&mut self.memory.meetings);
         let mut group = mem::take(&mut self.memory.group);
         let mut is_back = mem::take(&mut self.memory.is_back);
@@ -192,7 +190,7 @@ impl DiscreteStep<'_> {
         let pairs = self.memory.meeting.iter();
         meetings.extend(pairs.map(|&pair| self.meeting_of(pair, &is_back)));
         while let Some(first) = next(&mut meetings, f64::INFINITY, &is_back) {
-            // The same time, but for rounding.
+            // Equal times, up to rounding.
             let until = first.time + 4.0 * f64::EPSILON * first.time;
             group.push(first);
             while let Some(meeting) = next(&mut meetings, until, &is_back) {
@@ -212,7 +210,7 @@ impl DiscreteStep<'_> {
             }
             for body in put_back.drain(..) {
                 self.each_near(body, |other| {
-                    // Where the step began nobody met.
+                    // At the start of the step no bodies met.
                     if !is_back[other] && self.collides(body, other) {
                         let pair = (body.min(other), body.max(other));
                         meetings.push(self.meeting_of(pair, &is_back));
@@ -225,7 +223,7 @@ impl DiscreteStep<'_> {
         (discrete.is_back, discrete.put_back) = (is_back, put_back);
     }
 
-    /// Puts a body back to where the step began, and as it was turned there.
+    /// Puts a body back to its position and rotation at the start of the step.
     fn put_back(&mut self, body: usize) {
         self.end.position[body] = self.scene.before.position[body];
         if let Some(slot) = self.scene.bodies.turners.slot(body) {
@@ -233,7 +231,7 @@ impl DiscreteStep<'_> {
         }
     }
 
-    /// Every other body whose box meets that of a body on the way of the step.
+    /// Visits every other body whose box meets that of a body during the step.
     fn each_near(&self, body: usize, mut found: impl FnMut(usize)) {
         if self.is_few() {
             let others = self.scene.bodies.solid.iter().copied();
@@ -243,7 +241,7 @@ impl DiscreteStep<'_> {
         }
     }
 
-    /// Whether two bodies meet that were apart.
+    /// Whether two bodies meet that were apart at the start of the step.
     fn collides(&self, i: usize, j: usize) -> bool {
         self.scene.may_collide(i, j) && self.scene.meet(self.end, i, j)
     }
@@ -263,7 +261,7 @@ impl DiscreteStep<'_> {
         }
     }
 
-    /// Lets bodies that touch at the same time part by their restitution.
+    /// Resolves the collisions of bodies that touch at the same time, by their restitution.
     fn exchange_at_once(&mut self, group: &[Meeting]) {
         if let [only] = group
             && !self.scene.bodies.pair_tumbles(only.bodies.0, only.bodies.1)
@@ -278,7 +276,7 @@ impl DiscreteStep<'_> {
         touching.sort_by(Touching::in_order);
         let bodies = sorted(touching.iter().flat_map(|touching| touching.bodies));
         let place = |body: usize| bodies.partition_point(|&other| other < body);
-        // What an immovable body is given does not reach others.
+        // An impulse on an immovable body has no effect on others.
         let mut pieces = Pieces::new(bodies.len());
         for Touching { bodies: [i, j], .. } in &touching {
             if self.scene.bodies.is_movable(*i) && self.scene.bodies.is_movable(*j) {
@@ -311,7 +309,7 @@ impl DiscreteStep<'_> {
         }
     }
 
-    /// What touches in a meeting, from the body that comes first in an order of motion.
+    /// The contact of a meeting, seen from the body that is first by its motion.
     fn touching(&self, meeting: &Meeting) -> Option<Touching> {
         let (contact, (i, j)) = (meeting.contact?, meeting.bodies);
         let keys = [self.scene.motion_key(i), self.scene.motion_key(j)];
@@ -341,10 +339,10 @@ impl DiscreteStep<'_> {
             .for_each(|impact| self.record.note(impact));
     }
 
-    /// Lets bodies that hang together part with the least restitution of all.
+    /// Resolves the collisions of a connected set of bodies with the least restitution of all its pairs.
     fn reflect_piece(&mut self, piece: &[(usize, Touching)]) {
         let piece = || piece.iter().map(|(_, touching)| touching);
-        // In the order in which they come up, which is one of motion.
+        // In the order of the contacts, which are sorted by the motion of the bodies.
         let mut bodies: Vec<usize> = Vec::new();
         let mut places: BTreeMap<usize, usize> = BTreeMap::new();
         for body in piece().flat_map(|touching| touching.bodies) {
@@ -387,8 +385,8 @@ impl DiscreteStep<'_> {
         }
     }
 
-    /// Keeps pairs in overlap from moving closer, by an elastic impulse along the line of their centres, and
-    /// tells which have not parted.
+    /// Keeps overlapping pairs from approaching, by an elastic impulse along the line of their centres. Returns the
+    /// pairs that have not parted.
     fn part_overlapping(&mut self) -> Vec<(usize, usize)> {
         let mut pairs = self.scene.overlaps.pairs.to_vec();
         pairs.retain(|&(i, j)| self.scene.meet(self.end, i, j));
@@ -398,9 +396,9 @@ impl DiscreteStep<'_> {
         pairs
     }
 
-    /// Lets all pairs that move closer exchange an impulse at once. Where several share a body, each
-    /// gives the part of its impulse that makes all of them no more than one: the velocities are then
-    /// a mean of some that each keep the energy, so that none is gained.
+    /// Resolves all approaching pairs at once. If several pairs share a body, each pair gets the part of its impulse
+    /// with which all parts together are at most one. The velocities are then a mean of velocities that each conserve
+    /// the energy, so no energy is gained.
     fn exchange_in_overlap(&mut self, pairs: &[(usize, usize)]) {
         let velocity = &self.end.velocity;
         let closing: Vec<((usize, usize), DVec3)> = pairs
@@ -436,7 +434,7 @@ impl DiscreteStep<'_> {
             let shared = |body: usize| shares.get(&body).copied().unwrap_or(1);
             let most = shared(i).max(shared(j));
             if most == 1 {
-                // Nobody else has a say in these two.
+                // No other pair shares these two bodies.
                 self.note_exchange((i, j), &contact);
                 continue;
             }
@@ -458,7 +456,7 @@ impl DiscreteStep<'_> {
             changes.push((j, impulse / masses.1 * normal));
             noted.push(((i, j), contact, impulse, (before.0 - before.1).dot(normal)));
         }
-        // In an order that comes from the terms alone.
+        // In an order that depends on the terms alone.
         changes.sort_by_cached_key(|&(body, change)| (body, order::of_vector(change)));
         for of_body in changes.chunk_by(|a, b| a.0 == b.0) {
             let change: DVec3 = of_body.iter().map(|&(_, change)| change).sum();
@@ -475,19 +473,19 @@ impl DiscreteStep<'_> {
     }
 }
 
-/// Two bodies that touch.
+/// The contact of two bodies.
 struct Touching {
-    /// The first in an order of motion, and the other.
+    /// The body that is first by its motion, and the other one.
     bodies: [usize; 2],
     keys: [Key; 2],
-    /// From the first to the other.
+    /// From the first body to the other.
     normal: DVec3,
-    /// Of the lower body and the higher.
+    /// The contact, seen from the body of lower index.
     contact: Contact,
-    /// Of these bodies, as in [`Meeting`].
+    /// For these bodies, as in [`Meeting`].
     near: f64,
     were_back: [bool; 2],
-    /// Whether the first is the higher.
+    /// Whether the first body has the higher index.
     is_turned: bool,
 }
 
@@ -506,7 +504,7 @@ impl Touching {
     }
 }
 
-/// Bodies in the order of their places, each once.
+/// Bodies in the order of their indices, each once.
 fn sorted(bodies: impl Iterator<Item = usize>) -> Vec<usize> {
     let mut bodies: Vec<usize> = bodies.collect();
     bodies.sort_unstable();
@@ -514,7 +512,7 @@ fn sorted(bodies: impl Iterator<Item = usize>) -> Vec<usize> {
     bodies
 }
 
-/// The next meeting no later than a time, of bodies that are where they were when it was found.
+/// The next meeting no later than a time whose bodies have not been put back since it was found.
 fn next(meetings: &mut BinaryHeap<Meeting>, until: f64, is_back: &[bool]) -> Option<Meeting> {
     while meetings.peek()?.time <= until {
         let meeting = meetings.pop()?;
@@ -537,8 +535,7 @@ mod tests {
         test_random::Random,
     };
 
-    /// Balls, cubes and bumpy balls in a room of walls, some of them fast, some immovable, some in
-    /// overlap.
+    /// Balls, cubes and bumpy balls in a room of walls; some are fast, some immovable, some in overlap.
     pub(in crate::world) fn crowd(seed: u64, count: usize, collision: Collision) -> World {
         let mut random = Random(seed);
         let (cube, bumpy) = (Arc::new(cube()), Arc::new(sphere(5)));
@@ -592,7 +589,7 @@ mod tests {
         pairs.filter(|&(i, j)| is(i, j)).collect()
     }
 
-    /// The pairs that meet and were apart, one by one.
+    /// The pairs that meet and were apart, tested one by one.
     fn colliding(world: &mut World) -> Vec<(usize, usize)> {
         let pairs = pairs(world, |_, _| true);
         let step = world.discrete_step();
@@ -608,7 +605,7 @@ mod tests {
                 let mut world = crowd(seed, count, collision);
                 for _ in 0..30 {
                     world.seek_overlaps();
-                    // As far as a step goes before it looks at collisions.
+                    // Steps up to the point where collisions are detected.
                     mem::swap(&mut world.previous, &mut world.current);
                     world.integrate().unwrap();
                     let mut step = world.discrete_step();
@@ -617,7 +614,7 @@ mod tests {
                     meeting.sort_unstable_by_key(|&(i, j)| (j, i));
                     assert_eq!(meeting, colliding(&mut world));
                     met += meeting.len();
-                    // Whoever may meet where one or both are put back is near.
+                    // Pairs that may meet after one or both were put back must be near.
                     let there = [world.previous.clone(), world.current.clone()];
                     for (one, other) in [(0, 0), (0, 1), (1, 0)] {
                         let mut moved = world.clone();

@@ -1,15 +1,16 @@
 //! Turning bodies at the end of a step of a discrete mode.
 //!
-//! A pair that meets has touched on its trajectories: both centres of mass move on straight lines, and the rotations
+//! A pair that meets has touched during the step: both centres of mass move on straight lines, and the rotations
 //! follow the flight of the step. Impulses act at all features of the first contact at once, with lever arms:
-//! restitution along each normal, no friction. Both bodies go back to where the step began, with their rotation there.
+//! restitution along each normal, no friction. Both bodies go back to the start of the step, with their rotation
+//! there.
 //!
-//! The energy of rotation depends on the rotation of a body. So a body with an angular momentum `L` that goes back
-//! gets an angular momentum along `L` there, of the length that has the energy of the impact. For a cube or a
-//! ball, whose moments are equal, that is `L` itself.
+//! The energy of rotation depends on the rotation of a body. So a body that goes back with an angular momentum `L` gets
+//! an angular momentum parallel to `L` there, of the length that has the energy after the impact. For a cube or a ball,
+//! whose moments are equal, this is `L` itself.
 //!
-//! If no feature closes, which only rounding explains, the motion itself is reversed, as for bodies
-//! that do not turn: the relative velocity of the two, and their spins. Otherwise the next step would be the same.
+//! If no feature closes, which only rounding explains, the relative motion itself is reversed, as for bodies that do
+//! not turn: the relative velocity of the two, and their spins. Otherwise the next step would be the same.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use glam::{DMat3, DQuat, DVec3};
@@ -27,20 +28,20 @@ use crate::{
     rotation::{Flight, spin},
 };
 
-/// Features touch that are no farther apart than this times what is a contact: more than an impact comes
-/// before the first contact by.
+/// Features touch if their distance is at most this times that of a contact. An impact is found earlier than the first
+/// contact by less than this distance.
 const REACH: f64 = 64.0;
 
-/// A body where an impact is.
+/// A body at an impact.
 struct Placed {
     body: usize,
-    /// How a body that turns is turned there: principal axes into the world.
+    /// The rotation of a turning body there: from principal axes into the world.
     axes: DQuat,
     was_back: bool,
 }
 
 impl DiscreteStep<'_> {
-    /// The straight way of a body in the step; one that is back stays where it is.
+    /// The straight motion of a body during the step; a body that was put back stays at its start.
     fn way<'a>(&'a self, body: usize, flight: Option<&'a Flight>) -> Option<Moving<'a>> {
         let from = self.scene.before.position[body];
         let velocity = (self.end.position[body] - from) / self.scene.settings.dt;
@@ -54,7 +55,7 @@ impl DiscreteStep<'_> {
         self.scene.bodies.moving(body, motion, turning)
     }
 
-    /// How a body that does not turn in the step is turned: shape into the world.
+    /// The rotation of a body that does not turn during the step: from its shape into the world.
     fn shape_rotation(&self, body: usize) -> DQuat {
         match self.scene.bodies.tumbles(body) {
             true => self.scene.bodies.rotation_in(self.scene.before, body),
@@ -62,7 +63,7 @@ impl DiscreteStep<'_> {
         }
     }
 
-    /// How a body turns in the step, if it shows and the body is not back.
+    /// The flight of a body's rotation during the step; `None` if the body does not tumble or was put back.
     fn flight(&self, body: usize, was_back: bool) -> Option<Flight> {
         let bodies = self.scene.bodies;
         if was_back || !bodies.tumbles(body) {
@@ -75,12 +76,12 @@ impl DiscreteStep<'_> {
             bodies.turners.torque[slot],
         );
         let dt = self.scene.settings.dt;
-        // The step has taken it already.
+        // The step has computed this flight before without an error.
         Flight::new(moments, before.rotation, before.momentum, torque, dt).ok()
     }
 
-    /// Where two bodies of which one turns have touched first, in the world, and how near features are that
-    /// touch, m.
+    /// The first contact of two bodies of which one turns, in the world, and the distance up to which features touch,
+    /// m.
     pub(super) fn turning_contact_on_way(
         &self,
         (i, j): (usize, usize),
@@ -106,7 +107,7 @@ impl DiscreteStep<'_> {
             };
             return (Some(contact), touch.near);
         }
-        // Should rounding hide where, they touch where the step ends.
+        // If rounding hides the place of the contact, use the end of the step.
         let line = self.scene.bodies.line_apart(at, (i, j));
         let normal = (-motion).try_normalize().or(line).unwrap_or(DVec3::X);
         let contact = Contact {
@@ -122,7 +123,8 @@ impl DiscreteStep<'_> {
         (Some(contact), NEAR * f64::EPSILON * size)
     }
 
-    /// Lets bodies that hang together, of which some turn, part with the least restitution of all.
+    /// Resolves the collisions of a connected set of bodies, of which some turn, with the least restitution of all
+    /// its pairs.
     pub(super) fn reflect_turning(&mut self, piece: &[(usize, Touching)]) {
         let piece: Vec<&Touching> = piece.iter().map(|(_, touching)| touching).collect();
         let (placed, places) = self.placed(&piece);
@@ -182,8 +184,8 @@ impl DiscreteStep<'_> {
         self.record.note(impact);
     }
 
-    /// The bodies of some contacts, once each, as they are turned where they touch first, and their places
-    /// among them.
+    /// The bodies of some contacts, each once, with their rotations at the first contact, and the index of each body
+    /// in this list.
     fn placed(&self, piece: &[&Touching]) -> (Vec<Placed>, BTreeMap<usize, usize>) {
         let mut placed: Vec<Placed> = Vec::new();
         let mut places: BTreeMap<usize, usize> = BTreeMap::new();
@@ -202,7 +204,7 @@ impl DiscreteStep<'_> {
         (placed, places)
     }
 
-    /// How a body is turned at a part of the step: principal axes into the world.
+    /// The rotation of a body at a part of the step: from principal axes into the world.
     fn axes_at(&self, body: usize, was_back: bool, part: f64) -> DQuat {
         let Some(slot) = self.scene.bodies.turners.slot(body) else {
             return DQuat::IDENTITY;
@@ -213,7 +215,7 @@ impl DiscreteStep<'_> {
         }
     }
 
-    /// The features of a pair that touch.
+    /// The contacts of a pair at all features that touch.
     fn arms(&self, touching: &Touching, bodies: (usize, usize)) -> Vec<Arms> {
         let (i, j) = touching.pair();
         let contact = &touching.contact;
@@ -296,7 +298,8 @@ impl DiscreteStep<'_> {
         }
     }
 
-    /// Gives bodies the angular momenta of impulses, with which they go back.
+    /// Adds the angular momenta of impulses to the bodies, and converts them for the rotations to which the bodies go
+    /// back.
     fn give_momentum(&mut self, placed: &[Placed], contacts: &[Arms], given: &[f64]) {
         let bodies = self.scene.bodies;
         for (contact, &given) in contacts.iter().zip(given) {
@@ -336,7 +339,7 @@ impl DiscreteStep<'_> {
         }
     }
 
-    /// Turns the motion of two bodies against each other back.
+    /// Reverses the relative motion of two bodies.
     fn turn_back(&mut self, touching: &Touching) {
         let bodies = self.scene.bodies;
         let [i, j] = touching.bodies;
