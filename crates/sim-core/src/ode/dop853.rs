@@ -7,7 +7,7 @@ use super::dop853_table::{
 };
 use super::{Pair, Start, State, Tolerance, combine, sum};
 
-/// Slopes of the twelve stages, the one at the end, and three for dense output.
+/// Slopes of the twelve stages, the slope at the end, and three for dense output.
 #[derive(Clone, Debug)]
 pub struct Dop853Stages<Y>([Y; 16]);
 
@@ -59,7 +59,7 @@ impl<Y: State> Pair<Y> for Dop853Stages<Y> {
         11
     }
 
-    /// Both estimates in one: `|h| e5² / √(e5² + e3²/100)` (sec. II.10, eq. 10.17).
+    /// Combines both estimates: `|h| e5² / √(e5² + e3²/100)` (sec. II.10, eq. 10.17).
     #[inline]
     fn error(&self, at: Start<'_, Y>, end: &Y, tolerance: Tolerance) -> f64 {
         let (y, end) = (at.y.as_ref(), end.as_ref());

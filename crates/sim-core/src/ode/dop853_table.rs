@@ -101,7 +101,7 @@ pub(super) const A12: Row<9> = [
     (10, 0.643_392_746_015_763_6),
 ];
 
-/// The step itself.
+/// Weights of the step.
 pub(super) const B: Row<8> = [
     (0, 0.054_293_734_116_568_765),
     (5, 4.450_312_892_752_409),
@@ -137,7 +137,7 @@ pub(super) const E3: Row<8> = [
     (11, 0.022_651_792_198_360_82),
 ];
 
-/// A stage for dense output alone.
+/// A stage for dense output only.
 pub(super) const A14: Row<8> = [
     (0, 0.056_167_502_283_047_954),
     (6, 0.253_500_210_216_624_83),
@@ -149,7 +149,7 @@ pub(super) const A14: Row<8> = [
     (12, -0.008_298),
 ];
 
-/// A stage for dense output alone.
+/// A stage for dense output only.
 pub(super) const A15: Row<8> = [
     (0, 0.031_834_648_163_502_14),
     (5, 0.028_300_909_672_366_776),
@@ -161,7 +161,7 @@ pub(super) const A15: Row<8> = [
     (13, 0.141_312_443_674_632_5),
 ];
 
-/// A stage for dense output alone.
+/// A stage for dense output only.
 pub(super) const A16: Row<8> = [
     (0, -0.428_896_301_583_791_94),
     (5, -4.697_621_415_361_164),

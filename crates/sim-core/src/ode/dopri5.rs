@@ -6,7 +6,7 @@
 
 use super::{Pair, Row, Start, State, Tolerance, combine, sum};
 
-/// Slopes of the seven stages; the last is that at the end.
+/// Slopes of the seven stages; the last one is the slope at the end.
 #[derive(Clone, Debug)]
 pub struct Dopri5Stages<Y>([Y; 7]);
 
@@ -29,7 +29,7 @@ const A6: Row<5> = [
     (4, -5103.0 / 18656.0),
 ];
 
-/// The step itself.
+/// Weights of the step.
 const B: Row<5> = [
     (0, 35.0 / 384.0),
     (2, 500.0 / 1113.0),
@@ -38,7 +38,7 @@ const B: Row<5> = [
     (5, 11.0 / 84.0),
 ];
 
-/// Difference of both methods.
+/// Difference of the weights of both methods.
 const E: Row<6> = [
     (0, 71.0 / 57600.0),
     (2, -71.0 / 16695.0),

@@ -36,7 +36,7 @@ pub trait State: AsRef<[f64]> + AsMut<[f64]> {}
 
 impl<Y: AsRef<[f64]> + AsMut<[f64]>> State for Y {}
 
-/// The error that a solver may make in a step, in each component: `absolute + relative · |y|`.
+/// The error that a solver may make in a step, for each component: `absolute + relative · |y|`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Relative to the component.
@@ -46,7 +46,7 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// The same number for both.
+    /// The same tolerance for both.
     pub fn of(both: f64) -> Tolerance {
         Tolerance {
             relative: both,
@@ -55,22 +55,21 @@ impl Tolerance {
     }
 }
 
-/// Why a solver stopped before its end.
+/// The reason why a solver stopped before its end.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SolveError {
-    /// The tolerance asks for steps that the numbers around `time` cannot tell apart, or the
-    /// motion has left the numbers.
+    /// The tolerance asks for steps that are below the rounding of `time`, or the solution is not finite.
     #[error("at t = {time} the step fell to {step}")]
     StepTooSmall {
-        /// Where it stopped.
+        /// The time at which the solver stopped.
         time: f64,
         /// The step that was tried last.
         step: f64,
     },
-    /// As many steps as were allowed have been tried.
+    /// The solver has tried the allowed number of steps.
     #[error("at t = {time} after {steps} steps")]
     TooManySteps {
-        /// Where it stopped.
+        /// The time at which the solver stopped.
         time: f64,
         /// Steps tried.
         steps: u64,
@@ -83,13 +82,13 @@ pub trait Pair<Y: State> {
     const CONTROL: [f64; 2];
     /// Least and greatest factor from one step to the next.
     const FACTORS: [f64; 2];
-    /// Order that the first step is estimated for.
+    /// The order for which the first step is estimated.
     const ORDER: f64;
 
-    /// Stages without content, each of what `room` returns.
+    /// Empty stages, each made by a call of `room`.
     fn with_room(room: &mut dyn FnMut() -> Y) -> Self;
 
-    /// The slope at the start of a step, and a column that is free before its stages.
+    /// The slope at the start of a step, and a column that is unused before the stages are computed.
     fn slope(&mut self) -> (&mut Y, &mut Y);
 
     /// Computes the stages of a step of length `h` and writes its end. Returns evaluations of `f`.
@@ -102,10 +101,10 @@ pub trait Pair<Y: State> {
     /// Completes an accepted step with the slope at its end. Returns evaluations of `f`.
     fn finish(&mut self, f: &mut impl FnMut(f64, &Y, &mut Y), time: f64, end: &Y) -> u64;
 
-    /// Makes the slope at the end the slope at the start.
+    /// Makes the slope at the end of a step the slope at the start of the next.
     fn shift(&mut self);
 
-    /// Computes what dense output needs beside the stages. Returns evaluations of `f`.
+    /// Computes the data for dense output, beside the stages. Returns evaluations of `f`.
     fn prepare_dense(
         &mut self,
         f: &mut impl FnMut(f64, &Y, &mut Y),
@@ -118,9 +117,9 @@ pub trait Pair<Y: State> {
     fn dense(&self, i: usize, theta: f64, at: Start<'_, Y>, end: &Y) -> f64;
 }
 
-/// A pair for states of any kind.
+/// A pair for any type of state.
 pub trait Embedded {
-    /// Its stages for one of them.
+    /// The stages for one type of state.
     type Stages<Y: State>: Pair<Y>;
 }
 
@@ -140,12 +139,12 @@ impl Embedded for DormandPrince8 {
     type Stages<Y: State> = Dop853Stages<Y>;
 }
 
-/// Where a step starts and how long it is.
+/// The start and length of a step.
 #[derive(Debug)]
 pub struct Start<'a, Y> {
     /// Time.
     pub t: f64,
-    /// Length, negative to go back.
+    /// Length; negative to go backwards.
     pub h: f64,
     /// State.
     pub y: &'a Y,
@@ -159,12 +158,12 @@ impl<Y> Clone for Start<'_, Y> {
 
 impl<Y> Copy for Start<'_, Y> {}
 
-/// A solution of `y' = f(t, y)` as it goes on.
+/// A solution of `y' = f(t, y)` in progress.
 #[derive(Clone, Debug)]
 pub struct Solver<P, Y, F> {
     f: F,
     tolerance: Tolerance,
-    /// Steps that may be tried in all; a billion at first.
+    /// The most steps that may be tried in all; initially a billion.
     pub most_steps: u64,
     /// Time at the start and the end of the last step.
     from: f64,
@@ -183,14 +182,14 @@ pub struct Solver<P, Y, F> {
     evaluations: u64,
 }
 
-/// What the columns hold.
+/// The contents of the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// The state in `end`, no slope.
+    /// `end` has the state; there is no slope.
     Fresh,
-    /// A step from `start` to `end`.
+    /// The columns have a step from `start` to `end`.
     Stepped,
-    /// And what dense output needs.
+    /// They also have the data for dense output.
     Dense,
 }
 
@@ -203,7 +202,7 @@ impl<P: Pair<Y>, Y: State + Clone, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
 }
 
 impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
-    /// The same with columns of `y`'s length from elsewhere; what is in them does not matter.
+    /// The same, with columns of `y`'s length made by `room`; their contents do not matter.
     pub fn with_room(
         f: F,
         t: f64,
@@ -231,12 +230,12 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
         }
     }
 
-    /// Sets the length of the next step, which is chosen otherwise.
+    /// Sets the length of the next step, which the step control would choose otherwise.
     pub fn try_step(&mut self, length: f64) {
         self.next = length;
     }
 
-    /// Goes on to `end`, exactly.
+    /// Advances to `end`, exactly.
     pub fn advance(&mut self, end: f64) -> Result<(), SolveError> {
         while self.time != end {
             self.step(end)?;
@@ -244,13 +243,13 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
         Ok(())
     }
 
-    /// Goes on by one step, at most to `end`.
+    /// Advances by one step, at most to `end`.
     pub fn step(&mut self, end: f64) -> Result<(), SolveError> {
         self.begin(end);
         let planned = self.next;
         loop {
             let rest = end - self.time;
-            // A step that would leave a sliver goes to the end.
+            // If the rest after a step would be tiny, the step goes to the end.
             let last = 1.01 * self.next.abs() >= rest.abs();
             let h = if last { rest } else { self.next };
             self.check_step(h)?;
@@ -264,7 +263,7 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
             if error <= 1.0 {
                 self.accept(h, error, if last { end } else { self.time + h });
                 if last && !self.rejected_last {
-                    // The end has cut the step short; the next one need not be.
+                    // The end has shortened this step, but the next one need not be short.
                     self.next = longer(self.next, planned);
                 }
                 self.rejected_last = false;
@@ -292,7 +291,7 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
         &self.start
     }
 
-    /// State at that time.
+    /// State at the time reached.
     pub fn state(&self) -> &Y {
         &self.end
     }
@@ -302,7 +301,7 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
         self.steps
     }
 
-    /// Steps tried in vain.
+    /// Steps that were rejected.
     pub fn rejected(&self) -> u64 {
         self.rejected
     }
@@ -379,13 +378,13 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
         } else {
             return Ok(());
         };
-        // As it was before this step, but without what the last one left for dense output.
+        // Back to the state before this step, but without the last step's data for dense output.
         swap(&mut self.start, &mut self.end);
         self.stage = Stage::Fresh;
         Err(failure)
     }
 
-    /// A first step by the size of the first two derivatives, at most `rest` (sec. II.4, p. 169).
+    /// A first step from the size of the first two derivatives, at most `rest` (sec. II.4, p. 169).
     fn first_step(&mut self, rest: f64) -> f64 {
         let (n, y) = (self.start.as_ref().len(), self.start.as_ref());
         let weight = |i: usize| self.tolerance.absolute + self.tolerance.relative * y[i].abs();
@@ -421,15 +420,14 @@ impl<P: Pair<Y>, Y: State, F: FnMut(f64, &Y, &mut Y)> Solver<P, Y, F> {
     }
 }
 
-/// Leaves room for the error to be larger than it was estimated.
+/// A safety factor, because the error may be larger than estimated.
 const SAFETY: f64 = 0.9;
 
-/// Of 1e-4: errors below it are remembered as that.
+/// The logarithm of 1e-4; smaller errors count as that in the control of the next step.
 const LOG2_LEAST_ERROR: f64 = -13.287712379549449;
 
-/// The logarithm to about six digits, which are plenty for the length of a step, at a quarter of
-/// the cost of an exact one: that of the mantissa in `[√½, √2)` by `2 artanh((m - 1)/(m + 1))`.
-/// Very low for 0.
+/// The logarithm to about six digits, which are enough for the length of a step, at a quarter of the cost of an exact
+/// one. It uses `2 artanh((m - 1)/(m + 1))` for the mantissa `m` in `[√½, √2)`. Very low for 0.
 fn rough_log2(x: f64) -> f64 {
     const HALF_ROOT: u64 = 0x3fe6_a09e_667f_3bcd;
     let shifted = x.to_bits().wrapping_sub(HALF_ROOT) as i64 >> 52;
@@ -440,7 +438,7 @@ fn rough_log2(x: f64) -> f64 {
     shifted as f64 + 2.0 * core::f64::consts::LOG2_E * s * series
 }
 
-/// `2^x` to about five digits, for `x` within ±1000 or beyond them by clamping.
+/// `2^x` to about five digits; `x` is clamped to ±1000.
 fn power_of_2(x: f64) -> f64 {
     let x = x.clamp(-1000.0, 1000.0);
     let whole = libm::rint(x);
@@ -455,7 +453,7 @@ fn longer(a: f64, b: f64) -> f64 {
     if a.abs() > b.abs() { a } else { b }
 }
 
-/// A factor between two steps, within bounds; the least one for NaN.
+/// The factor from one step to the next, clamped to its bounds; the least one for NaN.
 fn factor<P: Pair<Y>, Y: State>(change: f64) -> f64 {
     let [least, greatest] = P::FACTORS;
     change.max(least).min(greatest)
