@@ -1,7 +1,7 @@
 //! A solver with error control within one `dt`.
 //!
-//! Each `dt` is a problem of its own, and begins with the attempt to take it in one step. Only the
-//! motion passes from one `dt` to the next, so that a body may be moved in between.
+//! Each `dt` is a separate problem, and begins with an attempt to cover it in one step. Only the motion passes from one
+//! `dt` to the next, so that bodies may be moved in between.
 
 use bytemuck::{cast_slice, cast_slice_mut};
 use core::slice;
@@ -10,16 +10,16 @@ use glam::DVec3;
 use super::{Failure, Step, System};
 use crate::ode::{Embedded, Solver, State, Tolerance};
 
-/// Steps tried within one `dt` before it is given up.
+/// The most steps tried within one `dt`.
 pub(crate) const MOST_STEPS: u32 = 100_000;
 
-/// Columns of the scratch: state, both ends of a step, one more, and up to 16 stages.
+/// Columns of the scratch: the state, both ends of a step, one more, and up to 16 stages.
 const COLUMNS: usize = 20;
 
-/// One step of `dt`: a body alone in an array, several in columns of the scratch.
+/// One step of `dt`. A single body is stepped in an array, several bodies in columns of the scratch.
 pub(super) fn step<E: Embedded>(system: &dyn System, s: Step<'_>) -> Result<(), Failure> {
     let n = s.position.len();
-    // Counted from the start of the step, time has all its digits.
+    // Relative to the start of the step, so that times keep all their digits.
     let span = [s.dt, s.tolerance];
     let failure = |body| Failure::TooManySteps {
         body,
@@ -78,14 +78,14 @@ pub(super) fn step<E: Embedded>(system: &dyn System, s: Step<'_>) -> Result<(), 
     drop(columns);
     s.scratch.tried += tried * n as u64;
     done.map_err(|()| {
-        // The body that moved farthest is the one that asks for the shortest steps.
+        // The body that moved farthest is the one that needs the shortest steps.
         let moved = |i: usize| (s.new_position[i] - s.position[i]).length_squared();
         failure((0..n).fold(0, |most, i| if moved(i) > moved(most) { i } else { most }))
     })
 }
 
-/// Solves from `y` to the end of the step, or to where it is stopped, and leaves the state there. Returns how many
-/// steps were tried.
+/// Solves from `y` to the end of the step, or to the time at which it is stopped, and leaves the state in `y`. Returns
+/// the number of steps tried.
 fn solve<E: Embedded, Y: State>(
     f: impl FnMut(f64, &Y, &mut Y),
     y: &mut Y,

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-/// Steps each body as any method does that is exact for its own order, `x + dt v + fall dt² a`
-/// and `v + dt a`, and tells whether every component is within ±`largest`.
+/// Steps each body by `x + dt v + fall dt² a` and `v + dt a`, as any method does that is exact for its own order.
+/// Returns whether every component is within ±`largest`.
 ///
-/// One pass over the columns: 72 bytes read and 48 written a body. With `fall` 0, 1/2, 1 the
-/// rounding is that of forward Euler's, of the midpoint's, of symplectic Euler's own formula.
+/// One pass over the columns: it reads 72 bytes and writes 48 for each body. With `fall` 0, 1/2 and 1 it rounds as the
+/// formulas of forward Euler, of the midpoint rule and of symplectic Euler.
 #[inline(always)]
 pub(crate) fn step(
     (x, v): (&[DVec3], &[DVec3]),
@@ -16,7 +16,7 @@ pub(crate) fn step(
     largest: f64,
 ) -> bool {
     let part = fall * dt;
-    // Finite numbers come to ±∞ here but never to NaN, which the comparisons would not see.
+    // Finite numbers may become ±∞ here but never NaN, which the comparisons would miss.
     let (mut farthest, mut fastest) = ([0.0; 3], [0.0; 3]);
     let end = x1.iter_mut().zip(v1);
     for ((x1, v1), ((x, v), a)) in end.zip(x.iter().zip(v).zip(a)) {

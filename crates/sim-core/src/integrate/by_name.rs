@@ -1,4 +1,4 @@
-//! Methods of the table, written and read by their names.
+//! Methods of the table, serialized by their names.
 
 use alloc::{format, string::String};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de, ser};

@@ -7,27 +7,27 @@
 //! for the velocities `w`. Backward Euler has `d = h = dt`; the implicit midpoint rule has half of
 //! that; a kick by a force that depends on the velocity has `d = 0`.
 //!
-//! Newton's method solves it: `(1 - h ∂a/∂v - h d ∂a/∂x) δ = w - v - h a`, then `w - δ`, until `δ`
-//! is below [`TOLERANCE`]. A body that no force couples to others has a 3×3 matrix of its own. Coupled bodies
-//! use a Krylov method, which needs only products with the matrix.
+//! Newton's method solves it: `(1 - h ∂a/∂v - h d ∂a/∂x) δ = w - v - h a`, then `w - δ`, until `δ` is below
+//! [`TOLERANCE`]. An uncoupled body has a 3×3 matrix of its own. Coupled bodies use a Krylov method, which needs only
+//! products with the matrix.
 
 use glam::{DMat3, DVec3};
 
 use super::{Failure, Jacobians, System, krylov, scratch::Newton};
 
-/// Size of the last correction, relative to the greatest of the velocities and of `x/h`. Newton's
-/// method squares its error, so what is left is rounding.
+/// The size of the last correction, relative to the greatest of the velocities and of `x/h`. Newton's method squares
+/// its error, so the remaining error is rounding.
 const TOLERANCE: f64 = 1e-12;
 
-/// Size from which on corrections may stop to shrink.
+/// Below this size, corrections that no longer shrink end the iteration.
 const LOOSE_TOLERANCE: f64 = 1e-8;
 
-/// Corrections after which a solution is given up. From a good start it takes two or three.
+/// The most corrections. From a good start two or three are enough.
 const ITERATIONS: u32 = 40;
 
-/// What is known of the equation.
+/// The parameters of the equation.
 pub(super) struct Equation<'a> {
-    /// Time at which accelerations are taken.
+    /// The time at which accelerations are evaluated, s.
     pub(super) time: f64,
     /// `x`
     pub(super) position: &'a [DVec3],
@@ -39,15 +39,15 @@ pub(super) struct Equation<'a> {
     pub(super) drift: f64,
 }
 
-/// How often a correction that makes matters worse is halved.
+/// The most times that a correction is halved because it increases the residual.
 const HALVINGS: u32 = 10;
 
-/// The size of a correction, which says nothing if its own equations were not solved.
+/// The size of a correction. It is at least 1 if the linear system was not solved, because the size then means nothing.
 pub(super) fn trusted(size: f64, solved: bool) -> f64 {
     if solved { size } else { size.max(1.0) }
 }
 
-/// How far the corrections of one body, or of coupled ones, have come.
+/// The convergence of one body, or of coupled bodies together.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Progress {
     last: f64,
@@ -60,20 +60,20 @@ impl Progress {
         is_done: false,
     };
 
-    /// Takes note of the size of a correction.
+    /// Records the size of a correction.
     pub(super) fn note(&mut self, size: f64) {
-        // The next correction would be smaller than this one by at least as much again.
+        // The next correction would be smaller than this one by at least the same factor.
         let next = size * (size / self.last);
         let solved = size <= TOLERANCE || self.last.is_finite() && next <= 0.01 * TOLERANCE;
-        // Corrections that no longer shrink are rounding, where large forces cancel.
+        // Corrections that no longer shrink are rounding, which happens if large forces cancel.
         let stalled = size <= LOOSE_TOLERANCE && size > 0.5 * self.last;
         self.is_done = solved || stalled;
         self.last = size;
     }
 }
 
-/// Corrects until a solution is reached. `correct` returns the body with the largest correction and
-/// its relative size; `progress` is that of each body, or of all together, of which it takes note.
+/// Corrects until the solution is reached. `correct` returns the body with the largest correction and its relative
+/// size. It records sizes in `progress`, which has an entry for each body, or one for all together.
 pub(super) fn iterate(
     progress: &mut [Progress],
     mut correct: impl FnMut(&mut [Progress]) -> (usize, f64),
@@ -118,9 +118,8 @@ impl Equation<'_> {
         solved
     }
 
-    /// One correction of bodies that do not depend on each other, of each until it has its solution,
-    /// whatever the others have. Returns the body with the largest, relative to its own speed, and
-    /// that size.
+    /// One correction of uncoupled bodies; each is corrected until its own solution is reached. Returns the body with
+    /// the largest correction relative to its own speed, and that relative size.
     fn correct_each(
         &self,
         system: &dyn System,
@@ -144,7 +143,7 @@ impl Equation<'_> {
             w[i] -= correction;
             let size = largest(correction) / self.scale(i, w[i]);
             progress.note(size);
-            // A NaN is the worst of all.
+            // NaN counts as the largest.
             if size > worst.1 || size.is_nan() {
                 worst = (i, size);
             }
@@ -152,8 +151,8 @@ impl Equation<'_> {
         worst
     }
 
-    /// One correction of bodies that do, relative to the greatest speed among them. First, half of
-    /// the last correction is taken back as long as it has made the residual larger.
+    /// One correction of coupled bodies, relative to the greatest speed among them. As long as the last correction has
+    /// increased the residual, half of it is taken back first.
     fn correct_together(
         &self,
         system: &dyn System,
@@ -181,7 +180,7 @@ impl Equation<'_> {
         *last_residual = size;
         system.jacobians(self.time, x, w, jacobians);
         for jacobians in jacobians.iter_mut() {
-            // The block on the diagonal, inverted, is what makes the Krylov method quick.
+            // The inverse of the diagonal block, as preconditioner of the Krylov method.
             jacobians.position = self.matrix(jacobians).inverse();
         }
         let condition = |from: &[DVec3], to: &mut [DVec3]| {
@@ -205,7 +204,7 @@ impl Equation<'_> {
             w[i] -= correction[i];
             scale = scale.max(self.scale(i, w[i]));
             let size = largest(correction[i]);
-            // A NaN is the worst of all.
+            // NaN counts as the largest.
             if size > worst.1 || size.is_nan() {
                 worst = (i, size);
             }
@@ -213,7 +212,7 @@ impl Equation<'_> {
         (worst.0, trusted(worst.1 / scale, solved))
     }
 
-    /// `w - v - h a(x + d w, w)`, and the positions at which it is.
+    /// Writes `w - v - h a(x + d w, w)`, and the positions `x + d w`.
     fn residual(&self, system: &dyn System, w: &[DVec3], x: &mut [DVec3], residual: &mut [DVec3]) {
         for ((x, start), w) in x.iter_mut().zip(self.position).zip(w) {
             *x = *start + self.drift * *w;
@@ -234,8 +233,8 @@ impl Equation<'_> {
     }
 }
 
-/// The velocity against which a correction of `w` is small. A position of many digits leaves few
-/// of them to the velocity that moves it.
+/// The speed relative to which a correction of `w` is measured. A large position leaves few correct digits to the
+/// velocity that changes it.
 pub(super) fn scale(x: DVec3, v: DVec3, w: DVec3, h: f64) -> f64 {
     let moving = largest(v).max(largest(w));
     moving.max(largest(x) / h.abs()).max(f64::MIN_POSITIVE)
@@ -245,7 +244,7 @@ pub(super) fn largest(v: DVec3) -> f64 {
     v.abs().max_element()
 }
 
-/// The solution of a small system, given by rows: elimination with row exchanges.
+/// The solution of a small linear system, given by rows: Gaussian elimination with row exchanges.
 pub(super) fn solve<const N: usize>(mut rows: [[f64; N]; N], mut right: [f64; N]) -> [f64; N] {
     for column in 0..N {
         let mut pivot = column;

@@ -12,7 +12,7 @@ pub(super) static METHOD: Method = Method {
     reversible: true,
     adaptive: false,
     fall: Some(0.5),
-    // Backward Euler to the middle, w = v + dt/2 a(x + dt/2 w, w); then as far again.
+    // Backward Euler to the middle, w = v + dt/2 a(x + dt/2 w, w); then the same distance again.
     step: |system, s| {
         let half = 0.5 * s.dt;
         let (_, room) = s.scratch.with_newton::<0>(0);

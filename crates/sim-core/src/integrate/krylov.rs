@@ -1,4 +1,4 @@
-//! Linear systems of coupled bodies by products with their matrix alone.
+//! Linear systems of coupled bodies, solved with products of the matrix only.
 //!
 //! BiCGSTAB (van der Vorst 1992, "Bi-CGSTAB: a fast and smoothly converging variant of Bi-CG",
 //! SIAM J. Sci. Stat. Comput. 13(2), p. 635), preconditioned from the right by the inverted
@@ -7,17 +7,17 @@
 
 use glam::DVec3;
 
-/// Columns of room that [`solve`] needs.
+/// Columns of scratch that [`solve`] needs.
 pub(super) const COLUMNS: usize = 7;
 
-/// The residual to reach, relative to the right-hand side. Newton's method goes on from there.
+/// The residual at which to stop, relative to the right-hand side. Newton's method corrects the rest.
 const TOLERANCE: f64 = 1e-8;
 
 /// Writes into `solution` an approximation of the solution of `apply(solution) = right`, where
 /// `condition` applies the preconditioner.
 ///
-/// It stops at [`TOLERANCE`] and tells `true`; or after as many products as the matrix has rows and
-/// some, or when the recurrence breaks down, with the best that it has.
+/// Returns `true` if it reaches [`TOLERANCE`]. Returns `false`, with the best solution so far, after somewhat more
+/// products than the matrix has rows, or if the recurrence breaks down.
 pub(super) fn solve(
     mut apply: impl FnMut(&[DVec3], &mut [DVec3]),
     condition: impl Fn(&[DVec3], &mut [DVec3]),

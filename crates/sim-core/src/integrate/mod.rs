@@ -52,22 +52,22 @@ pub struct Method {
     pub symplectic: bool,
     /// Whether a step with `-dt` undoes a step with `dt`, up to rounding.
     pub reversible: bool,
-    /// Whether it takes as many steps within `dt` as [`Step::tolerance`] asks for.
+    /// Whether it divides `dt` into as many steps as [`Step::tolerance`] requires.
     pub adaptive: bool,
-    /// The coefficient of a constant acceleration `a`: a step is then
-    /// `x + dt v + fall dt² a`, `v + dt a`, and bodies under no other force are moved by
-    /// this formula, without [`Method::step`]. With `None` that is always called.
+    /// The coefficient of a constant acceleration `a`, if a step is `x + dt v + fall dt² a`, `v + dt a`. Bodies under
+    /// no other force are moved by this formula, without [`Method::step`]. With `None`, [`Method::step`] is always
+    /// called.
     pub fall: Option<f64>,
     /// Writes the motion at the end of a step.
     pub step: fn(&dyn System, Step<'_>) -> Result<(), Failure>,
 }
 
-/// Every method, the course's four first.
+/// All methods, the course's four first.
 ///
-/// All keep their order for forces that depend on velocities. Symplectic Euler takes such a force
-/// at the old velocity; the other splitting methods partly at the new one, for which they solve an
-/// equation. No method is symplectic for such forces; the implicit midpoint rule and the methods made
-/// of drifts and kicks, except symplectic Euler, stay reversible.
+/// All methods keep their order for forces that depend on velocities. Symplectic Euler evaluates such a force at the
+/// old velocity. The other splitting methods evaluate a part of it at the new velocity, for which they solve an
+/// equation. No method is symplectic for such forces; the implicit midpoint rule and the methods made of drifts and
+/// kicks, except symplectic Euler, stay reversible.
 pub static METHODS: [&Method; 11] = [
     &forward_euler::METHOD,
     &backward_euler::METHOD,
@@ -83,7 +83,7 @@ pub static METHODS: [&Method; 11] = [
 ];
 
 impl Method {
-    /// Whether it is the implicit midpoint rule, which has coordinates of its own for rotations.
+    /// Whether this is the implicit midpoint rule, which has its own coordinates for rotations.
     pub(crate) fn is_midpoint(&self) -> bool {
         self.name == implicit_midpoint::METHOD.name
     }
@@ -100,15 +100,14 @@ impl PartialEq for Method {
     }
 }
 
-/// One step of a system: the columns to read and the columns to write. All columns have the
-/// length of the system.
+/// One step of a system: columns to read and columns to write, all of the length of the system.
 #[derive(Debug)]
 pub struct Step<'a> {
     /// Time at the start, s.
     pub time: f64,
-    /// Length of the step, s; not 0. Negative goes back.
+    /// Length of the step, s; not 0. Negative goes backwards.
     pub dt: f64,
-    /// Error that adaptive methods may make, relative and, in m and m/s, absolute.
+    /// Error that adaptive methods may make: relative, and absolute in m and m/s.
     pub tolerance: f64,
     /// Positions at the start, m.
     pub position: &'a [DVec3],
@@ -131,13 +130,13 @@ pub struct Watch<'a>(&'a mut Ask<'a>);
 pub type Ask<'a> = dyn FnMut(f64, &[DVec3], &[DVec3]) -> bool + 'a;
 
 impl<'a> Watch<'a> {
-    /// Calls a function with the time after a step, s from the start of `dt`, and all positions before
-    /// and after it, m.
+    /// Calls a function after each step, with the time, s from the start of `dt`, and all positions before and after
+    /// the step, m.
     pub fn new(ask: &'a mut Ask<'a>) -> Watch<'a> {
         Watch(ask)
     }
 
-    /// Whether to stop after a step, with the motion there as that at the end.
+    /// Whether to stop after a step. The motion there is then that at the end.
     pub fn stops(&mut self, time: f64, before: &[DVec3], after: &[DVec3]) -> bool {
         (self.0)(time, before, after)
     }
@@ -149,10 +148,10 @@ impl core::fmt::Debug for Watch<'_> {
     }
 }
 
-/// Why a method could not do a step.
+/// The reason why a method failed in a step.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// The equations of an implicit method have not been solved.
+    /// The equations of an implicit method were not solved.
     #[error("its equations were not solved in {iterations} iterations")]
     NotConverged {
         /// The body farthest from a solution, as an index of the system.
@@ -160,7 +159,7 @@ pub enum Failure {
         /// Iterations of Newton's method.
         iterations: u32,
     },
-    /// An adaptive method would need more steps than it may take.
+    /// An adaptive method would need more steps than are allowed.
     #[error("the tolerance asks for more than {steps} steps in one")]
     TooManySteps {
         /// The body whose error is largest, as an index of the system.

@@ -7,8 +7,7 @@
 //! M_ij = δ_ij - dt a_ij D_j - dt² Σ_k a_ik a_kj K_k,   K_j = ∂A/∂x, D_j = ∂A/∂v at stage j
 //! ```
 //!
-//! which is solved directly where no force couples bodies, and is the preconditioner of a Krylov
-//! method where one does.
+//! which is inverted directly if no force couples bodies, and is the preconditioner of a Krylov method otherwise.
 //!
 //! Chosen against SDIRK 4 (the same book, eq. IV.6.16; five 3×3 equations a step, of stage order
 //! one): on a spring of 1e6 N/m whose end moves along a sine, at 60 Hz, the error after a second is
@@ -76,8 +75,8 @@ const A: [[f64; STAGES]; STAGES] = [
     [(16.0 - ROOT) / 36.0, (16.0 + ROOT) / 36.0, 1.0 / 9.0],
 ];
 
-/// What is known of the equations. Columns of stages hold all bodies of the first one, then of the
-/// second, then of the third.
+/// The parameters of the equations. Columns of stages have all bodies of the first stage, then of the second, then of
+/// the third.
 struct Stages<'a> {
     time: f64,
     dt: f64,
@@ -92,8 +91,8 @@ fn weighted(stage: usize, w: &[DVec3], n: usize, body: usize) -> DVec3 {
 }
 
 impl Stages<'_> {
-    /// One correction of the velocities. Returns the body with the largest, and its size relative
-    /// to the body's own speed or, of coupled bodies, to the greatest.
+    /// One correction of the velocities. Returns the body with the largest correction, and the size of this correction
+    /// relative to the body's own speed or, for coupled bodies, to the greatest speed.
     fn correct(
         &self,
         system: &dyn System,
@@ -163,7 +162,7 @@ impl Stages<'_> {
             scatter(correction, i, corrections);
             let size = self.subtract_of(i, w, correction);
             progress.note(size);
-            // A NaN is the worst of all.
+            // NaN counts as the largest.
             if size > worst.1 || size.is_nan() {
                 worst = (i, size);
             }
@@ -171,7 +170,7 @@ impl Stages<'_> {
         worst
     }
 
-    /// Corrects coupled bodies. Returns the one with the largest correction, and its size relative to
+    /// Applies a correction to coupled bodies. Returns the body with the largest correction, and its size relative to
     /// the greatest speed.
     fn subtract_together(&self, w: &mut [DVec3], correction: &[DVec3]) -> (usize, f64) {
         let n = self.position.len();
@@ -183,7 +182,7 @@ impl Stages<'_> {
             let scale = scale(self.position[i], self.velocity[i], *w, self.dt);
             greatest = greatest.max(scale);
             let size = largest(*correction);
-            // A NaN is the worst of all.
+            // NaN counts as the largest.
             if size > worst.1 || size.is_nan() {
                 worst = (i, size);
             }
@@ -191,8 +190,8 @@ impl Stages<'_> {
         (worst.0, worst.1 / greatest)
     }
 
-    /// Corrects the stages of one body, and returns the size of the largest correction relative to its
-    /// speed.
+    /// Applies a correction to the stages of one body. Returns the size of the largest correction relative to the
+    /// body's speed.
     fn subtract_of(&self, body: usize, w: &mut [DVec3], correction: &[DVec3]) -> f64 {
         let n = self.position.len();
         let mut worst = 0.0;
@@ -246,7 +245,7 @@ fn scatter(column: &mut [DVec3], body: usize, numbers: [f64; 9]) {
     column[2 * n + body] = DVec3::new(g, h, i);
 }
 
-/// By rows; the columns are those of the unit vectors.
+/// The inverse of a matrix, by rows, column by column from the unit vectors.
 fn invert(matrix: [[f64; 9]; 9]) -> [[f64; 9]; 9] {
     let mut inverse = [[0.0; 9]; 9];
     for column in 0..9 {

@@ -12,8 +12,8 @@ pub(super) static METHOD: Method = Method {
     reversible: false,
     adaptive: false,
     fall: Some(0.5),
-    // Four slopes: at the start, twice in the middle, at the end. The end's columns gather their
-    // weighted sum.
+    // Four slopes: at the start, twice in the middle, at the end. The columns for the end accumulate their weighted
+    // sum.
     step: |system, s| {
         let (x, v, dt) = (s.position, s.velocity, s.dt);
         let [xs, vs, a] = s.scratch.columns(x.len());

@@ -6,19 +6,19 @@ use glam::DVec3;
 use super::{Jacobians, implicit::Progress};
 use crate::rotation::Rotor;
 
-/// Columns for the intermediate results of a method, kept so that only the first step allocates.
-/// What is in them at the start of a step has no meaning, so a copy starts without.
+/// Columns for the intermediate results of a method, kept so that only the first step allocates. Their contents at the
+/// start of a step have no meaning, so a copy starts without them.
 #[derive(Debug, Default)]
 pub struct Scratch {
     stages: Vec<DVec3>,
     pub(super) newton: Newton,
-    /// Where it is seldom needed, as all of this is moved about in each step.
+    /// Boxed, because it is seldom needed and each step moves the scratch.
     pub(crate) gathered: Option<Box<Gathered>>,
-    /// Bodies moved by the steps that adaptive methods have tried within theirs, since this was last taken.
+    /// The sum of bodies over all steps that adaptive methods have tried since this was last reset.
     pub(crate) tried: u64,
 }
 
-/// Room for bodies that are put side by side to be stepped.
+/// Columns for bodies that are copied side by side to be stepped.
 #[derive(Debug, Default)]
 pub(crate) struct Gathered {
     columns: Vec<DVec3>,
@@ -45,12 +45,12 @@ impl Gathered {
     }
 }
 
-/// Room for an implicit equation, apart from the stages around it.
+/// Columns for an implicit equation, separate from those of the stages.
 #[derive(Debug, Default)]
 pub(super) struct Newton {
     columns: Vec<DVec3>,
     pub(super) jacobians: Vec<Jacobians>,
-    /// Matrices of three stages of each body, inverted.
+    /// The inverted matrices of three stages, for each body.
     pub(super) inverses: Vec<[[f64; 9]; 9]>,
     pub(super) progress: Vec<Progress>,
 }
@@ -61,7 +61,7 @@ impl Scratch {
         columns(&mut self.stages, len)
     }
 
-    /// `N` columns of `len` vectors, and the room for an implicit equation beside them.
+    /// `N` columns of `len` vectors, and the columns for an implicit equation.
     pub(super) fn with_newton<const N: usize>(
         &mut self,
         len: usize,
@@ -71,7 +71,7 @@ impl Scratch {
 }
 
 impl Newton {
-    /// The progress of so many bodies, to be put back.
+    /// The progress of `len` bodies, to be put back later.
     pub(super) fn take_progress(&mut self, len: usize) -> Vec<Progress> {
         let mut progress = core::mem::take(&mut self.progress);
         progress.resize(len, Progress::NONE);
@@ -86,7 +86,7 @@ impl Newton {
         (columns(&mut self.columns, len), &mut self.jacobians)
     }
 
-    /// The same with the matrices of three stages.
+    /// The same, with the matrices of three stages.
     #[expect(clippy::type_complexity, reason = "each part is borrowed for itself")]
     pub(super) fn with_inverses<const N: usize>(
         &mut self,

@@ -1,22 +1,21 @@
 //! Symplectic methods made of drifts, `x += h v`, and kicks, `v += h a(t, x)`.
 //!
-//! Each part is the exact flow of one half of the energy, so any sequence of them is symplectic,
-//! and a palindrome is reversible (Hairer, Lubich, Wanner 2006, sec. II.5 and III.3).
+//! Each of the two is the exact flow of one part of the energy, so any sequence of them is symplectic, and a
+//! palindrome is reversible (Hairer, Lubich, Wanner 2006, sec. II.5 and III.3).
 //!
-//! Forces that depend on the velocity have no such half. A sequence of drifts `a_i` and kicks
-//! `b_i` is also one of symplectic Euler steps and their adjoints, of lengths
-//! `α_1 = a_1, α_2 = b_1 - α_1, α_3 = a_2 - α_2, ...`, and keeps its order with any other pair of a method of order
-//! one and its adjoint (McLachlan 1995, "On the numerical integration of ordinary
-//! differential equations by symmetric composition methods", SIAM J. Sci. Comput. 16, p. 151). So
-//! a kick has two parts, `v += α_2i-1 h a(t, x, v)` with the velocity before and
-//! `v += α_2i h a(t, x, v)` with the velocity after it. Order and reversibility remain;
-//! symplecticity is not defined for such forces.
+//! Forces that depend on the velocity have no such part. A sequence of drifts `a_i` and kicks `b_i` is also a
+//! sequence of symplectic Euler steps and their adjoints, of lengths `α_1 = a_1, α_2 = b_1 - α_1, α_3 = a_2 - α_2,
+//! ...`. It keeps its order with any other pair of a first-order method and its adjoint (McLachlan 1995, "On the
+//! numerical integration of ordinary differential equations by symmetric composition methods", SIAM J. Sci. Comput.
+//! 16, p. 151). So a kick has two parts: `v += α_2i-1 h a(t, x, v)` with the velocity before it, and `v += α_2i h
+//! a(t, x, v)` with the velocity after it. Order and reversibility remain; symplecticity is not defined for such
+//! forces.
 
 use glam::DVec3;
 
 use super::{Failure, Scratch, Step, System, implicit::Equation};
 
-/// A kick at a time (s), by parts (s) that take the velocity before it and after it.
+/// A kick at a time (s), in two parts (s): one uses the velocity before it, the other the velocity after it.
 pub(super) struct Kick {
     pub(super) time: f64,
     pub(super) explicit: f64,
@@ -59,7 +58,7 @@ impl Kick {
     }
 }
 
-/// A step of drifts and kicks in turn, a drift first and last, as fractions of `dt`.
+/// A step of alternating drifts and kicks, a drift first and last; lengths are fractions of `dt`.
 pub(super) fn step<const KICKS: usize>(
     system: &dyn System,
     s: Step<'_>,
@@ -68,7 +67,7 @@ pub(super) fn step<const KICKS: usize>(
 ) -> Result<(), Failure> {
     s.new_position.copy_from_slice(s.position);
     s.new_velocity.copy_from_slice(s.velocity);
-    // Of the drift before, and so of the kick, this much is left to the first of both parts.
+    // The part of the kick that uses the velocity before it: the rest of the drift before the kick.
     let mut explicit = drifts[0];
     let mut now = 0.0;
     for (i, &length) in kicks.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! The longest stable step of a method.
 //!
-//! A motion near equilibrium is a sum of oscillators `x'' = -k x - c x'`, and on each of them every
-//! fixed-step method is a 2×2 matrix, found from its steps from (1, 0) and (0, 1). The method is stable
-//! as long as no eigenvalue is outside the unit circle (Hairer, Wanner 1996, sec. IV.2).
+//! A motion near equilibrium is a sum of oscillators `x'' = -k x - c x'`. On each of them a step of a fixed-step
+//! method is a 2×2 matrix, found from its steps from (1, 0) and (0, 1). The method is stable as long as no eigenvalue
+//! is outside the unit circle (Hairer, Wanner 1996, sec. IV.2).
 
 use alloc::{vec, vec::Vec};
 use core::slice;
@@ -11,9 +11,9 @@ use glam::DVec3;
 use super::{Jacobians, Method, Scratch, Step, System};
 
 impl Method {
-    /// The largest `dt`, s, up to which the method is stable on `x'' = -k x - c x'`, with `k` in
-    /// 1/s² and `c` in 1/s: 0 if it is at no `dt`, as where these are not finite, infinite if it is at all. Windows of instability
-    /// below it that are narrower than 0.2 % may be passed over.
+    /// The largest `dt`, s, up to which the method is stable on `x'' = -k x - c x'`, with `k` in 1/s² and `c` in 1/s.
+    /// It is 0 if the method is stable at no `dt`, or if `k` or `c` is not finite; infinite if the method is stable
+    /// at every `dt`. Windows of instability below it that are narrower than 0.2 % may be missed.
     ///
     /// ```
     /// let rk4 = sim_core::Method::named("rk4").unwrap();
@@ -23,7 +23,7 @@ impl Method {
         let rate = libm::sqrt(k.max(0.0)).max(c.abs());
         let unstable = |dt: f64| self.growth(k, c, dt) > 1.0 + 1e-11;
         if self.adaptive || rate == 0.0 || k < 0.0 || c < 0.0 {
-            // It follows the motion, or the motion itself grows.
+            // Either the method follows the motion at any step, or the motion itself grows.
             return f64::INFINITY;
         }
         if !(k.is_finite() && c.is_finite()) {
@@ -51,8 +51,7 @@ impl Method {
         stable
     }
 
-    /// The greatest eigenvalue of a step on that oscillator, in absolute value. An oscillator that
-    /// cannot be stepped grows.
+    /// The greatest absolute value of an eigenvalue of a step on that oscillator; infinite if the step fails.
     pub(super) fn growth(&self, k: f64, c: f64, dt: f64) -> f64 {
         let mut scratch = Scratch::default();
         let mut column = |x: f64, v: f64| {
@@ -71,8 +70,8 @@ impl Method {
             let done = (self.step)(&Oscillator { k, c }, step);
             done.map_or((f64::INFINITY, f64::INFINITY), |()| (x1.x, v1.x))
         };
-        // The lengths of the two axes differ by the rate of the oscillator; to scale them loses
-        // no digits in the trace and the determinant.
+        // The two axes have different units, which differ by the rate of the oscillator. Scaling them loses no digits
+        // in the trace and the determinant.
         let ((xx, vx), (xv, vv)) = (column(1.0, 0.0), column(0.0, 1.0));
         let (half_trace, determinant) = (0.5 * (xx + vv), xx * vv - xv * vx);
         let discriminant = half_trace * half_trace - determinant;
@@ -115,8 +114,8 @@ impl System for Oscillator {
     }
 }
 
-/// The largest stable `dt` of a method on a system near a motion: that of its stiffest and of its
-/// most damped oscillator, by power iteration. `None` if nothing pulls back.
+/// The largest stable `dt` of a method on a system near a motion: that of its stiffest and most damped oscillators, by
+/// power iteration. `None` if no force is restoring.
 pub(crate) fn largest_stable_step(
     method: &Method,
     system: &dyn System,
@@ -142,9 +141,9 @@ pub(crate) fn largest_stable_step(
         .reduce(f64::min)
 }
 
-/// The greatest eigenvalue of `-apply` in absolute value, with its vector.
+/// The eigenvalue of `-apply` of the greatest absolute value, with its vector.
 fn dominant(n: usize, apply: impl Fn(&[DVec3], &mut [DVec3])) -> (f64, Vec<DVec3>) {
-    // Without symmetry, so that it has a part along every eigenvector.
+    // Not symmetric, so that it has a component along every eigenvector.
     let mut shape: Vec<DVec3> = (0..n)
         .map(|i| {
             let i = 3.0 * i as f64;
@@ -184,7 +183,7 @@ fn quotient(d: &[DVec3], apply: impl Fn(&[DVec3], &mut [DVec3])) -> f64 {
 mod tests {
     use crate::METHODS;
 
-    /// None loops for ever.
+    /// The search ends for all of them.
     #[test]
     fn no_step_is_stable_where_the_rate_is_no_number() {
         for method in METHODS {

@@ -1,4 +1,4 @@
-//! A method that steps a system without a world.
+//! Steps a system by a method, without a world.
 
 use alloc::{vec, vec::Vec};
 use core::mem::swap;
@@ -33,7 +33,7 @@ use super::{Failure, Method, Scratch, Step, System};
 #[derive(Clone, Debug)]
 pub struct Stepper {
     method: &'static Method,
-    /// Error that adaptive methods may make in a step, relative and absolute; 1e-9 at first.
+    /// Error that adaptive methods may make in a step, relative and absolute; initially 1e-9.
     pub tolerance: f64,
     time: f64,
     position: Vec<DVec3>,
@@ -44,7 +44,7 @@ pub struct Stepper {
 }
 
 impl Stepper {
-    /// A motion at time 0: positions in m, and as many velocities in m/s.
+    /// A motion at time 0: positions in m, and the same number of velocities in m/s.
     pub fn new(method: &'static Method, position: &[DVec3], velocity: &[DVec3]) -> Stepper {
         assert_eq!(
             position.len(),
@@ -63,7 +63,7 @@ impl Stepper {
         }
     }
 
-    /// Steps by `dt` seconds, not 0; negative goes back. On a failure nothing changes.
+    /// Steps by `dt` seconds, not 0; negative goes backwards. On a failure nothing changes.
     pub fn step<S: System>(&mut self, system: &S, dt: f64) -> Result<(), Failure> {
         let step = Step {
             time: self.time,

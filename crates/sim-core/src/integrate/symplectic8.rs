@@ -39,7 +39,7 @@ pub(super) const KICKS: [f64; 17] = {
     kicks
 };
 
-/// Half of the step before a kick and half of the step after it, in one.
+/// Each drift joins the second half of one step and the first half of the next.
 pub(super) const DRIFTS: [f64; 18] = {
     let mut drifts = [0.5 * GAMMA[0]; 18];
     let mut i = 1;

@@ -12,8 +12,8 @@ pub(super) static METHOD: Method = Method {
     reversible: false,
     adaptive: false,
     fall: Some(1.0),
-    // Kick, then drift: the position advances by the new velocity. A force that depends on the
-    // velocity is taken at the old one, which keeps the method explicit.
+    // Kick, then drift: the position advances by the new velocity. A force that depends on the velocity is evaluated at
+    // the old one, which keeps the method explicit.
     step: |system, s| {
         let kicks = system.kicks().unwrap_or(system);
         kicks.accelerations(s.time, s.position, s.velocity, s.new_velocity);

@@ -1,9 +1,9 @@
-//! The system that a method integrates: accelerations, and their derivatives by the motion.
+//! The system that a method integrates: accelerations, and their derivatives with respect to the motion.
 
 use alloc::vec;
 use glam::{DMat3, DVec3};
 
-/// How a vector of one body changes with a position and a velocity: two 3×3 matrices.
+/// The derivatives of a vector of one body with respect to position and velocity: two 3×3 matrices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jacobians {
     /// Derivative with respect to position.
@@ -13,7 +13,7 @@ pub struct Jacobians {
 }
 
 impl Jacobians {
-    /// Of what depends on neither.
+    /// For a vector that depends on neither.
     pub const ZERO: Jacobians = Jacobians {
         position: DMat3::ZERO,
         velocity: DMat3::ZERO,
@@ -22,13 +22,13 @@ impl Jacobians {
 
 /// The equations of motion `x'' = a(t, x, v)` of some bodies, in columns of equal length.
 ///
-/// [`World`](crate::World) brings its forces in this form; so can anybody, to integrate a problem
-/// of their own with a [`Stepper`](crate::Stepper). Only `len` and `accelerations` must be given.
+/// [`World`](crate::World) provides its forces in this form. You can implement it to integrate a problem of your own
+/// with a [`Stepper`](crate::Stepper). Only `len` and `accelerations` are required.
 pub trait System {
-    /// How many bodies there are.
+    /// The number of bodies.
     fn len(&self) -> usize;
 
-    /// Whether there are none.
+    /// Whether there are no bodies.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -36,34 +36,34 @@ pub trait System {
     /// Writes the acceleration of each body, m/s², at time `t`.
     fn accelerations(&self, t: f64, x: &[DVec3], v: &[DVec3], a: &mut [DVec3]);
 
-    /// Whether the acceleration of a body depends on the motion of another one. `true` is always
-    /// right; with `false` implicit methods solve for each body alone.
+    /// Whether the acceleration of a body depends on the motion of another one. `true` is always correct; with `false`,
+    /// implicit methods solve for each body separately.
     fn is_coupled(&self) -> bool {
         true
     }
 
-    /// Whether accelerations depend on velocities. `true` is always right; with `false` symplectic
-    /// methods are explicit.
+    /// Whether accelerations depend on velocities. `true` is always correct; with `false`, symplectic methods are
+    /// explicit.
     fn depends_on_velocity(&self) -> bool {
         true
     }
 
-    /// What a method made of drifts and kicks lets go on by itself for a time `h`, s, which may be negative:
-    /// `x += h v`. A system whose motion without forces is another one has that here, and tells by
-    /// [`System::kicks`] what is left.
+    /// The drift of a method made of drifts and kicks: the motion without kicks over a time `h`, s, which may be
+    /// negative. The default is `x += h v`. A system with another motion without forces implements it here, and
+    /// returns the other accelerations from [`System::kicks`].
     fn drift(&self, h: f64, x: &mut [DVec3], v: &mut [DVec3]) {
         for (x, v) in x.iter_mut().zip(v) {
             *x += h * *v;
         }
     }
 
-    /// The accelerations that [`System::drift`] leaves out, as a system of as many bodies; `None`: all.
+    /// The accelerations that [`System::drift`] leaves out, as a system of the same number of bodies; `None` for all.
     fn kicks(&self) -> Option<&dyn System> {
         None
     }
 
-    /// Writes `∂a/∂x · dx + ∂a/∂v · dv`, what implicit methods of coupled systems need. Unless it
-    /// is given, a forward difference, right to about half of the digits.
+    /// Writes `∂a/∂x · dx + ∂a/∂v · dv`, which implicit methods need for coupled systems. The default is a forward
+    /// difference, correct to about half of the digits.
     fn apply_jacobian(
         &self,
         t: f64,
@@ -91,14 +91,14 @@ pub trait System {
         }
     }
 
-    /// Writes how each body's acceleration changes with its own motion, what implicit methods of
-    /// uncoupled systems need. Unless it is given, forward differences.
+    /// Writes the derivatives of each body's acceleration with respect to its own motion, which implicit methods need
+    /// for uncoupled systems. The default uses forward differences.
     fn jacobians(&self, t: f64, x: &[DVec3], v: &[DVec3], out: &mut [Jacobians]) {
         let n = self.len();
         let mut base = vec![DVec3::ZERO; n];
         let mut moved = vec![DVec3::ZERO; n];
         self.accelerations(t, x, v, &mut base);
-        // Uncoupled bodies may all be moved at once; coupled ones one after the other.
+        // Uncoupled bodies may be moved together; coupled ones only one after the other.
         let groups = if self.is_coupled() { n } else { 1 };
         for group in 0..groups {
             let bodies = if groups == 1 { 0..n } else { group..group + 1 };
@@ -127,10 +127,10 @@ pub trait System {
     }
 }
 
-/// About the square root of the rounding unit: where rounding and curvature weigh the same.
+/// About the square root of the rounding unit, at which the errors of rounding and of curvature are equal.
 const DIFFERENCE: f64 = 1.5e-8;
 
-/// How far to move a vector for a forward difference.
+/// The length by which a vector is moved for a forward difference.
 fn difference(at: DVec3) -> f64 {
     DIFFERENCE * (1.0 + at.abs().max_element())
 }

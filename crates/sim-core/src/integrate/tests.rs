@@ -1,4 +1,4 @@
-//! Measures what the table says of each method.
+//! Measures the properties that the table states for each method.
 
 use alloc::{vec, vec::Vec};
 use core::f64::consts::PI;
@@ -6,7 +6,7 @@ use glam::{DMat2, DVec2, DVec3};
 
 use super::*;
 
-/// A system of one body from its acceleration. Jacobians are left to finite differences.
+/// A system of one body with a given acceleration. Jacobians come from finite differences.
 struct One<F> {
     acceleration: F,
     is_coupled: bool,
@@ -106,7 +106,7 @@ fn a_constant_acceleration_does_what_the_method_says_of_it() {
     }
 }
 
-/// The step of a method on `x'' = -k x - c x'`, from its definition for `y' = A y`.
+/// The matrix of a method's step on `x'' = -k x - c x'`, from the definition of the method for `y' = A y`.
 fn step_matrix(method: &Method, k: f64, c: f64, h: f64) -> DMat2 {
     let one = DMat2::IDENTITY;
     let a = h * DMat2::from_cols(DVec2::new(0.0, -k), DVec2::new(1.0, -c));
@@ -178,7 +178,7 @@ fn each_fixed_step_method_meets_the_powers_of_its_step_matrix() {
     }
 }
 
-/// `log2` of how much smaller the error at time `t` gets with half of `dt`.
+/// `log2` of the factor by which the error at time `t` decreases with half of `dt`.
 fn measured_order<S: System>(
     method: &'static Method,
     system: &S,
@@ -198,14 +198,14 @@ fn fixed_step_methods_have_the_order_they_claim() {
     let (cos, sin) = (libm::cos(2.0), libm::sin(2.0));
     let oscillator = conservative(|x| -x);
     let drag = general(|_, _, v: DVec3| -v.length() * v);
-    // x = (1 + t) exp(-t): the time enters, and so do position and velocity.
+    // x = (1 + t) exp(-t): the acceleration depends on time, position and velocity.
     let driven = general(|t, x: DVec3, v: DVec3| {
         let e = libm::exp(-t);
         let along = (1.0 + t) * e;
         -2.0 * v - x * x.x / along * DVec3::X
     });
     for method in fixed() {
-        // So many steps that the leading term leads, and so few that rounding does not.
+        // Enough steps that the leading term dominates, and few enough that rounding does not.
         let steps = match method.order {
             8 => 4,
             5 => 16,
@@ -288,12 +288,12 @@ fn symplectic_methods_do_not_drift_in_energy_and_others_do() {
         );
         let mut stepper = Stepper::new(method, &[x], &[v]);
         let start = energy(&stepper);
-        // The largest error of each of 100 orbits: a drift is a slope of these.
+        // The largest error of each of 100 orbits: a drift would show as a trend.
         let mut worst = vec![];
         for _ in 0..100 {
             let mut largest: f64 = 0.0;
             for _ in 0..1000 {
-                // A method that loses energy ends in the centre, where it finds no next step.
+                // A method that loses energy falls into the centre, where it finds no next step.
                 let error = match stepper.step(&kepler(), 2.0 * PI / 1000.0) {
                     Ok(()) => (energy(&stepper) - start).abs(),
                     Err(_) => f64::INFINITY,
@@ -338,7 +338,7 @@ fn coupled_and_single_solves_agree() {
 
 #[test]
 fn an_equation_without_solution_is_an_error() {
-    // w = 0 + dt (1 + w²) has none for dt > 1/2.
+    // w = 0 + dt (1 + w²) has no solution for dt > 1/2.
     let runaway = general(|_, _, v: DVec3| (1.0 + v.x * v.x) * DVec3::X);
     for method in [
         &backward_euler::METHOD,
@@ -393,7 +393,7 @@ fn stability_limits_hold_from_both_sides() {
         } else {
             assert!(reached(0.99 * limit) < 1.0, "{}", method.name);
             assert!(method.growth(k, c, 1.0001 * limit) > 1.0, "{}", method.name);
-            // Order eight first leaves stability in narrow resonances, in which it grows slowly.
+            // Order eight first becomes unstable in narrow resonances, in which it grows slowly.
             if method.order < 8 {
                 let beyond = reached(1.01 * limit);
                 assert!(beyond.is_nan() || beyond > 1e6, "{}", method.name);
@@ -411,8 +411,8 @@ fn forward_euler_has_no_stable_step_without_damping() {
     assert!((velocity_verlet::METHOD.stable_dt(4.0, 0.0) - 1.0).abs() < 1e-6);
 }
 
-/// Bodies on a line between two walls, springs of 10 kN/m between neighbours; counts what it is
-/// asked for.
+/// Bodies on a line between two walls, with springs of 10 kN/m between neighbours. It counts the products that a method
+/// requests.
 struct Line {
     len: usize,
     products: core::cell::Cell<u32>,
@@ -477,7 +477,7 @@ fn the_cost_of_a_chain_grows_as_its_length() {
             }
             line.products.get()
         };
-        // Each product costs as much as there are bodies; as many do for any number of them.
+        // The cost of a product is proportional to the number of bodies; the number of products does not depend on it.
         let (short, long) = (products(100), products(1000));
         std::println!("{name}: {short} and {long} products in ten steps");
         assert!(4 * long < 5 * short, "{name}: {short} {long}");

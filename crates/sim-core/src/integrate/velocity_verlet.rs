@@ -12,8 +12,8 @@ pub(super) static METHOD: Method = Method {
     reversible: true,
     adaptive: false,
     fall: Some(0.5),
-    // Half a kick, a drift, half a kick. A force that depends on the velocity is taken at the
-    // start in the first half and at the end, implicitly, in the second.
+    // Half a kick, a drift, half a kick. A force that depends on the velocity is evaluated at the start in the first
+    // half kick and at the end, implicitly, in the second.
     step: |system, s| {
         let half = 0.5 * s.dt;
         s.new_position.copy_from_slice(s.position);
