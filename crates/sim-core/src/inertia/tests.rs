@@ -48,7 +48,7 @@ fn hull(vertices: &[Vec3]) -> Mesh {
     Mesh::new(vertices.to_vec(), faces.iter().flat_map(fan).collect()).unwrap()
 }
 
-/// Points with every sign combination of the coordinates of some points.
+/// Some points with all combinations of signs of their coordinates, each result once.
 fn signs(points: &[[f64; 3]]) -> Vec<Vec3> {
     let mut all: Vec<Vec3> = vec![];
     for p in points {

@@ -10,10 +10,10 @@ use super::chart;
 pub(crate) enum Coordinates {
     /// A rotation vector and its rate ([`chart`]).
     Vector,
-    /// For the implicit midpoint rule. The velocity is `Ω` in the body. The position is `hΩ` at the middle of the
-    /// step, and the rotation is its Cayley map. Then a step without torque conserves angular momentum and energy,
-    /// and is reversible (Austin, Krishnaprasad, Wang 1993, "Almost Poisson integration of rigid body systems", J.
-    /// Comput. Phys. 107, p. 105, eq. 4.4).
+    /// For the implicit midpoint rule. The velocity is `Ω` in the body. The position is `hΩ` with the `Ω` of the
+    /// middle of the step, and the rotation is its Cayley map. Then a step without torque conserves angular momentum
+    /// and energy, and is reversible (Austin, Krishnaprasad, Wang 1993, "Almost Poisson integration of rigid body
+    /// systems", J. Comput. Phys. 107, p. 105, eq. 4.4).
     Midpoint,
 }
 
@@ -51,7 +51,7 @@ impl Rotor {
     pub(crate) fn pose(&self, theta: DVec3, rate: DVec3) -> (DQuat, DVec3) {
         let (turned, spin) = match self.coordinates {
             Coordinates::Vector => (chart::rotation(theta), chart::spin(theta, rate)),
-            // Half of the step's rotation: the tangent of its half angle is |hΩ/2|.
+            // Half of the step's rotation: the tangent of its angle is |hΩ/2|.
             Coordinates::Midpoint => (by_tangents(theta, theta.length()), rate),
         };
         ((self.base * turned).normalize(), spin)
@@ -93,7 +93,7 @@ impl Rotor {
     }
 }
 
-/// The rotation about an axis, by the tangent of its angle in `rotation`'s argument.
+/// The rotation about an axis by the angle with a given tangent.
 fn by_tangents(axis: DVec3, tangent: f64) -> DQuat {
     let length = axis.length();
     match length > 0.0 {
