@@ -13,34 +13,34 @@ use crate::{
 /// The bodies of a world, by index.
 #[derive(Clone, Debug)]
 pub(super) struct Bodies {
-    /// kg, as impulses and forces find it: infinite for a body that is not dynamic.
+    /// Mass for impulses and forces, kg: infinite for a body that is not dynamic.
     pub(super) mass: Vec<f64>,
     pub(super) kind: Column<BodyKind>,
-    /// The masses, kg, that bodies which are not dynamic would have if they were.
+    /// The masses, kg, that bodies which are not dynamic would have as dynamic bodies.
     pub(super) idle_mass: Column<f64>,
     /// Constant resultant, N.
     pub(super) force: Vec<DVec3>,
-    /// What constant forces and weight do to each body, m/s².
+    /// The acceleration of each body by constant forces and weight, m/s².
     pub(super) acceleration: Vec<DVec3>,
-    /// What bodies keep of an approaching speed.
+    /// Coefficients of restitution.
     pub(super) restitution: Column<f64>,
     /// Coefficients of friction.
     pub(super) friction: Column<f64>,
     pub(super) user_data: Column<u64>,
-    /// Who never collides with whom, if anybody.
+    /// The pairs and groups that never collide, if there are any.
     pub(super) filter: Option<Box<Filter>>,
     /// The shape of each body, as an index of `shapes`; `None` is a point that meets nothing.
     shape: Vec<Option<u32>>,
     shapes: Vec<SharedShape>,
-    /// Where a shape is among them.
+    /// The index of each shape in `shapes`.
     known_shapes: BTreeMap<ShapeKey, u32>,
     /// The bodies that have a shape.
     pub(super) solid: Vec<usize>,
-    /// What turns.
+    /// The data of turning bodies.
     pub(super) turners: Turners,
 }
 
-/// A shape, shared by all bodies that have it, and its tree once one is needed.
+/// A shape, shared by all bodies that have it, and its tree, built when it is first needed.
 #[derive(Clone, Debug)]
 struct SharedShape {
     shape: Shape,
@@ -48,8 +48,8 @@ struct SharedShape {
     bvh: OnceBox<Arc<Bvh>>,
 }
 
-/// What makes two shapes the same: of meshes their place in memory, as comparing triangles takes too
-/// long; of others the bits of their numbers.
+/// Equal shapes have equal keys: a mesh has its place in memory, because to compare triangles takes too long; other
+/// shapes have the bits of their numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum ShapeKey {
     Mesh(usize),
@@ -68,7 +68,7 @@ impl ShapeKey {
 }
 
 impl Default for Bodies {
-    /// None.
+    /// No bodies.
     fn default() -> Bodies {
         Bodies {
             mass: Vec::new(),
@@ -94,7 +94,7 @@ impl Bodies {
         self.mass.len()
     }
 
-    /// Adds a body, of which numbers have been checked.
+    /// Adds a body whose numbers have been checked.
     pub(super) fn push(&mut self, body: Body) {
         let index = self.len();
         let shape = body.shape.map(|shape| self.share(shape));
@@ -110,7 +110,7 @@ impl Bodies {
         self.shape.push(shape);
     }
 
-    /// Takes out a body; those after it move up.
+    /// Removes a body; the indices of the bodies after it decrease by one.
     pub(super) fn remove(&mut self, body: usize) {
         self.mass.remove(body);
         self.kind.remove(body);
@@ -132,7 +132,7 @@ impl Bodies {
         }
     }
 
-    /// Takes out a shape that no body has.
+    /// Removes a shape that no body has.
     fn forget_shape(&mut self, gone: u32) {
         self.shapes.remove(gone as usize);
         self.known_shapes.retain(|_, shape| *shape != gone);
@@ -142,7 +142,7 @@ impl Bodies {
         }
     }
 
-    /// Makes a body one of another kind, with the mass that it has.
+    /// Changes the kind of a body, which keeps its mass.
     pub(super) fn set_kind(&mut self, body: usize, kind: BodyKind) {
         let mass = self.own_mass(body);
         self.kind.set(body, kind);
@@ -155,7 +155,7 @@ impl Bodies {
         };
     }
 
-    /// The mass of a body, kg: of one that is not dynamic the one that it would have if it were.
+    /// The mass of a body, kg; for a body that is not dynamic, the mass that it would have as a dynamic one.
     #[inline]
     pub(super) fn own_mass(&self, body: usize) -> f64 {
         match self.is_movable(body) {
@@ -171,7 +171,7 @@ impl Bodies {
         }
     }
 
-    /// The index of a shape among the shapes, which bodies with the same one share.
+    /// The index of a shape; bodies with the same shape share it.
     fn share(&mut self, shape: Shape) -> u32 {
         let next = self.shapes.len() as u32;
         let place = *self
@@ -208,18 +208,18 @@ impl Bodies {
         self.friction.get(body)
     }
 
-    /// The coefficient of friction between two bodies: the geometric mean of theirs, and 0 where one
-    /// is smooth, whatever the other is.
+    /// The coefficient of friction between two bodies: the geometric mean of theirs; 0 if one of them is smooth,
+    /// whatever the other is.
     pub(super) fn pair_friction(&self, i: usize, j: usize) -> f64 {
         let (first, second) = (self.friction(i), self.friction(j));
         if first == 0.0 || second == 0.0 {
             return 0.0;
         }
-        // Of the product, so that two equal coefficients give themselves to the bit.
+        // The root of the product, so that the mean of two equal coefficients is this coefficient to the bit.
         libm::sqrt(first * second)
     }
 
-    /// Whether some body is not smooth.
+    /// Whether some body has friction.
     pub(super) fn is_rough(&self) -> bool {
         !self.friction.is_usual()
     }
@@ -239,12 +239,12 @@ impl Bodies {
         self.shared_shape(body).map(|shared| &shared.shape)
     }
 
-    /// Whether two bodies have one and the same shape.
+    /// Whether two bodies share a shape.
     pub(super) fn share_shape(&self, i: usize, j: usize) -> bool {
         self.shape[i] == self.shape[j]
     }
 
-    /// Every shape once, and the place of each body's among them.
+    /// Every shape once, in the order of their indices.
     #[cfg(feature = "serde")]
     pub(super) fn all_shapes(&self) -> impl Iterator<Item = &Shape> {
         self.shapes.iter().map(|shared| &shared.shape)
@@ -264,21 +264,21 @@ impl Bodies {
         matches!(self.shape(body), Some(Shape::HalfSpace { .. }))
     }
 
-    /// How far a body's shape reaches about its position.
+    /// The extent of a body's shape about its position.
     #[inline]
     pub(super) fn extent(&self, body: usize) -> Extent {
         self.shared_shape(body)
             .map_or_else(Extent::default, |shared| shared.extent)
     }
 
-    /// Tree over a body's mesh, if it has been built.
+    /// The tree over a body's mesh, if it has been built.
     #[inline]
     pub(super) fn bvh(&self, body: usize) -> Option<&Bvh> {
         let shared = self.shared_shape(body)?;
         shared.bvh.get().map(|bvh| &**bvh)
     }
 
-    /// Builds the tree over a body's mesh, unless there is one.
+    /// Builds the tree over a body's mesh, unless it exists.
     #[inline]
     pub(super) fn need_bvh(&self, body: usize) {
         if let Some(SharedShape {
@@ -291,7 +291,7 @@ impl Bodies {
         }
     }
 
-    /// A body's shape for questions about pairs; a mesh has one once its tree is built.
+    /// A body's shape for tests of pairs; `None` for a mesh whose tree has not been built.
     #[inline]
     pub(super) fn form(&self, body: usize) -> Option<Form<'_>> {
         match *self.shape(body)? {
@@ -301,7 +301,7 @@ impl Bodies {
         }
     }
 
-    /// Those of two bodies of which none tumbles.
+    /// The shapes of two bodies for tests of pairs; `None` if one of them tumbles.
     #[inline]
     pub(super) fn forms(&self, i: usize, j: usize) -> Option<(Form<'_>, Form<'_>)> {
         if self.pair_tumbles(i, j) {
@@ -310,7 +310,7 @@ impl Bodies {
         self.form(i).zip(self.form(j))
     }
 
-    /// Whether two bodies meet, through trees, with the second one at `offset` from the first.
+    /// Whether two bodies meet, by their trees, with the second one at `offset` from the first.
     pub(super) fn meet_at(&self, i: usize, j: usize, offset: DVec3) -> bool {
         if let Some((first, second)) = self.mesh(i).zip(self.mesh(j))
             && !first.bounds().meets(&second.bounds(), snap(offset))
@@ -322,7 +322,7 @@ impl Bodies {
         self.meet_built(i, j, offset)
     }
 
-    /// The same with the trees there.
+    /// The same, for trees that have been built.
     pub(super) fn meet_built(&self, i: usize, j: usize, offset: DVec3) -> bool {
         let offset = snap(offset);
         let forms = self.forms(i, j);

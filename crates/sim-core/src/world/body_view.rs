@@ -5,40 +5,40 @@ use glam::DVec3;
 use super::{BodyHandle, Groups, World, WorldError};
 use crate::{Body, BodyKind, Shape, Turn};
 
-/// A body as it is now.
+/// The current properties and motion of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BodyView<'a> {
-    /// Its index: until a body is removed.
+    /// Its index; it may change when a body is removed.
     pub index: usize,
-    /// Its name for good.
+    /// Its permanent name.
     pub handle: BodyHandle,
-    /// What it is to others that it meets.
+    /// Its shape for collisions.
     pub shape: Option<&'a Shape>,
-    /// What moves it.
+    /// What can move it.
     pub kind: BodyKind,
     /// Position, m.
     pub position: DVec3,
     /// Velocity, m/s.
     pub velocity: DVec3,
-    /// Mass, kg; it counts while the body is dynamic.
+    /// Mass, kg; it has an effect only while the body is dynamic.
     pub mass: f64,
     /// Constant resultant force, N.
     pub force: DVec3,
-    /// Part of the approaching speed that it keeps, 0 to 1.
+    /// Coefficient of restitution, 0 to 1.
     pub restitution: f64,
     /// Coefficient of friction, from 0 to infinity.
     pub friction: f64,
-    /// Who it collides with.
+    /// The groups that select the bodies with which it collides.
     pub groups: Groups,
-    /// The number that whoever uses the world has given it.
+    /// A number for the user of the world.
     pub user_data: u64,
-    /// How it is turned and turns, if it does.
+    /// Its rotation and spin, if it can rotate.
     pub turn: Option<Turn>,
 }
 
 impl BodyView<'_> {
-    /// A body like it, to be added here or elsewhere.
+    /// A body with the same properties, to be added to this or another world.
     #[must_use]
     pub fn to_body(&self) -> Body {
         Body {
@@ -58,7 +58,7 @@ impl BodyView<'_> {
 }
 
 impl World {
-    /// All of a body.
+    /// All properties of a body.
     ///
     /// # Panics
     ///
@@ -96,7 +96,7 @@ impl World {
         (0..self.len()).map(|body| self.body(body))
     }
 
-    /// The number that was given to a body ([`Body::user_data`]).
+    /// The user's number of a body ([`Body::user_data`]).
     ///
     /// # Panics
     ///
@@ -107,7 +107,7 @@ impl World {
         self.bodies.user_data.get(body)
     }
 
-    /// Gives a body a number, which the world does not read.
+    /// Sets the user's number of a body. The world does not read it.
     ///
     /// # Errors
     ///

@@ -2,11 +2,11 @@
 
 use alloc::vec::Vec;
 
-/// Values by body; takes no room while all are the usual one.
+/// Values by body; takes no memory while all are the usual one.
 #[derive(Clone, Debug)]
 pub(super) struct Column<T> {
     usual: T,
-    /// Of bodies that have none here it is the usual one.
+    /// Bodies beyond its end have the usual value.
     values: Vec<T>,
 }
 
@@ -39,12 +39,12 @@ impl<T: Copy + PartialEq> Column<T> {
         self.values[body] = value;
     }
 
-    /// Takes out a body; those after it move up.
+    /// Removes a body; the indices of the bodies after it decrease by one.
     pub(super) fn remove(&mut self, body: usize) {
         if body < self.values.len() {
             self.values.remove(body);
         }
-        // As if the body had never been there.
+        // The same state as if the body had never existed.
         if self.values.iter().all(|value| *value == self.usual) {
             self.values.clear();
         }

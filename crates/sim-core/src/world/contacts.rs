@@ -4,8 +4,7 @@ use glam::DVec3;
 
 use super::World;
 
-/// Two bodies that stay in contact: since a step began with them touching, or since they came to rest
-/// on each other.
+/// Two bodies that stay in contact: they touched at the start of a step, or came to rest on each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RestingContact {
@@ -13,14 +12,14 @@ pub struct RestingContact {
     pub bodies: (usize, usize),
     /// Unit normal, from the first body to the second.
     pub normal: DVec3,
-    /// A point of the surface of the first body that touches, where the step ends, m.
+    /// The contact point on the surface of the first body, at the end of the step, m.
     pub point: DVec3,
-    /// How far apart the surfaces were where it was last looked at, m. Bodies in contact are kept apart by
-    /// some 1e-12 of their coordinates; wider gaps are those of contacts to come in a heap.
+    /// The gap when it was last measured, m. Bodies in contact keep a gap of some 1e-12 of their coordinates; wider
+    /// gaps belong to future contacts in a heap.
     pub gap: f64,
-    /// Force on the second body in the last solution, N: along the normal, and friction across it.
+    /// Force on the second body in the last solution, N: the normal force, and friction perpendicular to it.
     pub force: DVec3,
-    /// Whether the bodies overlap; then they are kept from going deeper.
+    /// Whether the bodies overlap; then the contact keeps them from getting deeper.
     pub is_overlap: bool,
 }
 
@@ -34,12 +33,12 @@ pub struct RestingContact {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Bundled {
-    /// Bodies concerned.
+    /// The number of bodies in heaps.
     pub bodies: usize,
-    /// Kinetic energy that contacts have taken from them, J. It is more than the cost of bundling, because it includes
-    /// the energy that impacts without restitution take in any case.
+    /// Kinetic energy that contacts have taken from them, J. It is more than the cost of bundling, because it
+    /// includes the energy that impacts without restitution take in any case.
     pub energy: f64,
-    /// The farthest that a contact was closed ahead of its time, or that a body was kept from flying, m.
+    /// The greatest distance by which a contact was closed too early, or a body was kept from flying, m.
     pub distance: f64,
 }
 

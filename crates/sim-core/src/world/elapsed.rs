@@ -6,7 +6,7 @@ use super::Settings;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Elapsed {
     pub(super) steps: u64,
-    /// Time and step at which `dt` was last set: time since is steps times `dt`, without drift.
+    /// Time and step at which `dt` was last set. The time since then is the number of steps times `dt`, without drift.
     pub(super) since: (f64, u64),
 }
 
@@ -17,7 +17,7 @@ impl Elapsed {
         time + (self.steps - step) as f64 * settings.dt
     }
 
-    /// Goes on with another `dt` than that of the settings so far.
+    /// Continues with another `dt` than that of the settings so far.
     pub(super) fn change_dt(&mut self, before: &Settings) {
         self.since = (self.time(before), self.steps);
     }

@@ -45,30 +45,30 @@ pub(super) struct Events {
     pub(super) impacts: Vec<Push>,
     /// Contacts after the step.
     now: Vec<Push>,
-    /// Of each pair that was in contact before it the one that counts, and room for those after it.
+    /// For each pair in contact before the step, the contact that counts; and memory for those after it.
     before: Vec<Push>,
     next: Vec<Push>,
     events: Vec<ContactEvent>,
 }
 
-/// An impact, a contact, or all contacts of two bodies.
+/// An impact, a contact, or all contacts of two bodies together.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Push {
     bodies: (usize, usize),
     /// Its place in the order of events.
     order: usize,
-    /// When, s.
+    /// The time, s.
     time: f64,
     normal: DVec3,
     point: DVec3,
-    /// On the second body, N s.
+    /// The impulse on the second body, N s.
     impulse: DVec3,
-    /// Force that lasts, N.
+    /// The force of a lasting contact, N.
     force: DVec3,
 }
 
 impl Events {
-    /// Forgets the notes of a step that has failed.
+    /// Removes the impacts of a failed step.
     pub(super) fn begin(&mut self) {
         self.impacts.clear();
     }
@@ -87,7 +87,7 @@ impl Events {
         });
     }
 
-    /// Lists the events of a step that lasts from a time (s) for `dt`: of each pair in order.
+    /// Lists the events of a step that begins at a time (s) and lasts `dt`, pair by pair in order.
     fn list(&mut self, start: f64, dt: f64) {
         self.events.clear();
         let key = |push: &Push| (push.bodies, push.order);
@@ -105,12 +105,12 @@ impl Events {
                 [&mut impacts, &mut now, &mut before].map(|list| take(list, bodies));
             let was = was.first();
             let mut impulse: DVec3 = impacts.iter().map(|impact| impact.impulse).sum();
-            // What has begun in the step has lasted since its last impact.
+            // A contact that began in the step has lasted since the last impact of the pair.
             let since = impacts.last().filter(|_| was.is_none());
             let lasted = since.map_or(dt, |impact| (start + dt - impact.time).clamp(0.0, dt));
             for contact in contacts {
                 impulse += lasted * contact.force;
-                // The impact that has brought it to rest has told it already.
+                // The impact that brought it to rest already includes this impulse.
                 if impacts.is_empty() {
                     impulse += contact.impulse;
                 }
@@ -166,7 +166,7 @@ impl Events {
     }
 }
 
-/// Takes those of two bodies from the front of a list.
+/// Takes the entries of two bodies from the front of a list.
 fn take<'a>(list: &mut &'a [Push], bodies: (usize, usize)) -> &'a [Push] {
     let count = list.iter().take_while(|push| push.bodies == bodies).count();
     let (taken, rest) = list.split_at(count);
@@ -219,7 +219,7 @@ impl World {
             .map_or(&[], |events| &events.events)
     }
 
-    /// Lists the events of a step that has been done.
+    /// Lists the events of a completed step.
     #[cold]
     pub(super) fn list_events(&mut self) {
         if let Some(mut events) = self.record.events.take() {

@@ -9,34 +9,34 @@ use crate::{
     impulse,
 };
 
-/// An exchange of an impulse between two bodies.
+/// An impulse exchanged between two bodies.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Impact {
     /// The step in which it happened, from 1.
     pub step: u64,
-    /// When it happened, s; in the discrete modes, that of the first contact on the straight way from
+    /// The time of the impact, s. In the discrete modes it is the time of the first contact on the straight path from
     /// the start of the step to its end.
     pub time: f64,
     /// The bodies.
     pub bodies: (usize, usize),
     /// Point of contact in the world, m.
     pub point: DVec3,
-    /// Where the bodies were then, m; in the discrete modes too, though they go back from there.
+    /// The positions of the bodies at that time, m; also in the discrete modes, though the bodies go back from there.
     pub positions: (DVec3, DVec3),
-    /// How their shapes were turned into the world then; not at all where bodies do not turn.
+    /// The rotations of their shapes into the world at that time; the identity for bodies that do not turn.
     pub rotations: (DQuat, DQuat),
     /// Unit normal, from the first body to the second.
     pub normal: DVec3,
     /// Impulse on the second body along the normal, and on the first against it, N s.
     pub impulse: f64,
-    /// Speeds along the normal at which they approached and at which they part, m/s.
+    /// The closing speed before and the opening speed after the impact, along the normal, m/s.
     pub speeds: (f64, f64),
-    /// What touched, where both are meshes and it is known.
+    /// The features that touched, if both shapes are meshes and the features are known.
     pub feature: Option<Feature>,
 }
 
-/// When two bodies have an impact, s, where they are then, m, and how they are turned.
+/// The time of an impact of two bodies, s, and their positions, m, and rotations at that time.
 #[derive(Clone, Copy)]
 pub(super) struct Instant {
     pub(super) time: f64,
@@ -45,10 +45,10 @@ pub(super) struct Instant {
 }
 
 impl Scene<'_> {
-    /// Whether two bodies meet where they are at the end of the step, as the mode has it.
+    /// Whether two bodies meet at the end of the step, by the test of the mode.
     pub(super) fn meet(&self, end: &State, i: usize, j: usize) -> bool {
         if self.bodies.pair_tumbles(i, j) {
-            // Whoever asks, vertices are placed in the frame of the lower one.
+            // Vertices are always placed in the frame of the lower body, for either order of the arguments.
             let (i, j) = (i.min(j), i.max(j));
             return match self.settings.collision {
                 Collision::Naive => self.bodies.meet_naively_in(end, i, j),
@@ -72,8 +72,8 @@ impl Scene<'_> {
         }
     }
 
-    /// Where two bodies that meet at the end of the step have touched first on the straight way there, in
-    /// the world; `None` if nothing moves them against each other.
+    /// The first contact, on the straight path of the step, of two bodies that meet at its end; in the world. `None`
+    /// if the bodies do not move relative to each other.
     pub(super) fn contact_on_way(&self, end: &State, i: usize, j: usize) -> Option<Contact> {
         self.bodies.need_bvh(i);
         self.bodies.need_bvh(j);
@@ -82,8 +82,8 @@ impl Scene<'_> {
         let motion = (end[j] - end[i]) - offset;
         let forms = self.bodies.forms(i, j);
         let contact = forms.and_then(|(a, b)| collide::first_contact(a, b, offset, motion));
-        // Bodies that meet after a motion have touched on the way. Should rounding hide where,
-        // the motion itself is turned back.
+        // Bodies that meet after a motion have touched on the way. If rounding hides the place, reverse the motion
+        // itself.
         let turned_back = || {
             Some(Contact {
                 time: 1.0,
@@ -98,7 +98,7 @@ impl Scene<'_> {
         Some(Contact { point, ..contact })
     }
 
-    /// Lets two bodies that touch on the way of the step part by their restitution at its end.
+    /// Resolves a contact of two bodies on the path of the step, by their restitution.
     pub(super) fn exchange_on_way(
         &self,
         bodies: (usize, usize),
@@ -109,19 +109,19 @@ impl Scene<'_> {
         self.exchange(bodies, contact, &mut end.velocity, at)
     }
 
-    /// When two bodies touch on the way of the step, and where they are then.
+    /// The time of a contact of two bodies on the path of the step, and their positions at that time.
     pub(super) fn on_way(&self, (i, j): (usize, usize), contact: &Contact, end: &State) -> Instant {
         let part = contact.time;
         let place = |body: usize| self.before.position[body].lerp(end.position[body], part);
         Instant {
             time: self.time + part * self.settings.dt,
             positions: (place(i), place(j)),
-            // The discrete modes turn nothing.
+            // The rotations of turning bodies are not computed here.
             rotations: (DQuat::IDENTITY, DQuat::IDENTITY),
         }
     }
 
-    /// Lets two bodies part by their restitution, if they approach each other. The contact's point is in
+    /// Resolves a contact of two bodies by their restitution, if they approach each other. The contact's point is in
     /// the world.
     pub(super) fn exchange(
         &self,

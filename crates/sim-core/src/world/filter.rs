@@ -4,7 +4,7 @@ use alloc::{boxed::Box, collections::BTreeSet};
 
 use super::{World, WorldError, bodies::Bodies, column::Column};
 
-/// The groups that a body is in, and the groups with which it collides, a bit a group.
+/// The groups that a body is in, and the groups with which it collides, a bit for each group.
 ///
 /// Two bodies collide if each is in a group with which the other one collides. By default a
 /// body is in all groups and collides with all.
@@ -28,7 +28,7 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// In all groups, and colliding with all.
+    /// In all groups, and collides with all.
     pub const ALL: Groups = Groups {
         member_of: u32::MAX,
         collides_with: u32::MAX,
@@ -66,7 +66,7 @@ impl Filter {
             && !self.pairs.contains(&(i.min(j), i.max(j)))
     }
 
-    /// Takes out a body; those after it move up.
+    /// Removes a body; the indices of the bodies after it decrease by one.
     fn remove(&mut self, body: usize) {
         self.groups.remove(body);
         let pairs = core::mem::take(&mut self.pairs).into_iter();
@@ -77,8 +77,7 @@ impl Filter {
 }
 
 impl Bodies {
-    /// Whether two bodies with shapes can have to do with each other: not if nothing moves either, nor if
-    /// they are filtered.
+    /// Whether two bodies with shapes can interact: one is movable, and no filter keeps them from colliding.
     #[inline]
     pub(super) fn may_meet(&self, i: usize, j: usize) -> bool {
         (self.is_movable(i) || self.is_movable(j))
@@ -109,13 +108,13 @@ impl Bodies {
         })
     }
 
-    /// No pair is asked for what keeps nobody apart.
+    /// Removes a filter that has no effect, so that pairs are not tested against it.
     fn drop_idle_filter(&mut self) {
         let is_idle = |filter: &Filter| filter.groups.is_usual() && filter.pairs.is_empty();
         self.filter.take_if(|filter| is_idle(filter));
     }
 
-    /// Takes out a body; those after it move up.
+    /// Removes a body; the indices of the bodies after it decrease by one.
     pub(super) fn remove_from_filter(&mut self, body: usize) {
         if let Some(filter) = &mut self.filter {
             filter.remove(body);
@@ -158,8 +157,9 @@ impl World {
         Ok(())
     }
 
-    /// Lets two bodies never collide, as two that a spring joins: they are in each other's way in no mode,
-    /// and in neither overlap nor contact. In any order; once more changes nothing.
+    /// Two bodies never collide from now on, for example two that a spring joins: they do not block each other in any
+    /// mode, and are never in overlap or in contact. The order of the two does not matter, and a second call changes
+    /// nothing.
     ///
     /// # Errors
     ///
@@ -172,8 +172,8 @@ impl World {
         Ok(())
     }
 
-    /// Lets two bodies collide again that [`World::ignore_pair`] has named. If they are in each other they
-    /// are in overlap, as if placed there.
+    /// Two bodies that [`World::ignore_pair`] has named collide again. If they overlap now, they count as placed in
+    /// overlap.
     ///
     /// # Errors
     ///
@@ -203,7 +203,7 @@ impl World {
         }
     }
 
-    /// Forgets that two bodies touch or overlap.
+    /// Removes the contact and the overlap of two bodies.
     fn forget_contacts_between(&mut self, pair: (usize, usize)) {
         self.seek_overlaps();
         self.overlaps.retain(|&known| known != pair);

@@ -4,12 +4,12 @@ use alloc::vec::Vec;
 
 use super::{World, WorldError};
 
-/// A name of a body for as long as it is in its world, whatever is added and removed: its index
-/// changes when a body before it is removed, its handle does not.
+/// A permanent name of a body in its world. The index of a body changes when a body before it is removed; its handle
+/// does not.
 ///
-/// Of a body that has been removed, a handle is *stale* for ever, also where another body has taken
-/// its place: each place counts the bodies that it has had. Handles are those of one world and its
-/// copies; another world does not know them, or knows another body by them.
+/// The handle of a removed body is *stale* for ever, even if another body uses its slot, because each slot counts its
+/// bodies. A handle is valid in one world and its copies; another world does not know it, or has another body of this
+/// handle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyHandle {
@@ -17,12 +17,12 @@ pub struct BodyHandle {
     generation: u32,
 }
 
-/// Who is where. Nothing is kept until the first body is removed: until then the handle of a body is
-/// its index.
+/// The map between handles and bodies. It is empty until the first body is removed; until then the handle of a body
+/// is its index.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Handles {
     slots: Vec<Slot>,
-    /// By body.
+    /// For each body its slot.
     slot_of: Vec<u32>,
     free: Vec<u32>,
 }
@@ -30,9 +30,9 @@ pub(super) struct Handles {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Slot {
-    /// How many bodies it has had before.
+    /// The number of bodies that had this slot before.
     pub(super) generation: u32,
-    /// The body that has it.
+    /// The body that has this slot.
     pub(super) body: Option<u32>,
 }
 
@@ -46,7 +46,7 @@ impl Handles {
         }
     }
 
-    /// The body of a handle, of so many.
+    /// The body of a handle, among `bodies` bodies.
     fn body(&self, handle: BodyHandle, bodies: usize) -> Option<usize> {
         let place = handle.slot as usize;
         if self.slots.is_empty() {
@@ -57,7 +57,7 @@ impl Handles {
         body.map(|body| body as usize)
     }
 
-    /// A body is added after all others.
+    /// Adds a body after all others.
     pub(super) fn push(&mut self) {
         if self.slots.is_empty() {
             return;
@@ -74,7 +74,7 @@ impl Handles {
         self.slot_of.push(slot);
     }
 
-    /// Takes out a body of so many; those after it move up.
+    /// Removes one of `bodies` bodies; the indices of the bodies after it decrease by one.
     pub(super) fn remove(&mut self, body: usize, bodies: usize) {
         if self.slots.is_empty() {
             self.slot_of = (0..bodies as u32).collect();
@@ -87,7 +87,7 @@ impl Handles {
         let slot = self.slot_of.remove(body);
         let gone = &mut self.slots[slot as usize];
         gone.body = None;
-        // A slot that has had too many to count has no more.
+        // A slot whose counter is at its maximum is not used again.
         if let Some(next) = gone.generation.checked_add(1) {
             gone.generation = next;
             self.free.push(slot);
@@ -104,7 +104,7 @@ impl Handles {
         (&self.slots, &self.free)
     }
 
-    /// With these slots for so many bodies, of which some are free; `None` if each body has not just one.
+    /// Handles from given slots and free slots; `None` unless each of the bodies has exactly one slot.
     pub(super) fn in_slots(slots: Vec<Slot>, free: Vec<u32>, bodies: usize) -> Option<Handles> {
         if slots.is_empty() {
             return free.is_empty().then(Handles::default);
@@ -131,7 +131,7 @@ impl Handles {
 }
 
 impl World {
-    /// The handle of a body, which stays its own when others are removed.
+    /// The handle of a body. It stays valid when other bodies are removed.
     ///
     /// # Panics
     ///
@@ -142,7 +142,7 @@ impl World {
         self.handles.of(body)
     }
 
-    /// The index that a body has now: until a body is removed.
+    /// The current index of a body; it may change when a body is removed.
     ///
     /// ```
     /// # use sim_core::{Body, Settings, World};

@@ -1,20 +1,20 @@
-//! The state of a world in 64 bits, to tell whether two runs are the same.
+//! A 64-bit hash of a world's state, to compare two runs.
 
 use glam::{DQuat, DVec3};
 
 use super::World;
 
 impl World {
-    /// A hash of the state that steps change: of every bit of the positions, velocities and previous
-    /// positions, of rotations and angular momenta, of time, steps and impacts, of the latest impact, and of the pairs that are still
-    /// in overlap. Worlds that were set up alike and have the same hash go on alike, and report the
-    /// same, but for a collision in 2^64.
+    /// A hash of the state that steps change: every bit of the positions, velocities and previous positions, of
+    /// rotations and angular momenta, of time, steps and impacts, of the latest impact, and of the pairs that are
+    /// still in overlap. Two worlds with the same setup and the same hash continue in the same way and report the
+    /// same, except for a hash collision with probability 2^-64.
     ///
-    /// Not in it are what was set (forces, masses, shapes, settings) and what is kept only to save
-    /// time or to explain an error. So it is the same for the naive search and the BVH, for any
-    /// number of threads, with and without `std`, in debug and release builds.
+    /// The hash does not include the setup (forces, masses, shapes, settings), nor data that only saves time or
+    /// explains an error. So it is the same for the naive search and the BVH, for any number of threads, with and
+    /// without `std`, in debug and release builds.
     ///
-    /// It is FNV-1a over 64-bit words in little-endian order: to compare runs, not to keep secrets.
+    /// It is FNV-1a over 64-bit words in little-endian order: for comparisons, not for cryptography.
     ///
     /// ```
     /// # use sim_core::{Body, DVec3, Settings, World};
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn it_is_fnv_1a() {
-        // Well-known values of short texts.
+        // Known hashes of short texts.
         for (text, expected) in [
             ("", 0xcbf2_9ce4_8422_2325),
             ("a", 0xaf63_dc4c_8601_ec8c),
@@ -128,7 +128,7 @@ mod tests {
         }
     }
 
-    /// Three balls in a row, the first under way, after some steps.
+    /// Three balls in a row, the first one moving, after some steps.
     fn balls(collision: Collision, steps: u32) -> World {
         let settings = Settings {
             collision,
@@ -214,7 +214,7 @@ mod tests {
         assert_eq!(world.state_hash(), hash, "no step reads it");
     }
 
-    /// The same in every build: this runs without `std` and with it, and `tests/hashes.rs` has the
+    /// The hash is the same in every build: this test runs without `std` and with it, and `tests/hashes.rs` has the
     /// scenes of the gallery.
     #[test]
     fn the_hash_is_known() {

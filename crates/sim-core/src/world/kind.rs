@@ -6,7 +6,7 @@ use super::{World, WorldError, error};
 use crate::BodyKind;
 
 impl World {
-    /// What moves a body.
+    /// The kind of a body: what can move it.
     ///
     /// # Panics
     ///
@@ -20,12 +20,12 @@ impl World {
         }
     }
 
-    /// Makes a body one of another kind. It keeps its mass, and its velocity unless it becomes static.
+    /// Changes the kind of a body. It keeps its mass, and its velocity unless it becomes static.
     ///
     /// # Errors
     ///
-    /// [`WorldError::NoBody`], or [`WorldError::TurningKind`] of a body that turns and would become one that nothing
-    /// moves, or cease to be.
+    /// [`WorldError::NoBody`], or [`WorldError::TurningKind`] if the body can rotate and would become immovable, or
+    /// cease to be.
     pub fn set_kind(&mut self, body: usize, kind: BodyKind) -> Result<(), WorldError> {
         self.check_body(body)?;
         let before = self.kind(body);
@@ -40,7 +40,7 @@ impl World {
         if before.is_movable() != kind.is_movable() {
             self.forget_contacts_of(body);
             self.bodies.set_kind(body, kind);
-            // Bodies that nothing moves may be in each other.
+            // Two immovable bodies may overlap.
             self.note_placed(body);
             self.bodies.acceleration[body] = self.constant_acceleration(body);
         } else {
@@ -49,7 +49,7 @@ impl World {
         Ok(())
     }
 
-    /// Mass of a body, kg. While it is not dynamic it does not count: nothing moves it.
+    /// Mass of a body, kg. It has no effect while the body is not dynamic.
     ///
     /// # Panics
     ///
@@ -60,12 +60,12 @@ impl World {
         self.bodies.own_mass(body)
     }
 
-    /// Sets a mass, kg, from 1e-100 to 1e100; of a body that is not dynamic the one that it has once it is.
+    /// Sets the mass of a body, kg, from 1e-100 to 1e100. It takes effect while the body is dynamic.
     ///
     /// # Errors
     ///
-    /// [`WorldError::NoBody`], [`WorldError::Mass`] out of that range, or [`WorldError::Vector`] where the angular
-    /// momentum of a body that turns would be beyond ±1e100.
+    /// [`WorldError::NoBody`], [`WorldError::Mass`] out of that range, or [`WorldError::Vector`] if the angular
+    /// momentum of a turning body would be beyond ±1e100.
     pub fn set_mass(&mut self, body: usize, mass: f64) -> Result<(), WorldError> {
         self.check_body(body)?;
         error::check_mass(body, mass)?;
@@ -82,8 +82,8 @@ impl World {
         Ok(())
     }
 
-    /// Gives a body an impulse, N s: its velocity changes by that over its mass, at once. Nothing happens to
-    /// a body that is not dynamic, as in an impact.
+    /// Applies an impulse to a body, N s: its velocity changes at once by the impulse over its mass. It has no effect
+    /// on a body that is not dynamic, as in an impact.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! The places of bodies, and the rounding of these places.
+//! The positions of bodies, and the rounding of these positions.
 
 use glam::{DQuat, DVec3};
 
@@ -10,24 +10,24 @@ use super::{
 };
 use crate::{Shape, collide};
 
-/// The gap of bodies in contact, in units in the last place of the largest coordinate about.
+/// The gap of bodies in contact, in units in the last place of their largest coordinate.
 const HOVER_ULPS: f64 = 1024.0;
-/// Rounding of placed vertices, in units in the last place of the largest coordinate about, that
-/// two bodies are kept apart by at an impact.
+/// The distance at which two bodies are kept at an impact, because placed vertices round, in units in the last place of
+/// their largest coordinate.
 pub(super) const RESOLUTION_ULPS: f64 = 4.0;
-/// The same where a sphere meets triangles, whose distance is computed (`collide/ball.rs`): more than
-/// its error, so that a point stays on its side of a surface.
+/// The same for a sphere and a mesh, whose distance is computed (`collide/ball.rs`): more than the error of this
+/// distance, so that a point stays on its side of a surface.
 const SPHERE_MESH_ULPS: f64 = 64.0;
 
-/// Bodies at their places.
+/// Bodies at their positions.
 #[derive(Clone, Copy)]
 pub(super) struct Layout<'a> {
     pub(super) bodies: &'a Bodies,
-    /// Where they are, m.
+    /// Their positions, m.
     pub(super) at: &'a [DVec3],
-    /// How those are turned there that turn, by slot.
+    /// The rotations of turning bodies there, by slot.
     pub(super) turned: &'a [Turned],
-    /// Their motion where the step began.
+    /// Their motion at the start of the step.
     pub(super) before: &'a State,
     pub(super) contacts: &'a ContactSet,
     pub(super) overlaps: &'a Overlaps,
@@ -41,24 +41,24 @@ impl Layout<'_> {
         HOVER_ULPS * f64::EPSILON * (far(i) + far(j))
     }
 
-    /// What the rounding of positions and placed vertices, and of distances from triangles, may be, m.
+    /// A bound on the rounding of positions, of placed vertices, and of distances from triangles, m.
     pub(super) fn position_resolution(&self, i: usize, j: usize) -> f64 {
         self.resolution_by_axis(i, j).max_element()
     }
 
-    /// The same along a normal: a body that is long along one axis rounds no more along another.
+    /// The same along a normal: a body that is long on one axis rounds no more along another.
     pub(super) fn resolution_along(&self, i: usize, j: usize, normal: DVec3) -> f64 {
         normal.abs().dot(self.resolution_by_axis(i, j))
     }
 
-    /// The same by component.
+    /// The same for each component.
     pub(super) fn resolution_by_axis(&self, i: usize, j: usize) -> DVec3 {
         let (from, to) = (&self.before.position, self.at);
         let at = |body: usize| from[body].abs().max(to[body].abs());
         let far = |body: usize| at(body) + self.bodies.extent(body).reach;
         let far = far(i) + far(j);
         match (self.bodies.shape(i), self.bodies.shape(j)) {
-            // A distance is a sum over all axes, and told by axis where one of them is long.
+            // A distance is a sum over all axes; it is bounded axis by axis if the body is long on one of them.
             (Some(Shape::Mesh(_)), Some(Shape::Sphere { radius }))
             | (Some(Shape::Sphere { radius }), Some(Shape::Mesh(_))) => {
                 let by_axis = SPHERE_MESH_ULPS * f64::EPSILON * far;
@@ -72,7 +72,8 @@ impl Layout<'_> {
         }
     }
 
-    /// Whether two bodies meet as they are turned, the second one at an offset from the first. Trees must be there.
+    /// Whether two bodies meet at their rotations, the second one at an offset from the first. Their trees must be
+    /// built.
     pub(super) fn meet(&self, i: usize, j: usize, offset: DVec3) -> bool {
         if !self.bodies.pair_tumbles(i, j) {
             return self.bodies.meet_built(i, j, offset);
@@ -82,13 +83,13 @@ impl Layout<'_> {
         self.bodies.meet_placed(first, second)
     }
 
-    /// How a body's shape is turned: into the world.
+    /// The rotation from a body's shape into the world.
     pub(super) fn rotation(&self, body: usize) -> DQuat {
         self.bodies.rotation_among(self.turned, body)
     }
 
-    /// How far a body reaches about its position against a normal, as it is turned, m; the tree over its mesh
-    /// must be there.
+    /// The extent of a body about its position against a normal, at its rotation, m. The tree over its mesh must be
+    /// built.
     pub(super) fn reach_against(&self, body: usize, normal: DVec3) -> Option<f64> {
         let form = self.bodies.form(body)?;
         if !self.bodies.tumbles(body) {
@@ -99,7 +100,7 @@ impl Layout<'_> {
         Some(collide::reach(form, rotation.inverse() * normal).0 + centre)
     }
 
-    /// Where two bodies in overlap should part to: out of a half-space, or along the line of their
+    /// The direction in which two overlapping bodies should part: out of a half-space, or along the line of their
     /// centres.
     pub(super) fn apart_along(&self, i: usize, j: usize) -> DVec3 {
         self.bodies.line_apart(self.at, (i, j)).unwrap_or(DVec3::X)

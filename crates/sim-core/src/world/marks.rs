@@ -1,4 +1,4 @@
-//! States of a motion while it grows, for the error of an unstable step.
+//! The states of a growing motion, for the error of an unstable step.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -8,23 +8,22 @@ use glam::DVec3;
 use super::error::LARGEST;
 use super::state::State;
 
-/// Growth of the greatest speed after which the motion is kept again.
+/// The motion is stored again when the greatest speed has grown by this factor.
 const DOUBLED: f64 = 2.0;
 
-/// Times that the greatest speed can double until it has grown a millionfold, and growth is counted
-/// anew.
+/// The greatest speed can double this often until it has grown a millionfold and growth is measured anew.
 const MOST: usize = 20;
 
-/// The motion from which growth is counted, and that of what is fastest each time that the greatest
-/// speed has doubled since.
+/// The motion from which growth is measured, and the motion of the fastest bodies each time that the greatest speed has
+/// doubled since.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Marks {
     marks: Vec<Mark>,
-    /// What is kept of all of them, one after the other.
+    /// The motions of all marks, one after the other.
     motion: State,
 }
 
-/// A mark as data.
+/// A mark as data of a snapshot.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -32,7 +31,7 @@ pub(super) struct KeptMotion {
     time: f64,
     speed: f64,
     first: usize,
-    /// Position and velocity of that body, and of those after it.
+    /// Positions and velocities of that body and of the bodies after it.
     motion: Vec<(DVec3, DVec3)>,
 }
 
@@ -52,7 +51,7 @@ impl Marks {
         self.marks.iter().map(kept).collect()
     }
 
-    /// Of so many bodies; `None` if it is no motion of theirs.
+    /// The marks of a snapshot; `None` if they do not fit the number of bodies.
     pub(super) fn of_kept(kept: Vec<KeptMotion>, bodies: usize) -> Option<Marks> {
         let mut marks = Marks::default();
         for mark in kept {
@@ -81,15 +80,15 @@ impl Marks {
 #[derive(Clone, Debug)]
 struct Mark {
     time: f64,
-    /// Greatest component of a velocity a step later, m/s.
+    /// The greatest component of a velocity one step later, m/s.
     speed: f64,
     bodies: Range<usize>,
-    /// Where their motion begins among all that is kept.
+    /// The start of these bodies' motion in `Marks::motion`.
     start: usize,
 }
 
 impl Marks {
-    /// Forgets all, and makes room for marks of all bodies once and then of up to `most` of them.
+    /// Removes all marks, and reserves memory for one mark of all bodies and then for marks of up to `most` bodies.
     pub(super) fn begin(&mut self, all: usize, most: usize) {
         self.marks.clear();
         self.motion.position.clear();
@@ -99,13 +98,13 @@ impl Marks {
         self.motion.velocity.reserve(all + MOST * most);
     }
 
-    /// Whether a greatest speed is a reason to keep the motion that has led to it.
+    /// Whether the greatest speed has grown so much that the motion before it should be stored.
     pub(super) fn is_due(&self, speed: f64) -> bool {
         let last = self.marks.last();
         last.is_some_and(|mark| speed > DOUBLED * mark.speed)
     }
 
-    /// Keeps the motion of some bodies, which leads to a greatest speed in a step.
+    /// Stores the motion of some bodies, after which a step reaches a greatest speed.
     pub(super) fn add(&mut self, time: f64, speed: f64, bodies: Range<usize>, motion: &State) {
         let start = self.motion.position.len();
         let (x, v) = (&motion.position, &motion.velocity);
@@ -119,7 +118,7 @@ impl Marks {
         });
     }
 
-    /// Times, positions and velocities of some bodies wherever all of them were kept.
+    /// Times, positions and velocities of some bodies from each mark that has all of them.
     pub(super) fn of(
         &self,
         bodies: Range<usize>,

@@ -71,9 +71,9 @@ use stepping::{Cause, Integrator, Way};
 
 /// Bodies, their motion, and their steps.
 ///
-/// Bodies are named by the index that [`World::add`] returned. Methods that read one panic on an
-/// index that does not exist, as slices do; methods that change one return an error. Indices
-/// change when bodies are removed ([`World::remove`]); a [`BodyHandle`] names the same body before and after.
+/// Bodies are named by the index that [`World::add`] returned. Methods that read a body panic on an index that does not
+/// exist, as slices do; methods that change one return an error. Indices change when bodies are removed
+/// ([`World::remove`]); a [`BodyHandle`] names the same body before and after.
 ///
 /// ```
 /// use sim_core::{Body, DVec3, Settings, World};
@@ -102,7 +102,7 @@ pub struct World {
     bodies: Bodies,
     handles: Handles,
     forces: Forces,
-    /// Motion after the last step, before it, and before the step before that.
+    /// Motion after the last step, at its start, and at the start of the step before.
     current: State,
     previous: State,
     earlier: State,
@@ -115,11 +115,11 @@ pub struct World {
     integrator: Integrator,
     continuous: Continuous,
     discrete: Discrete,
-    /// For queries about bodies at their places.
+    /// The tree for queries about bodies at their positions.
     index: query::Index,
 }
 
-/// How a world steps.
+/// The parameters of a world's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -134,8 +134,7 @@ pub struct Settings {
     pub method: &'static Method,
     /// How collisions are found.
     pub collision: Collision,
-    /// Error that adaptive methods may make in a step, from 1e-15 to 1: relative and, in m and
-    /// m/s, absolute.
+    /// Error that adaptive methods may make in a step, from 1e-15 to 1: relative, and absolute in m and m/s.
     pub tolerance: f64,
 }
 
@@ -147,8 +146,8 @@ pub struct Settings {
     serde(rename_all = "kebab-case")
 )]
 pub enum Collision {
-    /// At the end of each step, by every edge of one mesh against every triangle of the other.
-    /// Bodies that meet exchange an impulse and go back to where the step began.
+    /// At the end of each step, by every edge of one mesh against every triangle of the other. Bodies that meet
+    /// exchange an impulse and go back to the start of the step.
     Naive,
     /// The same through bounding volume hierarchies, with the same answers.
     Bvh,
@@ -208,7 +207,7 @@ impl World {
     ///
     /// # Errors
     ///
-    /// Names a field that is out of the range given at [`Body`]; the world stays as it was.
+    /// An error that names a field out of the range given at [`Body`]; the world stays as it was.
     pub fn add(&mut self, mut body: Body) -> Result<usize, WorldError> {
         let index = self.len();
         error::check_body(index, &body)?;
@@ -270,7 +269,7 @@ impl World {
         self.integrator.integrate(scene!(self), way)
     }
 
-    /// Resolves impacts, and the contacts that last.
+    /// Resolves impacts and lasting contacts.
     fn collide(&mut self) -> Result<(), (usize, Cause)> {
         if self.bodies.solid.len() < 2 {
             return self.turn_freely();
@@ -312,17 +311,17 @@ impl World {
         self.elapsed.time(&self.settings)
     }
 
-    /// Steps done.
+    /// The number of completed steps.
     pub fn steps(&self) -> u64 {
         self.elapsed.steps
     }
 
-    /// Impulses exchanged.
+    /// The number of impulses exchanged.
     pub fn impacts(&self) -> u64 {
         self.record.impacts
     }
 
-    /// The latest exchange of an impulse.
+    /// The latest impact.
     pub fn last_impact(&self) -> Option<&Impact> {
         self.record.last_impact.as_ref()
     }
@@ -353,7 +352,7 @@ impl World {
         self.bodies.force[body]
     }
 
-    /// Part of the approaching speed with which a body leaves an impact; the lesser value of two bodies counts.
+    /// Coefficient of restitution of a body; for two bodies the lesser value counts.
     pub fn restitution(&self, body: usize) -> f64 {
         self.bodies.restitution(body)
     }
@@ -363,23 +362,23 @@ impl World {
         self.bodies.friction(body)
     }
 
-    /// Shape of a body; `None` for a point, which meets no other body.
+    /// The shape of a body; `None` for a point, which meets no other body.
     pub fn shape(&self, body: usize) -> Option<&Shape> {
         self.bodies.shape(body)
     }
 
-    /// Mesh of a body, if it has one.
+    /// The mesh of a body, if it has one.
     pub fn mesh(&self, body: usize) -> Option<&Arc<Mesh>> {
         self.shape(body).and_then(Shape::mesh)
     }
 
-    /// Tree over a body's mesh, if a step or query has built it.
+    /// The tree over a body's mesh, if a step or query has built it.
     pub fn bvh(&self, body: usize) -> Option<&Bvh> {
         self.bodies.bvh(body)
     }
 
-    /// Pairs of bodies that meet now by the exact test and were not placed in overlap, in order. There are none
-    /// after a step. For checks; it takes a box test for each pair that is near.
+    /// Pairs of bodies that meet now by the exact test and were not placed in overlap, in order. There are none after
+    /// a step. Intended for checks; it takes a box test for each near pair.
     pub fn meeting(&self) -> Vec<(usize, usize)> {
         let at = &self.current.position;
         let mut near = self.bodies.near_pairs(at, |_| 0.0);
@@ -390,14 +389,14 @@ impl World {
         near
     }
 
-    /// Builds the trees that no step has needed yet, to show them or to cast rays.
+    /// Builds the trees that no step has needed yet, to display them or to cast rays.
     pub fn build_bvhs(&mut self) {
         for body in 0..self.len() {
             self.bodies.need_bvh(body);
         }
     }
 
-    /// Places a body, m. It starts afresh from there: its previous position is the same.
+    /// Sets the position of a body, m, and its previous position to the same.
     ///
     /// # Errors
     ///
@@ -467,12 +466,12 @@ impl World {
         Ok(())
     }
 
-    /// How the world steps.
+    /// The settings of the steps.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// Changes how the world steps, from the next step on.
+    /// Changes the settings, from the next step on.
     ///
     /// # Errors
     ///
@@ -489,7 +488,7 @@ impl World {
         Ok(())
     }
 
-    /// Bodies at their current places.
+    /// The bodies at their current positions.
     fn layout(&self) -> Layout<'_> {
         Layout {
             bodies: &self.bodies,

@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl Bodies {
-    /// A box around a body on a straight way from a place to another.
+    /// A box around a body on a straight path between two positions.
     pub(super) fn swept_box(&self, body: usize, from: DVec3, to: DVec3) -> Swept {
         let Extent {
             low,
@@ -18,7 +18,7 @@ impl Bodies {
             farthest,
             ..
         } = self.extent_however_turned(body);
-        // More than is lost in rounding, here and where vertices are placed.
+        // More than the rounding here and of placed vertices.
         let margin = 8.0 * f64::EPSILON * (from.abs() + to.abs() + 2.0 * farthest);
         Swept {
             min: from.min(to) + low - margin,
@@ -27,7 +27,7 @@ impl Bodies {
         }
     }
 
-    /// The farthest that the plane of a body comes on a straight way, if it is a half-space.
+    /// The farthest position of a half-space's plane on a straight path; `None` for other bodies.
     pub(super) fn swept_front(&self, wall: usize, from: DVec3, to: DVec3) -> Option<Front> {
         let &Shape::HalfSpace { normal } = self.shape(wall)? else {
             return None;
@@ -36,12 +36,12 @@ impl Bodies {
             normal,
             body: wall,
             level: normal.dot(from).max(normal.dot(to)),
-            // More than is lost in rounding.
+            // More than rounding.
             slack: 16.0 * f64::EPSILON * (from.length() + to.length()),
         })
     }
 
-    /// Pairs that may meet whose boxes, each widened by a length, meet.
+    /// The pairs that may meet and whose boxes, each widened by a length, meet.
     pub(super) fn near_pairs(
         &self,
         at: &[DVec3],
@@ -73,8 +73,8 @@ impl Bodies {
         pairs
     }
 
-    /// Where two bodies at their places should part to: out of a half-space, or along the line of their
-    /// centres; `None` where their centres are in one place, and no direction is closer.
+    /// The direction in which two overlapping bodies should part: out of a half-space, or along the line of their
+    /// centres. `None` if the centres coincide, so that no direction is preferred.
     pub(super) fn line_apart(&self, at: &[DVec3], (i, j): (usize, usize)) -> Option<DVec3> {
         match (self.shape(i), self.shape(j)) {
             (Some(&Shape::HalfSpace { normal }), _) => Some(normal),
@@ -83,7 +83,7 @@ impl Bodies {
         }
     }
 
-    /// Middle of a body's box, m.
+    /// The centre of a body's box, m.
     pub(super) fn centre(&self, at: &[DVec3], body: usize) -> DVec3 {
         let mesh = self.mesh(body);
         let middle = mesh.map_or(DVec3::ZERO, |mesh| Aabb::centre(&mesh.bounds()));

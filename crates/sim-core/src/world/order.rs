@@ -5,11 +5,11 @@ use glam::DVec3;
 
 use super::{bodies::Bodies, state::State};
 
-/// What tells one body from another: position, velocity, mass, and the acceleration by constant
-/// forces. Bodies of which these are the same may take each other's place.
+/// The numbers that distinguish bodies: position, velocity, mass, and the acceleration by constant forces. Bodies for
+/// which all of these are equal are interchangeable.
 pub(super) type Key = [i64; 10];
 
-/// The key of a body by its motion.
+/// The key of a body in a state.
 pub(super) fn key(bodies: &Bodies, motion: &State, body: usize) -> Key {
     let [x, y, z] = motion.position[body].to_array();
     let [u, v, w] = motion.velocity[body].to_array();
@@ -26,7 +26,7 @@ pub(super) fn in_order(
     let mut these: Vec<usize> = these.collect();
     these.sort_unstable();
     these.dedup();
-    // By the first number of their keys, which is enough for nearly all.
+    // By the first number of their keys, which is enough in nearly all cases.
     let first = |body: usize| ordinal(motion.position[body].x);
     let mut keys: Vec<(i64, usize)> = these.iter().map(|&body| first(body)).zip(0..).collect();
     keys.sort_unstable_by(|&(x, one), &(y, other)| {
@@ -41,11 +41,11 @@ pub(super) fn in_order(
     InOrder { bodies, places }
 }
 
-/// Bodies in order, and the place of each among them.
+/// Bodies in order, and the position of each body in this order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InOrder {
     pub(super) bodies: Vec<usize>,
-    /// By body.
+    /// Pairs of body and position, sorted by body.
     places: Vec<(usize, usize)>,
 }
 
@@ -56,7 +56,7 @@ impl InOrder {
         self.places[self.places.partition_point(before)].1
     }
 
-    /// A key of what is between two of the bodies, along a normal from the first one to the second.
+    /// A key of a vector between two of the bodies: a normal from the first body to the second.
     pub(super) fn between(&self, (i, j): (usize, usize), normal: DVec3) -> ([usize; 2], [i64; 3]) {
         let (first, second) = (self.place(i), self.place(j));
         match first > second {
@@ -71,8 +71,8 @@ pub(super) fn of_vector(vector: DVec3) -> [i64; 3] {
     vector.to_array().map(ordinal)
 }
 
-/// A number that is greater where another number is, as `f64::total_cmp` has it, but for the sign of zero, which
-/// an order of bodies may leave either way.
+/// An integer with the order of `f64::total_cmp`, except that both zeros are equal: an order of bodies must not
+/// depend on the sign of zero.
 pub(super) fn ordinal(number: f64) -> i64 {
     let bits = (number + 0.0).to_bits() as i64;
     bits ^ (((bits >> 63) as u64) >> 1) as i64

@@ -7,18 +7,18 @@ use super::{Impact, StepError, World, record::Record};
 /// A part of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Motion under forces.
+    /// The motion under forces.
     Integrate,
-    /// Which bodies come near each other.
+    /// The search for pairs that come near each other.
     Broad,
-    /// Whether and when two bodies that are near meet.
+    /// The tests whether and when near pairs meet.
     Narrow,
-    /// Impulses, and contacts that last.
+    /// Impulses, and lasting contacts.
     Respond,
 }
 
 impl Phase {
-    /// All of them, in the order of a step.
+    /// All phases, in the order of a step.
     pub const ALL: [Phase; 4] = [
         Phase::Integrate,
         Phase::Broad,
@@ -27,18 +27,18 @@ impl Phase {
     ];
 }
 
-/// Time spent in each phase, in units of the clock that has been handed in.
+/// The time spent in each phase, in units of the given clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Profile([u64; Phase::ALL.len()]);
 
 impl Profile {
-    /// Time spent in a phase.
+    /// The time spent in a phase.
     pub fn spent(&self, phase: Phase) -> u64 {
         self.0[phase as usize]
     }
 }
 
-/// Reads a clock where one phase ends and the next begins.
+/// Reads a clock between phases.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Timer {
     clock: fn() -> u64,
@@ -56,9 +56,9 @@ impl Timer {
 }
 
 impl World {
-    /// [`World::step_reporting`], adding to a profile the time that each phase takes, as `clock` counts it.
+    /// [`World::step_reporting`], which adds the time of each phase to a profile, in units of `clock`.
     ///
-    /// Other steps read no clock. Here it is read some times a step, and twice for each impact.
+    /// Other steps read no clock. This one reads it a few times a step, and twice for each impact.
     pub fn step_profiled(
         &mut self,
         impacts: &mut Vec<Impact>,
@@ -81,7 +81,7 @@ impl World {
 }
 
 impl Record {
-    /// Another phase begins; tells which one ends.
+    /// Begins another phase; returns the one that ends.
     pub(super) fn enter(&mut self, phase: Phase) -> Phase {
         let Some(timer) = &mut self.timer else {
             return phase;

@@ -12,14 +12,14 @@ use crate::{
     query::{self, Hit, Placed, QueryError, Ray, distance_within, first_hit, ray_hit},
 };
 
-/// Up to so many bodies are asked one by one.
+/// Up to this many bodies are tested one by one.
 const FEW: usize = 32;
 
-/// So many questions about the same places are answered body by body: to put many bodies into a tree takes as
-/// long as so many answers.
+/// Up to this many queries at the same positions are answered body by body: to put many bodies into a tree takes as
+/// long as this many answers.
 const FEW_QUESTIONS: u32 = 4;
 
-/// A tree of the bodies' boxes, made once it pays. A copy starts without.
+/// A tree of the bodies' boxes, built once it pays. A copy starts without it.
 #[derive(Debug, Default)]
 pub(super) struct Index {
     questions: AtomicU32,
@@ -29,7 +29,7 @@ pub(super) struct Index {
 #[derive(Debug)]
 struct Tree {
     boxes: BoxTree,
-    /// Half-spaces, which no box holds.
+    /// Half-spaces, which have no bounding box.
     walls: Vec<usize>,
 }
 
@@ -40,7 +40,7 @@ impl Clone for Index {
 }
 
 impl Index {
-    /// Bodies have moved, or are others.
+    /// Removes the tree, because bodies have moved or changed.
     #[inline]
     pub(super) fn forget(&mut self) {
         if *self.questions.get_mut() > 0 {
@@ -48,8 +48,8 @@ impl Index {
         }
     }
 
-    /// Visits bodies that have a shape. `near` tells from a box how near what is in it is at least, and infinity
-    /// for what is not to be visited; `visit` takes a body and returns how near others have to be.
+    /// Visits bodies that have a shape. `near` returns a lower bound on the distance or time for the contents of a
+    /// box, and infinity for a box to skip. `visit` receives a body and returns the limit for the next ones.
     fn visit(
         &self,
         bodies: &Bodies,
@@ -60,7 +60,7 @@ impl Index {
     ) {
         let swept = |body: usize| bodies.swept_box(body, at[body], at[body]);
         let solid = &bodies.solid;
-        // Beyond any number of questions that matters it stays where it is.
+        // Saturates; greater numbers of queries do not matter.
         let asked = self.questions.load(Ordering::Relaxed);
         self.questions
             .store(asked.saturating_add(1), Ordering::Relaxed);
@@ -85,7 +85,7 @@ impl Index {
     }
 }
 
-/// The best answer so far: the least time or distance, and of equal ones that of the lowest body.
+/// The best answer so far: the least time or distance; of equal ones, that of the lowest body.
 struct Best {
     found: Option<(usize, Hit)>,
     limit: f64,
@@ -96,7 +96,8 @@ impl Best {
         Best { found: None, limit }
     }
 
-    /// More than what is as good as the best, so that the lowest body wins in whatever order they come.
+    /// A limit slightly above the best answer, so that among equal answers the lowest body wins, whatever the order
+    /// of visits.
     fn loose(&self) -> f64 {
         (self.limit * (1.0 + 4.0 * f64::EPSILON)).next_up()
     }
@@ -181,7 +182,7 @@ impl World {
     ) -> Result<Option<(usize, Hit)>, QueryError> {
         query::check_motion(motion)?;
         let mut best = Best::within(1.0);
-        // As a ray meets boxes that are grown by the shape's.
+        // The ray of the shape's motion, against boxes extended by the shape's box.
         let ray = Ray {
             origin: shape.position,
             direction: motion,
@@ -255,7 +256,7 @@ impl World {
         let mut best = Best::within(f64::INFINITY);
         let near = |swept: &Swept| {
             let way = (swept.min - point).max(point - swept.max).max(DVec3::ZERO);
-            // Less than it is, whatever rounds.
+            // A lower bound, despite rounding.
             way.length() * (1.0 - 8.0 * f64::EPSILON)
         };
         self.visit(near, best.limit, |body| {
@@ -273,7 +274,7 @@ impl World {
     }
 }
 
-/// When a ray enters a box at the earliest, in lengths of its direction; infinity where it does not.
+/// A lower bound on the time when a ray enters a box, in lengths of its direction; infinity if it misses the box.
 fn entry(ray: &Ray, min: DVec3, max: DVec3) -> f64 {
     let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
     for axis in 0..3 {

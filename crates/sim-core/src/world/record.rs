@@ -1,25 +1,25 @@
-//! What steps have done, kept on request.
+//! The record of steps: counts, and on request impacts and events.
 
 use alloc::{boxed::Box, vec::Vec};
 
 use super::{Impact, events::Events, profile::Timer};
 
-/// What has happened since the world was made.
+/// The record since the world was made.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Record {
     pub(super) impacts: u64,
     pub(super) last_impact: Option<Impact>,
-    /// Where impacts are listed, while someone asks.
+    /// The list of impacts, while it is requested.
     pub(super) list: Option<Vec<Impact>>,
-    /// Reads a clock between phases, while someone asks.
+    /// Reads a clock between phases, while this is requested.
     pub(super) timer: Option<Timer>,
-    /// Contacts that begin and end, while someone asks.
+    /// Contacts that begin and end, while these are requested.
     pub(super) events: Option<Box<Events>>,
-    /// Steps that have ended with bodies in contact.
+    /// The number of steps that ended with bodies in contact.
     pub(super) contact_steps: u64,
 }
 
-/// What to roll back to.
+/// A state of the record to which it can be reset.
 #[derive(Clone, Debug)]
 pub(super) struct Checkpoint {
     impacts: u64,
@@ -40,7 +40,7 @@ impl Record {
         self.last_impact = Some(impact);
     }
 
-    /// Forgets what is known of a body; those after it move up.
+    /// Removes the entries of a body; the indices of the bodies after it decrease by one.
     pub(super) fn remove_body(&mut self, body: usize) {
         let is_gone = |impact: &mut Impact| impact.bodies.0 == body || impact.bodies.1 == body;
         self.last_impact.take_if(is_gone);
@@ -62,7 +62,7 @@ impl Record {
         }
     }
 
-    /// Forgets what has been noted since a checkpoint.
+    /// Removes the entries since a checkpoint.
     pub(super) fn roll_back(&mut self, to: &Checkpoint) {
         self.impacts = to.impacts;
         self.last_impact.clone_from(&to.last_impact);

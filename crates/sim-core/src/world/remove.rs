@@ -4,19 +4,19 @@ use super::{World, WorldError, continuous::Continuous, discrete::Discrete};
 use crate::Body;
 
 impl World {
-    /// Takes a body out of the world and returns it as it was. The indices of those after it are one less
-    /// from then on, as in a vector; handles stay ([`World::handle`]). Time grows with the number of
-    /// bodies, as that of a step does.
+    /// Removes a body from the world and returns it with its current properties. The indices of the bodies after it
+    /// decrease by one, as in a vector; handles stay valid ([`World::handle`]). The cost is proportional to the
+    /// number of bodies, as that of a step.
     ///
-    /// The forces that name it go with it: springs, and drag, anchors or attraction of that body alone.
-    /// [`World::forces`] holds the others, in their order, with the indices that bodies have now. What lay on
-    /// it falls from the next step on. The count of impacts stays, and the latest impact is forgotten if
-    /// the body was in it. Bodies with which it was in touch neither directly nor by forces go on to the bit as
-    /// if it had never been there.
+    /// The forces that name the body are removed too: springs, and drag, anchors or attraction of that body alone.
+    /// [`World::forces`] keeps the others, in their order, with the new indices of bodies. Bodies that rested on it
+    /// fall from the next step on. The number of impacts stays the same; the latest impact is dropped if the body was
+    /// part of it. Bodies that were connected with it neither by contacts nor by forces continue to the bit as if it
+    /// had never existed.
     ///
     /// # Errors
     ///
-    /// [`WorldError::NoBody`]; for a handle ask [`World::index_of`] first.
+    /// [`WorldError::NoBody`]; for a handle, call [`World::index_of`] first.
     pub fn remove(&mut self, body: usize) -> Result<Body, WorldError> {
         self.check_body(body)?;
         let removed = self.body(body).to_body();
@@ -43,7 +43,7 @@ impl World {
                 .for_each(|other| *other -= usize::from(*other > body));
             self.plan_in_order(&order);
         }
-        // What is kept to save time is about other indices, and so are events.
+        // Caches and events use the old indices.
         self.index.forget();
         if self.record.events.is_some() {
             self.record.events = Some(Default::default());

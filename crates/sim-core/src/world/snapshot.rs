@@ -1,6 +1,6 @@
-//! A world as data, from which it continues to the same bits.
+//! A world as data, from which it continues with the same bits.
 //!
-//! The data has no caches. It has each mesh once, however many bodies share it.
+//! The data contains no caches. It contains each mesh once, however many bodies share it.
 
 mod read;
 
@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{BodyKind, Force, Shape};
 
-/// Grows where the format changes: a world of another version is refused.
+/// The version of the format; worlds of other versions are refused.
 const VERSION: u32 = 3;
 
 #[derive(Serialize, Deserialize)]
@@ -30,13 +30,13 @@ pub(super) struct Snapshot {
     /// Pairs that never collide.
     ignored: Vec<(usize, usize)>,
     forces: Vec<Force>,
-    /// The order in which bodies are stepped that forces couple.
+    /// The order in which coupled bodies are stepped.
     order: Option<Vec<usize>>,
     slots: Vec<Slot>,
     free_slots: Vec<u32>,
     overlaps: Vec<KnownOverlap>,
     contacts: Vec<ContactConstraint>,
-    /// By body, indices of contacts.
+    /// For each body, indices of its contacts.
     contacts_of: Vec<Vec<u32>>,
     /// Bodies whose contacts are solved once a step.
     bundled: Vec<usize>,
@@ -54,7 +54,7 @@ pub(super) struct Snapshot {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BodyState {
-    /// Its place among the shapes.
+    /// Its index in the shapes.
     shape: Option<usize>,
     kind: BodyKind,
     mass: f64,
@@ -67,7 +67,7 @@ struct BodyState {
     friction: f64,
     groups: Groups,
     user_data: u64,
-    /// Of a body that turns. Worlds of the first version had none.
+    /// The data of a turning body. Worlds of the first version had none.
     #[serde(default)]
     turn: Option<TurningState>,
 }
@@ -76,11 +76,11 @@ struct BodyState {
 #[serde(deny_unknown_fields)]
 struct KnownOverlap {
     bodies: (usize, usize),
-    /// How deep it was where the two were placed, m, once that has been found.
+    /// The depth where the two bodies were placed, m, once it has been computed.
     depth_at_start: Option<f64>,
 }
 
-/// What growth of the motion is counted from.
+/// The data from which growth of the motion is measured.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Growth {
@@ -88,14 +88,14 @@ struct Growth {
     kept: Vec<KeptMotion>,
 }
 
-/// A world is written with all that its further way depends on: read again, it goes on to the bit, and
-/// the handles of its bodies name the same ones. Numbers must not be rounded on the way; of `serde_json` use
-/// the feature `float_roundtrip`.
+/// A world is written with all data that its later motion depends on. After it is read, it continues with the same
+/// bits, and the handles of its bodies name the same bodies. The format must not round numbers: with `serde_json`,
+/// use the feature `float_roundtrip`.
 ///
 /// # Errors
 ///
-/// Where a force is a law from outside ([`Force::Body`], [`Force::Pair`]), or the method is not in
-/// [`METHODS`](crate::METHODS): they are code.
+/// If a force is an external law ([`Force::Body`], [`Force::Pair`]), or the method is not in
+/// [`METHODS`](crate::METHODS): these are code.
 impl Serialize for World {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let mut forces = self.forces().iter();

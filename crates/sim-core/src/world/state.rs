@@ -10,11 +10,11 @@ pub(super) struct State {
     /// Places, m; of bodies that turn, of their centres of mass.
     pub(super) position: Vec<DVec3>,
     pub(super) velocity: Vec<DVec3>,
-    /// How those are turned that turn, by their slots.
+    /// The rotations of turning bodies, by slot.
     pub(super) turned: Vec<Turned>,
 }
 
-/// How a body is turned, and turns.
+/// The rotation and angular momentum of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -22,10 +22,9 @@ pub(super) struct State {
     serde(deny_unknown_fields)
 )]
 pub(super) struct Turned {
-    /// Turns principal axes into the world.
+    /// The rotation from principal axes into the world.
     pub(super) rotation: DQuat,
-    /// Angular momentum about the centre of mass in the world, kg m²/s; of a body that nothing moves, per
-    /// kg m² of it.
+    /// Angular momentum about the centre of mass in the world, kg m²/s; of an immovable body, per kg m² of it.
     pub(super) momentum: DVec3,
 }
 
@@ -38,7 +37,7 @@ impl Clone for State {
         }
     }
 
-    /// Keeps the room that there is, as no step may allocate.
+    /// Keeps the allocated memory, because steps must not allocate.
     fn clone_from(&mut self, other: &State) {
         self.position.clone_from(&other.position);
         self.velocity.clone_from(&other.velocity);
@@ -52,21 +51,21 @@ impl State {
         self.velocity.push(velocity);
     }
 
-    /// Takes out a body; those after it move up.
+    /// Removes a body; the indices of the bodies after it decrease by one.
     pub(super) fn remove(&mut self, body: usize) {
         self.position.remove(body);
         self.velocity.remove(body);
     }
 
-    /// Has room for as many bodies as another state.
+    /// Resizes to the number of bodies of another state.
     pub(super) fn match_len(&mut self, other: &State) {
         self.position.resize(other.position.len(), DVec3::ZERO);
         self.velocity.resize(other.velocity.len(), DVec3::ZERO);
         self.turned.resize(other.turned.len(), Turned::default());
     }
 
-    /// The first of some bodies with a component of position or velocity beyond ±`largest`, or
-    /// NaN, counted from the first of them.
+    /// The first of some bodies with a component of position or velocity that is beyond ±`largest` or NaN, as an index
+    /// relative to the first of them.
     pub(super) fn beyond(&self, bodies: Range<usize>, largest: f64) -> Option<usize> {
         let largest = DVec3::splat(largest);
         let within = |x: &DVec3| x.abs().cmple(largest).all();

@@ -13,18 +13,18 @@ use crate::{
 pub(super) struct Part<'a> {
     pub(super) forces: &'a [Force],
     pub(super) plan: &'a Plan,
-    /// The bodies, as indices of the world, unless they are a group.
+    /// The bodies, as indices of the world, if they are not a group.
     pub(super) bodies: Range<usize>,
-    /// The bodies in the order of a group, whose forces are these.
+    /// The group that the bodies are, in its order and with its forces.
     pub(super) group: Option<&'a Group>,
     pub(super) is_coupled: bool,
-    /// Their masses.
+    /// Their masses, kg.
     pub(super) mass: &'a [f64],
-    /// Their accelerations by constant forces and weight.
+    /// Their accelerations by constant forces and weight, m/s².
     pub(super) acceleration: &'a [DVec3],
 }
 
-/// The motion of the bodies of a part, as a method tries it.
+/// The motion of the bodies of a part, at which a method evaluates forces.
 #[derive(Clone, Copy)]
 struct Motion<'a> {
     time: f64,
@@ -74,8 +74,8 @@ impl Part<'_> {
         self.mass[i].is_finite()
     }
 
-    /// Calls `act` for each force between two bodies and their indices in the part. What acts
-    /// between every two leaves out immovable ones: their attraction would be infinite.
+    /// Calls `act` for each force between two bodies and their indices in the part. Forces between every two bodies
+    /// leave out immovable ones: their attraction would be infinite.
     pub(super) fn on_pairs(&self, mut act: impl FnMut(&Force, usize, usize)) {
         if !self.is_coupled {
             return;
@@ -151,7 +151,8 @@ impl System for Part<'_> {
             out[i].velocity += share * slopes.velocity;
         };
         self.on_bodies(|force, i| add(i, &force.body_jacobians(&self.body(at, i)), 1.0));
-        // The force on the first grows with the place of the second, so falls with its own.
+        // The Jacobian is with respect to the second body's position relative to the first; the first body's own has
+        // the opposite sign.
         self.on_pairs(|force, i, j| {
             let slopes = force.pair_jacobians(&self.pair(at, i, j));
             add(i, &slopes, -1.0);

@@ -16,10 +16,10 @@ use crate::{
     },
 };
 
-/// More than any run counts; no sum of counts overflows.
+/// More than any run counts; sums of such counts do not overflow.
 const MOST_COUNTED: u64 = 1 << 53;
 
-/// How far the square of a unit vector may be from 1.
+/// The most that the square of a unit vector's length may differ from 1.
 const UNIT: f64 = 1e-9;
 
 impl TryFrom<Snapshot> for World {
@@ -81,7 +81,7 @@ impl TryFrom<Snapshot> for World {
         if let Some(growth) = data.growth {
             world.read_growth(growth)?;
         }
-        // What a step takes for granted, and does not end soon without.
+        // The step relies on this invariant; without it, it may take very long.
         if let Some((i, j)) = world.meeting().first() {
             return Err(format!(
                 "bodies {i} and {j} meet, and are not listed among the overlaps"
@@ -210,7 +210,7 @@ impl World {
         }
     }
 
-    /// Builds the trees that were there: a step takes those of bodies in touch for granted.
+    /// Builds the trees that existed: a step requires the trees of bodies in contact or in overlap.
     fn build_trees_in_touch(&self) {
         let contacts = self.contacts.all().iter().map(|contact| contact.bodies);
         for (i, j) in contacts.chain(self.overlaps.pairs.iter().copied()) {
@@ -229,7 +229,7 @@ impl World {
         Ok(())
     }
 
-    /// Whether two bodies can touch: the lower one first, of shapes that may meet.
+    /// Checks that two bodies can touch: the lower index first, with shapes that may meet.
     fn check_pair_of(&self, what: &str, (i, j): (usize, usize)) -> Result<(), String> {
         self.is_there(i)?;
         self.is_there(j)?;
@@ -249,7 +249,7 @@ impl World {
 }
 
 impl TurningState {
-    /// The same, if a body can turn so.
+    /// The same data, if the body can have such a rotation.
     fn checked(self, index: usize, body: &Body) -> Result<TurningState, String> {
         if let Some(Shape::HalfSpace { .. }) = body.shape {
             let error = WorldError::TurningHalfSpace { body: index };
@@ -275,12 +275,12 @@ impl TurningState {
     }
 }
 
-/// Whether a quaternion is of length 1, as a step leaves it.
+/// Whether a quaternion has length 1, up to the rounding of a step.
 fn is_unit(rotation: DQuat) -> bool {
     (rotation.length_squared() - 1.0).abs() <= UNIT
 }
 
-/// A shape as a world holds it: a normal, of length 1 already, must not be rounded once more.
+/// Checks a shape as a world stores it: a normal already has length 1 and must not be rounded again.
 fn check_shape_of(body: usize, shape: &Shape) -> Result<(), String> {
     match shape {
         Shape::HalfSpace { normal } => check_unit("half-space", *normal),
@@ -291,7 +291,7 @@ fn check_shape_of(body: usize, shape: &Shape) -> Result<(), String> {
 }
 
 fn check_numbers(what: &str, numbers: &[f64]) -> Result<(), String> {
-    // NaN is not below anything.
+    // Written so that NaN is refused.
     match numbers.iter().all(|number| number.abs() <= LARGEST) {
         true => Ok(()),
         false => Err(format!("{what}: {numbers:?} must be within ±1e100")),
