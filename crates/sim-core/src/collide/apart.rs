@@ -1,21 +1,19 @@
 //! A quick test that separates triangles of two leaves.
 //!
-//! Two triangles are apart if one lies on one side of the other's plane. The test computes sixteen pairs
-//! in f32, with a bound on all rounding errors; exact arithmetic decides the pairs that the bound leaves
-//! open. The test finds nearly every pair that is apart. Of nearly every other pair it knows which corners
-//! lie above which plane, which spares exact arithmetic the most.
+//! Two triangles are apart if one lies on one side of the other's plane. The test computes sixteen pairs in f32, with a
+//! bound on all rounding errors; exact arithmetic decides the pairs that the bound leaves open. The test finds nearly
+//! every pair that is apart. For nearly every other pair it finds which corners lie above which plane, which saves the
+//! largest part of the exact arithmetic.
 //!
-//! The bound. A height `h = n·w` above a plane through corner `a`, with `n = u × v` and
-//! `w = p - a`, is a determinant whose rows are differences of corners. Computed from exact
-//! corners with `e = 2^-24` it errs by at most `(7 + 56 e) e` times its permanent (Shewchuk 1997,
-//! sec. 4.3), here `16 e`. Three more errors: `w` has a placed corner, which f32 misses by `d`,
-//! whence `|n|·d`; `u` and `v` of the second mesh are taken before placing, which moves them by
-//! at most `q`, whence `dn·|w|` with `dn_x = q (|u_y| + |v_y| + |u_z| + |v_z| + 2 q)` and so on;
-//! and products below the range of f32 vanish, whence a small constant. The boxes meet, so no
-//! component of `w` exceeds twice the sum of the half extents and the margin of their comparison.
-//! The bound uses the greatest of these in each leaf, which needs errors of four triangles
-//! instead of sixteen pairs. Sizes are such that no product overflows
-//! ([`Reach::has_planes`]).
+//! The bound. A height `h = n·w` above a plane through corner `a`, with `n = u × v` and `w = p - a`, is a determinant
+//! whose rows are differences of corners. Computed from exact corners with `e = 2^-24` it errs by at most `(7 + 56 e)
+//! e` times its permanent (Shewchuk 1997, sec. 4.3), here `16 e`. There are three more errors. First, `w` has a
+//! placed corner, which f32 misses by `d`; this adds `|n|·d`. Second, `u` and `v` of the second mesh are computed
+//! before placing, which moves them by at most `q`; this adds `dn·|w|` with `dn_x = q (|u_y| + |v_y| + |u_z| + |v_z|
+//! + 2 q)` and so on. Third, products below the range of f32 vanish; this adds a small constant. The boxes meet, so
+//! no component of `w` exceeds twice the sum of the half extents and the margin of their comparison. The bound uses
+//! the greatest of these in each leaf, which needs errors of four triangles instead of sixteen pairs. Sizes are
+//! limited so that no product overflows ([`Reach::has_planes`]).
 
 use super::pairs::{Lanes, Meshes, Reach, dot0, splat};
 use crate::bvh::{Boxes, Triangles, WIDTH};
@@ -23,7 +21,7 @@ use crate::bvh::{Boxes, Triangles, WIDTH};
 /// Columns of four triangles.
 type Four = [f32; WIDTH];
 
-/// Planes of the four triangles of a leaf, with what a height above one errs by at most.
+/// The planes of the four triangles of a leaf, with bounds on the errors of heights above them.
 struct Planes {
     normal: [Four; 3],
     error: Four,
@@ -31,12 +29,12 @@ struct Planes {
 
 /// 16 e for products of rounded differences.
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
-/// Above what underflow takes from three products, but no subnormal number.
+/// More than three products lose by underflow, but a normal number.
 const VANISHING: f32 = 16.0 * f32::MIN_POSITIVE;
 
 impl Planes {
-    /// For sides moved by at most `shift`, and points that f32 misses by at most `miss` and that
-    /// lie no farther than `wide` from the first corner along each axis.
+    /// For sides moved by at most `shift`, and points that f32 misses by at most `miss` and that lie no farther than
+    /// `wide` from the first corner along each axis.
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "lanes of several columns")]
     fn of(triangles: &Triangles, shift: f32, miss: f32, wide: &[f32; 3]) -> Planes {
@@ -67,7 +65,7 @@ impl Planes {
         planes
     }
 
-    /// Along each normal, a motion.
+    /// The component of a motion along each normal.
     #[inline(always)]
     fn along(&self, motion: &[f32; 3]) -> Four {
         let [x, y, z] = &self.normal;
@@ -79,21 +77,20 @@ impl Planes {
     }
 }
 
-/// What a glance tells, a bit for each pair.
+/// The result of the quick test, a bit for each pair.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Glance {
-    /// Those that may meet.
+    /// Pairs that may meet.
     pub(super) maybe: u32,
-    /// Those of which each crosses the other's plane, with no corner in it, for certain.
+    /// Pairs of which each triangle certainly crosses the other's plane, with no corner in it.
     pub(super) cross: u32,
-    /// Of those that cross, which corners of the first are above the second's plane.
+    /// For pairs that cross, the corners of the first triangle above the second's plane.
     pub(super) first_above: [u32; 3],
-    /// Of those that cross, which corners of the second are above the first's plane.
+    /// For pairs that cross, the corners of the second triangle above the first's plane.
     pub(super) second_above: [u32; 3],
 }
 
-/// A glance at the `pairs`: of two leaves whose boxes are known to meet there, of meshes that are
-/// not turned.
+/// The quick test of `pairs` of triangles of two leaves whose boxes are known to meet; the meshes are not rotated.
 #[inline(always)]
 pub(super) fn glance<L: Lanes>(
     meshes: Meshes<'_>,
@@ -137,23 +134,23 @@ pub(super) fn glance<L: Lanes>(
     }
 }
 
-/// How the second mesh moves, as f32 sees it.
+/// The motion of the second mesh in f32.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Way {
-    /// Where it starts, and by how much it moves.
+    /// The start, and the motion from there.
     pub(super) offset: [f32; 3],
     pub(super) motion: [f32; 3],
-    /// More than twice that, and than margins of comparisons of boxes, along each axis.
+    /// More than twice that, and more than the margins of box comparisons, along each axis.
     pub(super) wide: [f32; 3],
-    /// What f32 misses placed corners by, and placing moves sides by, at most ([`Reach`]).
+    /// The most by which f32 misses placed corners, and by which placing moves sides ([`Reach`]).
     pub(super) miss: f32,
     pub(super) shift: f32,
 }
 
-/// A bit for each pair of triangles of two leaves of which one stays on one side of the other's plane all
-/// the way, for certain. Their boxes are known to meet on the way.
+/// A bit for each pair of triangles of two leaves of which one certainly stays on one side of the other's plane for the
+/// whole motion. Their boxes are known to meet during the motion.
 ///
-/// What the motion adds to a height is another determinant, of which `16 e` leaves half for the sum of the
+/// The change of a height by the motion is another determinant. Its error bound `16 e` leaves half for the sum of the
 /// two and for the rounding of the motion.
 #[inline(always)]
 pub(super) fn stay_apart<L: Lanes>(
@@ -187,8 +184,8 @@ pub(super) fn stay_apart<L: Lanes>(
     firsts | seconds
 }
 
-/// A bit for each lane in which three points stay on one side of a plane, for certain, as something is
-/// added to their heights.
+/// A bit for each lane in which three points certainly stay on one side of a plane while a term is added to their
+/// heights.
 #[inline(always)]
 fn stay<L: Lanes>(
     normal: &[L; 3],
@@ -205,8 +202,7 @@ fn stay<L: Lanes>(
     lowest.above(error) | none.sub(error).above(highest)
 }
 
-/// Bounds what lies between two points of two boxes that meet, along each axis, whichever two of
-/// two leaves they are.
+/// Bounds the difference of two points of two boxes that meet, along each axis, for any two boxes of two leaves.
 #[inline(always)]
 fn wide(first: &[Four; 3], second: &[Four; 3], margin: f32) -> [f32; 3] {
     let most = |[a, b, c, d]: Four| max(max(a, b), max(c, d));
@@ -220,7 +216,7 @@ fn max(x: f32, y: f32) -> f32 {
     if x > y { x } else { y }
 }
 
-/// A corner of each of the first's triangles.
+/// One corner of each of the first mesh's triangles.
 #[inline(always)]
 fn rows<L: Lanes>(corners: &[Four; 9], k: usize) -> [L; 3] {
     [
@@ -230,7 +226,7 @@ fn rows<L: Lanes>(corners: &[Four; 9], k: usize) -> [L; 3] {
     ]
 }
 
-/// A corner of each of the second's triangles, placed but for rounding.
+/// One corner of each of the second mesh's triangles, placed, up to rounding.
 #[inline(always)]
 fn placed<L: Lanes>(corners: &[Four; 9], k: usize, offset: &[L; 3]) -> [L; 3] {
     [
@@ -250,14 +246,14 @@ fn height<L: Lanes>(normal: &[L; 3], corner: &[L; 3], p: &[L; 3]) -> L {
     dot0(normal, &[x, y, z])
 }
 
-/// On which sides of a plane three points lie for certain, a bit for each lane.
+/// The sides of a plane on which three points certainly lie, a bit for each lane.
 struct Sides {
     above: [u32; 3],
     below: [u32; 3],
 }
 
 impl Sides {
-    /// All on one.
+    /// All on one side.
     #[inline(always)]
     fn apart(&self) -> u32 {
         let [p, q, r] = self.above;
@@ -265,7 +261,7 @@ impl Sides {
         (p & q & r) | (s & t & u)
     }
 
-    /// Each on one or the other.
+    /// Each certainly on one side or the other.
     #[inline(always)]
     fn certain(&self) -> u32 {
         let [p, q, r] = self.above;

@@ -1,9 +1,9 @@
 //! Whether the surfaces of a box along the axes and of a mesh meet.
 //!
-//! The inside of the box is known, so one descent of the mesh's tree is enough. A subtree strictly inside or
-//! strictly outside needs no more tests. A triangle with one corner strictly inside and another one not
-//! strictly inside meets the surface, whatever its plane; so does a connected part of the mesh with such corners. Only
-//! triangles whose corners are all outside are tested against the triangles of the box.
+//! The inside of the box is known, so one descent of the mesh's tree is enough. A subtree strictly inside or strictly
+//! outside needs no more tests. A triangle with one corner strictly inside and another one not strictly inside meets
+//! the surface, whatever its plane; so does a connected part of the mesh with such corners. Only triangles whose
+//! corners are all outside are tested against the triangles of the box.
 
 use glam::{DVec3, Vec3A, Vec4};
 
@@ -13,18 +13,18 @@ use crate::{
     bvh::{Boxes, Bvh, Cuboid, LEAF, MAX_DEPTH, WIDTH},
 };
 
-/// A box, and a mesh beside it.
+/// A box, and a mesh to test against it.
 pub(super) struct Pair<'a> {
     /// Low and high corner, m.
     ends: [DVec3; 2],
     mesh: &'a Bvh,
-    /// By how much the mesh is displaced, m.
+    /// The displacement of the mesh, m.
     offset: DVec3,
     seen: Seen,
 }
 
 impl<'a> Pair<'a> {
-    /// A box by its low and high corner, and a mesh displaced by `offset`, m, where f32 reaches.
+    /// A box by its low and high corner, and a mesh displaced by `offset`, m; `None` beyond the range of f32.
     #[inline]
     pub(super) fn of(ends: [DVec3; 2], mesh: &'a Bvh, offset: DVec3) -> Option<Pair<'a>> {
         Some(Pair {
@@ -35,7 +35,7 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// The answer, and what it costs.
+    /// The answer, and its cost.
     pub(super) fn meet(&self) -> Work {
         let mut work = Work {
             meet: false,
@@ -43,7 +43,7 @@ impl<'a> Pair<'a> {
             tests: 0,
         };
         let is_across = self.is_across();
-        // Nodes on the way from the root, one a level, with a bit for each child that waits.
+        // The path of nodes from the root, one for each level, with a bit for each child still to visit.
         let mut waiting = [(0, 0); MAX_DEPTH];
         let mut count = 0;
         let mut code = self.mesh.root();
@@ -72,7 +72,7 @@ impl<'a> Pair<'a> {
                     }
                 }
             } else if cut != 0 {
-                // First the one that is cut the deepest.
+                // First the child into which the surface cuts most deeply.
                 let next = deepest(depth);
                 cut &= !(1 << next);
                 waiting[count] = (code, cut);
@@ -90,7 +90,7 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// Whether the mesh hangs together, and not all of it is strictly inside.
+    /// Whether the mesh is connected, and not all of it is strictly inside.
     #[inline]
     fn is_across(&self) -> bool {
         let Aabb { min, max } = self.mesh.bounds();
@@ -111,7 +111,7 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// The same for one no corner of which is strictly inside.
+    /// The same for a triangle without a corner strictly inside.
     #[inline(never)]
     fn meets_from_outside(&self, corners: [DVec3; 3]) -> bool {
         let [low, high] = self.ends;
@@ -132,17 +132,17 @@ impl<'a> Pair<'a> {
             })
     }
 
-    /// Whether all of the box is on one side of a triangle's plane; a "yes" is a proof.
+    /// Whether the whole box is on one side of a triangle's plane; a "yes" is a proof.
     ///
-    /// Of the products and sums below each has a relative rounding of a few `2^-53`: of the normal
-    /// below 8 of `e²` in each component with the longest side `e` in the largest norm, of the heights
-    /// with it below 16 of `e²` times the distances added up.
+    /// Each of the products and sums below has a relative rounding of a few `2^-53`. The normal errs by less than 8
+    /// of `e²` in each component, with the longest side `e` in the maximum norm; heights along it err by less than 16
+    /// of `e²` times the sum of the distances.
     fn is_beside_plane(&self, [p, q, r]: [DVec3; 3]) -> bool {
         let [low, high] = self.ends;
         let (one, other) = (q - p, r - p);
         let normal = one.cross(other);
         let (to_low, to_high) = (low - p, high - p);
-        // The corners of the box that are lowest and highest above the plane.
+        // The heights of the lowest and the highest corner of the box above the plane.
         let (a, b) = (normal * to_low, normal * to_high);
         let lowest = a.min(b).element_sum();
         let highest = a.max(b).element_sum();
@@ -164,41 +164,41 @@ impl<'a> Pair<'a> {
     }
 }
 
-/// How the surface of the box cuts the boxes of a node.
+/// The cut of the surface of the box through the boxes of a node.
 struct Cut {
-    /// A bit for each that it may come into.
+    /// A bit for each box that the surface may cut.
     bits: u32,
-    /// How deep.
+    /// The depth of each cut.
     depth: Vec4,
-    /// Whether one is strictly inside.
+    /// Whether one of the boxes is strictly inside.
     is_any_inside: bool,
 }
 
-/// The lane of the greatest float, or one that is as great but for rounding: it may be one that the
-/// surface does not come into, which costs a look and no more.
+/// The lane of the greatest number, up to rounding. If the surface does not cut the box of this lane, the only cost
+/// is one more test.
 #[inline]
 fn deepest(depth: Vec4) -> usize {
-    // The lowest bits name the lane; those of minus infinity would make it no number.
+    // The lowest bits hold the lane; with those of minus infinity the result would be NaN.
     let depth = depth.max(Vec4::splat(f32::MIN)).to_array();
     let [x, y, z, w] = depth.map(|x| x.to_bits() & !3);
     let key = Vec4::from_array([x, y | 1, z | 2, w | 3].map(f32::from_bits));
     (key.max_element().to_bits() & 3) as usize
 }
 
-/// The box as the tree of the mesh sees it, in f32.
+/// The box in the frame of the mesh's tree, in f32.
 struct Seen {
     centre: [Vec4; 3],
     half: [Vec4; 3],
-    /// More than all roundings of a comparison, m.
+    /// A bound on all roundings of a comparison, m.
     margin: f32,
 }
 
 impl Seen {
-    /// Unless f32 does not reach so far.
+    /// `None` beyond the range of f32.
     ///
-    /// Let `S` be the sum of the magnitudes of the mesh, of its displacement and of the box, and
-    /// `u = 2^-24`. A comparison `|c - c'| <= h + h'` sees roundings of centre and half extent, of
-    /// the difference, and of both sums, together below `7 u S`; placed vertices are rounded in f64.
+    /// Let `S` be the sum of the magnitudes of the mesh, of its displacement and of the box, and `u = 2^-24`. A
+    /// comparison `|c - c'| <= h + h'` has roundings of centre and half extent, of the difference, and of both sums,
+    /// together below `7 u S`; placed vertices are rounded in f64.
     #[inline]
     fn of(ends: [DVec3; 2], mesh: &Bvh, offset: DVec3) -> Option<Seen> {
         let [low, high] = ends.map(|end| end - offset);
@@ -226,7 +226,7 @@ impl Seen {
             within = within.min(half - outside);
             without = without.max(half + outside);
         }
-        // Minus infinity in lanes that hold nothing.
+        // Minus infinity in empty lanes.
         let depth = within.min(without);
         let margin = Vec4::splat(-self.margin);
         let inside = without.cmplt(margin) & within.cmpgt(Vec4::ZERO);
@@ -254,7 +254,7 @@ mod tests {
         cube().transformed(DQuat::IDENTITY, size).unwrap()
     }
 
-    /// Triangles anywhere on a lattice, some of them without area, which may hang together.
+    /// Random triangles on a lattice, some without area; they may be connected.
     fn soup(random: &mut Random, scale: f64) -> Mesh {
         let count = 1 + random.up_to(30).unsigned_abs() as u32;
         let apart = random.up_to(1).unsigned_abs() as u32;
@@ -334,13 +334,13 @@ mod tests {
         assert!(!agree(&ball, &within, DVec3::ZERO).meet);
         assert!(agree(&around, &ball, DVec3::X * 0.3).meet);
         assert!(agree(&ball, &within, DVec3::X * 0.7).meet);
-        // What is all within the box is done with at the root.
+        // A mesh wholly inside the box is decided at the root.
         let work = agree(&around, &ball, DVec3::ZERO);
         assert_eq!(
             (work.meet, work.boxes, work.tests),
             (false, WIDTH as u64, 0)
         );
-        // About where they touch at a pole, which f32 does not tell.
+        // Near the place where they touch at a pole, which f32 does not resolve.
         for k in -40..=40 {
             let offset = DVec3::Y * (1.5 + 1e-8 * f64::from(k));
             assert_eq!(agree(&ball, &cube(), offset).meet, k <= 0, "{k}");

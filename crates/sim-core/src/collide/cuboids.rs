@@ -1,10 +1,10 @@
-//! The first contact of two boxes that translate.
+//! The first contact of two boxes, one of which translates.
 //!
-//! Along each axis two boxes begin to overlap at one time and cease at another. They touch when
-//! the last axis begins to overlap, if no other axis has ceased by then. This takes a few
-//! hundred instructions. For their triangles, face against face is the worst case, since
-//! most features touch at once. The answers are those of [`super::sweep`] to the last bit, except for
-//! axes whose two times round to one: here the first of these axes counts.
+//! Along each axis two boxes begin to overlap at one time and cease at another. They touch when the last axis begins
+//! to overlap, if no other axis has ceased by then. This takes a few hundred instructions. For the search over their
+//! triangles, face against face is the worst case, because most features touch at once. The answers are those of
+//! [`super::sweep`] to the last bit, except if the times of two axes round to the same number: here the first of
+//! these axes counts.
 
 use core::cmp::Ordering::{self, Equal, Greater, Less};
 use glam::DVec3;
@@ -19,12 +19,12 @@ use crate::{
     expansion::{Expansion, two_sum},
 };
 
-/// It takes triangles to tell.
+/// The boxes alone do not decide; the triangles must.
 #[derive(Debug)]
 pub(super) struct Untold;
 
-/// The first entering contact of two boxes ([`super::touch::first_touch`]), unless they overlap at
-/// the start, or no corner touches a face.
+/// The first entering contact of two boxes ([`super::touch::first_touch`]); an error if they overlap at the start, or
+/// no corner touches a face.
 pub(super) fn first_touch(
     first: &Cuboid,
     second: &Cuboid,
@@ -43,7 +43,7 @@ pub(super) fn first_touch(
         motion,
     };
     let [low, high] = pair.second.ends;
-    // Far away a box may be placed as a sheet.
+    // Far away, rounding may flatten a placed box to a sheet.
     if !low.cmplt(high).all() || (0..3).all(|axis| pair.overlaps(axis)) {
         return Err(Untold);
     }
@@ -67,7 +67,7 @@ pub(super) fn first_touch(
     }))
 }
 
-/// Whether the surfaces of two boxes share a point, the second one displaced by `offset`, m.
+/// Whether the surfaces of two boxes share a point; the second one is displaced by `offset`, m.
 pub(super) fn meet(first: &Cuboid, second: &Cuboid, offset: DVec3) -> bool {
     let [low, high] = first.ends;
     let [others_low, others_high] = second.ends.map(|end| end + offset);
@@ -80,7 +80,7 @@ pub(super) fn meet(first: &Cuboid, second: &Cuboid, offset: DVec3) -> bool {
         && !is_inside([others_low, others_high], [low, high])
 }
 
-/// A box, and where its low and its high corner are.
+/// A box, and the positions of its low and its high corner.
 struct Placed<'a> {
     cuboid: &'a Cuboid,
     ends: [DVec3; 2],
@@ -89,23 +89,23 @@ struct Placed<'a> {
 struct Pair<'a> {
     first: Placed<'a>,
     second: Placed<'a>,
-    /// Of the second one.
+    /// The motion of the second box.
     motion: DVec3,
 }
 
-/// How two boxes come to touch along an axis.
+/// The beginning of the overlap of two boxes along an axis.
 struct Entry {
     axis: usize,
-    /// Way until then, m, as rounded and what rounding took.
+    /// The distance until then, m, rounded, and its rounding error.
     gap: (f64, f64),
     /// Motion along the axis, m.
     motion: f64,
-    /// Which ends touch, of the first box and of the second, 0 for the low one.
+    /// The ends that touch, of the first box and of the second; 0 for the low one.
     ends: (usize, usize),
 }
 
 impl Entry {
-    /// When, rounded down.
+    /// The time, rounded down.
     fn time(&self) -> f64 {
         let mut terms = Expansion::<2>::ZERO;
         terms.add(self.gap.1);
@@ -119,14 +119,14 @@ impl Entry {
 }
 
 impl Pair<'_> {
-    /// Whether the insides overlap along an axis at the start.
+    /// Whether the interiors overlap along an axis at the start.
     fn overlaps(&self, axis: usize) -> bool {
         let ends = |placed: &Placed<'_>| placed.ends.map(|end| end[axis]);
         let ([low, high], [others_low, others_high]) = (ends(&self.first), ends(&self.second));
         low < others_high && others_low < high
     }
 
-    /// How the boxes touch along an axis within the motion, if by that they enter each other.
+    /// The contact of the boxes along an axis within the motion, if they enter each other there.
     fn entry(&self, axis: usize) -> Option<Entry> {
         let motion = self.motion[axis];
         let [first, second] = [&self.first, &self.second].map(|placed| placed.ends);
@@ -154,16 +154,16 @@ impl Pair<'_> {
         enters.then_some(entry)
     }
 
-    /// Whether along an axis, when the boxes touch, an end of the first is above one of the second.
+    /// Compares an end of the first box with an end of the second one along an axis, when the boxes touch.
     fn height(&self, entry: &Entry, along: usize, end: usize, others_end: usize) -> Ordering {
         let end = self.first.ends[end][along];
         let apart = two_sum(end, -self.second.ends[others_end][along]);
-        // The time is the gap over the way.
+        // The time is the gap over the motion.
         compare((apart, entry.motion.abs()), (entry.gap, self.motion[along]))
     }
 
-    /// Of the first one's corners that come into the other's face, the first one as a feature, and
-    /// where it is at the start.
+    /// Of the first box's corners that come into the other's face, the first one, as a feature and with its position
+    /// at the start.
     fn first_of_first(&self, entry: &Entry) -> Option<(Feature, DVec3)> {
         let (own, other) = (&self.first, &self.second);
         let corners = corners_within(entry.axis, entry.ends.0, |along, end| {
@@ -177,7 +177,7 @@ impl Pair<'_> {
         Some((Feature::VertexFace { vertex, face }, at))
     }
 
-    /// The same of the second one's corners.
+    /// The same for the second box's corners.
     fn first_of_second(&self, entry: &Entry) -> Option<(Feature, DVec3)> {
         let (own, other) = (&self.second, &self.first);
         let corners = corners_within(entry.axis, entry.ends.1, |along, end| {
@@ -194,7 +194,7 @@ impl Pair<'_> {
     }
 }
 
-/// The corners at one end of an axis whose ends along the others are within.
+/// The corners at one end of an axis whose ends along the other axes are within a range.
 fn corners_within(
     axis: usize,
     end: usize,
@@ -210,12 +210,12 @@ fn corners_within(
 }
 
 impl Placed<'_> {
-    /// The triangle of a face that a point, which moves into the face, comes to; the lower one on the
-    /// diagonal.
+    /// The triangle of a face that a point reaches as it moves into the face; on the diagonal, the triangle of lower
+    /// index.
     fn triangle_met(&self, axis: usize, end: usize, point: DVec3, motion: DVec3) -> u32 {
         let face = &self.cuboid.faces[axis][end];
         let at = |corner: usize| Cuboid::corner(&self.ends, corner);
-        // The ends of the diagonal are the corners beside that of the first triangle.
+        // The ends of the diagonal are the corners adjacent to that of the first triangle.
         let from = at(face.corner ^ 1 << ((axis + 1) % 3));
         let diagonal = Difference(at(face.corner ^ 1 << ((axis + 2) % 3)), from);
         let side = |x: DVec3| sign([diagonal, motion.into(), Difference(from, x)]);
@@ -227,7 +227,7 @@ impl Placed<'_> {
     }
 }
 
-/// `p s` against `q r`, exactly; `p` and `q` are two numbers that sum.
+/// Compares `p s` with `q r`, exactly; `p` and `q` are sums of two numbers.
 fn compare((p, s): ((f64, f64), f64), (q, r): ((f64, f64), f64)) -> Ordering {
     let (one, other) = (p.0 * s, q.0 * r);
     // Two roundings of each product, and one of the difference.
@@ -256,7 +256,7 @@ mod tests {
     use alloc::format;
     use glam::DQuat;
 
-    /// A box, with some of its diagonals turned and its triangles in some order.
+    /// A box with some diagonals exchanged and its triangles in some order.
     fn cuboid(random: &mut Random, size: DVec3) -> Mesh {
         let unit = cube().transformed(DQuat::IDENTITY, size).unwrap();
         let mut triangles = unit.triangles().to_vec();
@@ -279,14 +279,14 @@ mod tests {
         let (mut touches, mut misses, mut untold, mut others) = (0, 0, 0, 0);
         for round in 0..60_000 {
             let sizes = [(); 2].map(|()| random.vector(2).abs() + 1.0);
-            // As large as f32 has it, and as small as products bear.
+            // As large as f32 allows, and as small as the products allow.
             let scale = libm::ldexp(1.0, [0, -100, 120][round % 7 % 3]);
             let meshes = sizes.map(|size| cuboid(&mut random, scale * size));
             let [first, second] = meshes.each_ref().map(Bvh::build);
             let offset = 0.5 * random.vector(8);
             let aim = if round % 2 == 0 { -1.5 } else { 0.0 };
             let motion = aim * offset + 0.5 * random.vector(8);
-            // A lattice on which much is tied; near it; and anything.
+            // A lattice with many ties; near it; and random places.
             let noise = match round % 3 {
                 0 => 0.0,
                 1 => 1e-15,

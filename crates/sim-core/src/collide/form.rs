@@ -1,8 +1,7 @@
-//! Two shapes of any kind: do they meet, and where do they touch first?
+//! Two shapes of any kind: whether they meet, and their first contact.
 //!
-//! Meshes against meshes are exact ([`tree`], [`touch`]). Spheres and half-spaces have closed
-//! forms, whose times are rounded like any quotient. With the second shape at `r` and moving by
-//! `t d` from there:
+//! Meshes against meshes are exact ([`tree`], [`touch`]). Spheres and half-spaces have closed forms, whose times are
+//! rounded like any quotient. If the second shape is at `r` and moves by `t d` from there:
 //!
 //! ```text
 //! half-space, unit normal n:   n·(r + t d) = reach,   reach the most that the shape extends along -n
@@ -30,24 +29,24 @@ pub(crate) enum Form<'a> {
     HalfSpace(DVec3),
 }
 
-/// The first contact of two shapes on a way.
+/// The first contact of two shapes within a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Contact {
-    /// Part of the way done.
+    /// The part of the motion before the contact.
     pub(crate) time: f64,
-    /// Where, as seen from the first shape's origin, m.
+    /// The contact point relative to the first shape's origin, m.
     pub(crate) point: DVec3,
     /// Unit normal, from the first shape to the second.
     pub(crate) normal: DVec3,
-    /// What touches, where both are meshes.
+    /// The features that touch, if both shapes are meshes.
     pub(crate) feature: Option<Feature>,
     /// The triangle that a sphere touches.
     pub(crate) face: Option<u32>,
 }
 
 impl Contact {
-    /// The same with the shapes in the other order, the second one displaced by `offset` and then
-    /// moving by `motion`, m.
+    /// The same contact with the shapes in the other order; the second one is displaced by `offset` and then moves by
+    /// `motion`, m.
     fn turned(self, offset: DVec3, motion: DVec3) -> Contact {
         Contact {
             point: self.point + (offset + self.time * motion),
@@ -82,15 +81,15 @@ impl From<BallTouch> for Contact {
     }
 }
 
-/// Whether two meshes are asked in the other order, by where the second is. Its vertices are placed in
-/// the frame of the first, which rounds; so the same pair gets the same answer, whichever of the two
-/// it is that somebody calls the first.
+/// Whether a test of two meshes exchanges them, by the position of the second one. The vertices of one mesh are
+/// placed in the frame of the other, which rounds. With a fixed order the same pair gets the same answer, whichever
+/// of the two is called the first.
 pub(crate) fn is_turned(offset: DVec3) -> bool {
     let [x, y, z] = offset.to_array();
     (x, y, z) < (0.0, 0.0, 0.0)
 }
 
-/// Whether two shapes share a point, the second one displaced by `offset`, m.
+/// Whether two shapes share a point; the second one is displaced by `offset`, m.
 pub(crate) fn meet(first: Form<'_>, second: Form<'_>, offset: DVec3) -> bool {
     match (first, second) {
         (Form::Mesh(first), Form::Mesh(second)) if is_turned(offset) => {
@@ -107,8 +106,8 @@ pub(crate) fn meet(first: Form<'_>, second: Form<'_>, offset: DVec3) -> bool {
     }
 }
 
-/// The first contact of two shapes that are apart, the second one displaced by `offset` and then
-/// moving by `motion`, m. Motion along the surfaces is no contact.
+/// The first contact of two shapes that are apart. The second one is displaced by `offset` and then moves by
+/// `motion`, m. Motion along the surfaces is no contact.
 pub(crate) fn first_contact(
     first: Form<'_>,
     second: Form<'_>,
@@ -136,7 +135,7 @@ pub(crate) fn first_contact(
     }
 }
 
-/// Directions in which the second of two shapes that touch might move out of the first.
+/// Directions in which the second of two touching shapes might move out of the first.
 pub(crate) fn parting_normals(first: Form<'_>, second: Form<'_>, offset: DVec3) -> Vec<DVec3> {
     match (first, second) {
         (Form::Mesh(first), Form::Mesh(second)) if !is_turned(offset) => {
@@ -156,7 +155,7 @@ pub(crate) fn parting_normals(first: Form<'_>, second: Form<'_>, offset: DVec3) 
         }
         (Form::HalfSpace(normal), _) => alloc::vec![normal],
         (Form::Mesh(mesh), Form::Sphere(radius)) => {
-            // Out of the face that it is nearest to: towards where it came from.
+            // Out of the nearest face, which is found by motions from outside along the axes.
             let contact = DVec3::AXES
                 .iter()
                 .flat_map(|&axis| [axis, -axis])
@@ -177,10 +176,10 @@ pub(crate) fn parting_normals(first: Form<'_>, second: Form<'_>, offset: DVec3) 
     }
 }
 
-/// Normals that are tried at most to part two meshes.
+/// The most normals that are tried to separate two meshes.
 pub(crate) const MOST_NORMALS: usize = 32;
 
-/// How far a shape extends against `normal`, and where.
+/// The extent of a shape against `normal`, and its farthest point.
 pub(crate) fn reach(shape: Form<'_>, normal: DVec3) -> (f64, DVec3) {
     match shape {
         Form::Mesh(mesh) => {
@@ -195,7 +194,7 @@ pub(crate) fn reach(shape: Form<'_>, normal: DVec3) -> (f64, DVec3) {
 fn plane(normal: DVec3, other: Form<'_>, offset: DVec3, motion: DVec3) -> Option<Contact> {
     let approach = -normal.dot(motion);
     let height = normal.dot(offset);
-    // Most shapes at most times are farther than they move.
+    // Most shapes at most times are farther apart than they move.
     if approach <= 0.0 {
         return None;
     }
@@ -233,7 +232,7 @@ fn spheres(first: f64, second: f64, offset: DVec3, motion: DVec3) -> Option<Cont
         return None;
     }
     let at = offset + time * motion;
-    // Points have no surface to give a normal.
+    // Two points have no surface that gives a normal.
     let normal = unit(at).filter(|_| sum > 0.0);
     let normal = normal.or_else(|| Some(-unit(motion)?))?;
     (normal.dot(motion) < 0.0).then(|| Contact {
@@ -245,7 +244,7 @@ fn spheres(first: f64, second: f64, offset: DVec3, motion: DVec3) -> Option<Cont
     })
 }
 
-/// Of unit length; exactly so along an axis, and whatever the length was.
+/// The unit vector of `v`: exact along an axis, for any length.
 pub(super) fn unit(v: DVec3) -> Option<DVec3> {
     let scaled = v / v.abs().max_element();
     scaled.is_finite().then(|| scaled / scaled.length())

@@ -1,4 +1,4 @@
-//! Do two meshes meet, where, and which features touch first?
+//! Whether two meshes meet, where, and which features touch first.
 //!
 //! All functions take two meshes, the second one placed in the first one's frame ([`Placement`]),
 //! and every decision is exact for the placed vertices.
@@ -43,14 +43,14 @@ pub(crate) use placement::snap;
 pub use solid::{Place, contains, each_in_box, locate, segment_meets};
 pub use touch::{Feature, Touch};
 
-/// What an answer to whether two meshes meet has cost.
+/// The cost of deciding whether two meshes meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Work {
     /// The answer.
     pub meet: bool,
-    /// Pairs of boxes compared; where a mesh is a box, its own with those of the other.
+    /// Pairs of boxes compared; if a mesh is a box, that box with the boxes of the other mesh.
     pub boxes: u64,
-    /// Tests of triangles: of an edge against a triangle in the naive search, through trees of two
-    /// triangles, or of one with a mesh that is a box.
+    /// Tests of triangles. In the naive search a test is of an edge against a triangle, through trees of two
+    /// triangles, or of one triangle against a mesh that is a box.
     pub tests: u64,
 }

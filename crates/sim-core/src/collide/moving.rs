@@ -1,12 +1,11 @@
-//! When moving points and edges meet triangles and edges: exact decisions, times rounded down.
+//! The times at which moving points and edges meet triangles and edges: exact decisions, times rounded down.
 //!
-//! The motion is a translation from time 0 to time 1, so every time of contact is a quotient of two
-//! determinants of differences of points (see [`super::touch`]), and the signs of such determinants
-//! decide whether features meet: in f64 if a bound on the error allows it, else in exact
-//! arithmetic (Shewchuk 1997). Sets are closed, so touching is meeting, and features that touch at
-//! the start meet at time 0. Every time is the greatest f64 that is not above the exact one. If
-//! coordinates are so large or small that exact products leave the range of f64, it is at most
-//! eight units in the last place less.
+//! The motion is a translation from time 0 to time 1, so every time of contact is a quotient of two determinants of
+//! differences of points (see [`super::touch`]). The signs of such determinants decide whether features meet: in f64
+//! if a bound on the error allows it, else in exact arithmetic (Shewchuk 1997). Sets are closed: features that touch
+//! meet, and features that touch at the start meet at time 0. Every time is the greatest f64 that is not above the
+//! exact one. If coordinates are so large or small that exact products leave the range of f64, it is at most eight
+//! units in the last place less.
 //!
 //! Coordinates must be multiples of 2^-340, as in [`super::predicates`]. Features with a coordinate or a
 //! motion that is not a number or beyond ±1e100 meet nothing. Components of the motion below 2^-250 count as zero.
@@ -21,11 +20,11 @@ use super::{
     triple::{Difference, Time, sign},
 };
 
-/// When a point that moves by `motion` first meets a closed triangle at rest, which may be a segment
-/// or a point; `None` if it does not from time 0 to 1.
+/// The time at which a point that moves by `motion` first meets a closed triangle at rest, which may degenerate to a
+/// segment or a point; `None` if they do not meet from time 0 to 1.
 ///
-/// A point that slides in the triangle's plane meets it at once if it is inside, else where it
-/// first meets an edge.
+/// A point that slides in the triangle's plane meets the triangle at time 0 if it is inside, else when it first meets
+/// an edge.
 pub fn point_meets_triangle(p: DVec3, motion: DVec3, triangle: [DVec3; 3]) -> Option<f64> {
     let (motion, [a, b, c]) = (snap(motion), triangle);
     if ![p, motion, a, b, c].into_iter().all(is_in_range) {
@@ -39,8 +38,8 @@ pub fn point_meets_triangle(p: DVec3, motion: DVec3, triangle: [DVec3; 3]) -> Op
     }
 }
 
-/// When an edge `cd` that moves by `motion` first meets an edge `ab` at rest, both closed; either
-/// may be a point. `None` if it does not from time 0 to 1.
+/// The time at which an edge `cd` that moves by `motion` first meets an edge `ab` at rest; both are closed and may be
+/// points. `None` if they do not meet from time 0 to 1.
 pub fn edge_meets_edge([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DVec3) -> Option<f64> {
     let motion = snap(motion);
     if ![a, b, c, d, motion].into_iter().all(is_in_range) {
@@ -49,7 +48,7 @@ pub fn edge_meets_edge([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DVec3) ->
     let (u, w) = (Difference(b, a), Difference(d, c));
     let time = Time::new(u, w, Difference(a, c), motion);
     match time.course() {
-        // In one plane, or along one line, an end comes first.
+        // If the edges stay in one plane, or on one line, an end meets the other edge first.
         Ordering::Equal if segments_meet(a, b, c, d) => Some(0.0),
         Ordering::Equal => least([
             point_meets_edge(c, motion, [a, b]),
@@ -65,8 +64,8 @@ pub fn edge_meets_edge([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DVec3) ->
     }
 }
 
-/// When a point that moves by `motion` first meets a closed edge at rest, which may be a point;
-/// `None` if it does not from time 0 to 1.
+/// The time at which a point that moves by `motion` first meets a closed edge at rest, which may be a point; `None` if
+/// they do not meet from time 0 to 1.
 pub fn point_meets_edge(p: DVec3, motion: DVec3, [a, b]: [DVec3; 2]) -> Option<f64> {
     let motion = snap(motion);
     if ![p, motion, a, b].into_iter().all(is_in_range) {
@@ -77,7 +76,7 @@ pub fn point_meets_edge(p: DVec3, motion: DVec3, [a, b]: [DVec3; 2]) -> Option<f
     }
     let (along, from, to) = (Difference(b, a), Difference(a, p), Difference(b, p));
     let way = Difference::from(motion);
-    // Seen along an axis along which motion and edge are not parallel.
+    // In the projection along an axis in which motion and edge are not parallel.
     for axis in AXES.map(Difference::from) {
         let time = Time::new(along, axis, from, motion);
         let course = time.course();
@@ -94,7 +93,7 @@ pub fn point_meets_edge(p: DVec3, motion: DVec3, [a, b]: [DVec3; 2]) -> Option<f
         .iter()
         .all(|&axis| sign([from, way, axis.into()]) == Ordering::Equal);
     let along = (0..3).find(|&axis| is_ahead && motion[axis] != 0.0)?;
-    // Along the edge, or onto a point.
+    // The motion is parallel to the edge, or the edge is a point.
     least([from, to].map(|gap| {
         let time = Time::new(
             AXES[(along + 1) % 3].into(),
@@ -108,12 +107,12 @@ pub fn point_meets_edge(p: DVec3, motion: DVec3, [a, b]: [DVec3; 2]) -> Option<f
 
 const AXES: [DVec3; 3] = [DVec3::X, DVec3::Y, DVec3::Z];
 
-/// The first of some times.
+/// The earliest of some times.
 fn least<const N: usize>(times: [Option<f64>; N]) -> Option<f64> {
     times.into_iter().flatten().min_by(f64::total_cmp)
 }
 
-/// [`point_meets_triangle`] where the motion is in the triangle's plane, or the triangle in a line.
+/// [`point_meets_triangle`] for a motion in the triangle's plane, or a triangle without area.
 #[cold]
 pub(super) fn point_slides_into_triangle(
     p: DVec3,
@@ -129,12 +128,12 @@ pub(super) fn point_slides_into_triangle(
     least([[a, b], [b, c], [c, a]].map(|edge| point_meets_edge(p, motion, edge)))
 }
 
-/// Whether a line crosses a triangle, given the sides on which it has its edges: all on one.
+/// Whether a line passes through a triangle, given its sides of the edges: all on one side.
 pub(super) fn line_passes(sides: [Ordering; 3]) -> bool {
     !(sides.contains(&Ordering::Less) && sides.contains(&Ordering::Greater))
 }
 
-/// On which sides a line through `p` along `motion` has the edges of a triangle.
+/// The sides on which a line through `p` along `motion` has the edges of a triangle.
 pub(super) fn line_sides(p: DVec3, motion: DVec3, [a, b, c]: [DVec3; 3]) -> [Ordering; 3] {
     [(a, b), (b, c), (c, a)].map(|(a, b)| sign([Difference(b, a), motion.into(), Difference(a, p)]))
 }

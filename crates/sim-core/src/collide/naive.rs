@@ -11,8 +11,8 @@ use super::{
 };
 use crate::Mesh;
 
-/// Whether the surfaces of two meshes meet, the second one placed: displaced by a `DVec3` (m), or
-/// turned too ([`Placement::turned`]). Stops at the first hit.
+/// Whether the surfaces of two meshes meet. The second one is placed: displaced by a `DVec3` (m), or rotated too
+/// ([`Placement::turned`]). Stops at the first hit.
 ///
 /// One direction would miss a spike: a corner of the second that pierces a face of the first
 /// between its edges.
@@ -20,7 +20,7 @@ pub fn intersect(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> bool 
     each_hit(first, second, &at.into(), |_| ControlFlow::Break(())).is_break()
 }
 
-/// What [`intersect`] costs here: tests of an edge against a triangle, until the first hit.
+/// The cost of [`intersect`]: tests of an edge against a triangle, until the first hit.
 pub fn work(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> Work {
     let tests = |edges_of: &Mesh, faces: usize| (faces * edges_of.edges().len()) as u64;
     let all_of_first = tests(first, second.triangles().len());
@@ -43,8 +43,7 @@ pub fn work(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> Work {
     }
 }
 
-/// Every edge of one mesh in a triangle of the other, the first mesh's edges first, by edge and
-/// face.
+/// Every edge of one mesh in a triangle of the other; edges of the first mesh first, by edge and face.
 pub fn hits(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> Vec<Hit> {
     let mut hits = Vec::new();
     let _ = each_hit(first, second, &at.into(), |pair| {
@@ -55,7 +54,7 @@ pub fn hits(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> Vec<Hit> {
     hits
 }
 
-/// An edge and the triangle it meets.
+/// An edge and the triangle that it meets.
 struct Pair {
     edge: (Side, u32, [DVec3; 2]),
     face: (u32, [DVec3; 3]),
@@ -98,7 +97,7 @@ fn each_hit(
     for (side, edges_of, edge_vertices, faces_of, face_vertices) in ways {
         for (face, corners) in faces_of.triangles().iter().enumerate() {
             let corners = corners.map(|v| face_vertices[v as usize]);
-            // An edge with both ends on one side of the plane is done with.
+            // An edge with both ends on one side of the plane needs no more tests.
             let plane = Plane::of(corners);
             sides.clear();
             sides.extend(edge_vertices.iter().map(|&p| plane.side(p) as i8));

@@ -10,14 +10,14 @@ use glam::DVec3;
 
 use super::form::{Contact, Form, reach, unit};
 
-/// Where the second of two shapes is from the first, after a time `t`: `offset + t (velocity + t
+/// The motion of the second of two shapes relative to the first. Its position at time `t` is `offset + t (velocity + t
 /// acceleration / 2)`, in m, m/s and m/s².
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parabola {
     pub(crate) offset: DVec3,
     pub(crate) velocity: DVec3,
     pub(crate) acceleration: DVec3,
-    /// What rounding may make of distances, m, and of speeds, m/s.
+    /// Bounds on the rounding of distances, m, and of speeds, m/s.
     pub(crate) grain: (f64, f64),
 }
 
@@ -26,7 +26,7 @@ impl Parabola {
         self.offset + t * (self.velocity + 0.5 * t * self.acceleration)
     }
 
-    /// The speed at which the second comes along a normal against it, m/s.
+    /// The closing speed of the second shape along a normal, m/s.
     pub(crate) fn closing(&self, t: f64, normal: DVec3) -> f64 {
         -normal.dot(self.velocity + t * self.acceleration)
     }
@@ -40,7 +40,7 @@ impl Parabola {
         }
     }
 
-    /// How the way starts, from the gap there, and how that begins to change.
+    /// Classifies the start of the motion by the gap there and its first two derivatives.
     fn start(&self, gap: f64, speed: f64, acceleration: f64, length: f64) -> Start {
         let (grain, still) = self.grain;
         if gap > 0.0 {
@@ -53,7 +53,7 @@ impl Parabola {
         if speed > still {
             return Start::Leaving;
         }
-        // Rounding has brought it here; by how much more would it go?
+        // Rounding has closed the gap. Does the motion close it further?
         let change = length * (speed + 0.5 * length * acceleration);
         if change < -0.25 * grain {
             Start::Touching
@@ -65,27 +65,27 @@ impl Parabola {
 
 enum Start {
     Apart,
-    /// Within rounding of a touch that it comes to: it comes to it at once.
+    /// Apart by no more than rounding and approaching: the contact is at once.
     Near,
-    /// It touches, and closes or is pressed to.
+    /// Touching, and closing or pressed together.
     Touching,
-    /// It touches and leaves; it may come back.
+    /// Touching and leaving; the shape may come back.
     Leaving,
-    /// It touches, and nothing presses it.
+    /// Touching without pressure.
     Beside,
 }
 
-/// Whether two shapes have their contacts here.
+/// Whether this module computes the contacts of two shapes.
 pub(crate) fn has_roots(first: Form<'_>, second: Form<'_>) -> bool {
     match (first, second) {
-        // Points have no surface to leave.
+        // Two points have no surface from which to part.
         (Form::Sphere(first), Form::Sphere(second)) => first + second > 0.0,
         (Form::HalfSpace(_), _) | (_, Form::HalfSpace(_)) => true,
         _ => false,
     }
 }
 
-/// The first contact of two shapes that are apart, within a time; its own time is in s.
+/// The first contact of two shapes that are apart, within `length`, s; the time of the contact is in s.
 pub(crate) fn first_on_parabola(
     first: Form<'_>,
     second: Form<'_>,
@@ -122,14 +122,14 @@ fn above_plane(normal: DVec3, other: Form<'_>, way: &Parabola, length: f64) -> O
         Start::Apart | Start::Near | Start::Leaving => {
             let height = height.max(0.0);
             let root = libm::sqrt(speed * speed - 2.0 * acceleration * height);
-            // Where it falls; each without a difference of what is alike.
+            // The root at which the height falls. Each form avoids the difference of nearly equal numbers.
             match speed <= 0.0 {
                 true => 2.0 * height / (root - speed),
                 false => (speed + root) / -acceleration,
             }
         }
     };
-    // Nor where there is none, nor where it turns just there.
+    // There is no contact without a root, or if the shape only grazes the plane there.
     let is_turn = time > 0.0 && way.closing(time, normal) <= 0.0;
     if is_turn || !(0.0..=length).contains(&time) {
         return None;
@@ -155,13 +155,13 @@ fn spheres(first: f64, second: f64, way: &Parabola, length: f64) -> Option<Conta
     let distance = libm::sqrt(r.dot(r));
     let outward = unit(r)?;
     let gap = distance - sum;
-    // Its second derivative: what turns about the other one leaves it.
+    // The second derivative of the distance: tangential motion increases it.
     let (speed, turning) = (
         outward.dot(v),
         (v.dot(v) - outward.dot(v) * outward.dot(v)) / distance,
     );
     let start = way.start(gap, speed, outward.dot(a) + turning, length);
-    // The square of the distance less that of the sum, over the length as one.
+    // The square of the distance less the square of the radii's sum, with the time scaled to 0 to 1.
     let (h, h2) = (length, length * length);
     let terms = [
         gap * (distance + sum),
@@ -174,7 +174,7 @@ fn spheres(first: f64, second: f64, way: &Parabola, length: f64) -> Option<Conta
         Start::Touching => 0.0,
         Start::Apart => first_root(bernstein(terms))?,
         Start::Near => 0.0 * first_root(bernstein(terms))?,
-        // The root at the start is one of a power of `t` times the rest.
+        // Divide by `t` to remove the root at the start.
         Start::Leaving => {
             let [_, rest @ ..] = terms;
             first_root(bernstein(rest))?
@@ -207,7 +207,7 @@ fn spheres(first: f64, second: f64, way: &Parabola, length: f64) -> Option<Conta
     })
 }
 
-/// A polynomial over 0 to 1, from the coefficients of powers, lowest first, to Bernstein's.
+/// Converts a polynomial on 0 to 1 from coefficients of powers, lowest first, to Bernstein's basis.
 fn bernstein<const N: usize>(powers: [f64; N]) -> [f64; N] {
     let shares = const { shares::<N>() };
     core::array::from_fn(|i| {
@@ -219,7 +219,7 @@ fn bernstein<const N: usize>(powers: [f64; N]) -> [f64; N] {
     })
 }
 
-/// By row and column `C(i, k) / C(degree, k)`.
+/// `C(i, k) / C(degree, k)` by row `i` and column `k`.
 const fn shares<const N: usize>() -> [[f64; N]; N] {
     let mut shares = [[1.0; N]; N];
     let mut i = 0;
@@ -234,10 +234,10 @@ const fn shares<const N: usize>() -> [[f64; N]; N] {
     shares
 }
 
-/// Halvings of the interval in search of a root.
+/// Halvings of the interval in the search for a root.
 const HALVINGS: u32 = 52;
 
-/// Where from 0 to 1 a polynomial in Bernstein's basis first becomes negative.
+/// The first point from 0 to 1 at which a polynomial in Bernstein's basis becomes negative.
 fn first_root<const N: usize>(coefficients: [f64; N]) -> Option<f64> {
     first_root_in(coefficients, (0.0, 1.0), HALVINGS)
 }
@@ -253,12 +253,12 @@ fn first_root_in<const N: usize>(
     if coefficients[0] <= 0.0 || halvings == 0 {
         return Some(low);
     }
-    // Where signs change once there is one root (Descartes' rule in Bernstein's basis).
+    // If the signs change once, there is one root (Descartes' rule in Bernstein's basis).
     let first_below = coefficients.iter().position(|&c| c < 0.0).unwrap_or(N);
     if coefficients[first_below..].iter().all(|&c| c < 0.0) {
         return Some(low + (high - low) * only_root(&coefficients));
     }
-    // De Casteljau: the left half's are the first of each row, the right half's the last ones.
+    // De Casteljau: the left half has the first coefficient of each row, the right half the last one.
     let (mut left, mut right) = (coefficients, coefficients);
     let mut row = coefficients;
     for level in 1..N {
@@ -273,11 +273,11 @@ fn first_root_in<const N: usize>(
         .or_else(|| first_root_in(right, (middle, high), halvings - 1))
 }
 
-/// Looks for the only root, at most: two for each digit.
+/// The most steps in the search for the only root: two for each binary digit.
 const LOOKS: usize = 106;
 
-/// The root of a polynomial that is positive at 0, negative at 1 and has one root between, by Newton's method,
-/// and by halves where that leaves the interval or does not halve its step.
+/// The root of a polynomial that is positive at 0, negative at 1 and has one root between. It uses Newton's method, and
+/// bisection if a step leaves the interval or is not at most half of the last step.
 fn only_root<const N: usize>(coefficients: &[f64; N]) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     let (mut at, mut last) = (0.5, 1.0);
@@ -299,7 +299,7 @@ fn only_root<const N: usize>(coefficients: &[f64; N]) -> f64 {
     at
 }
 
-/// A polynomial in Bernstein's basis and its slope somewhere (de Casteljau).
+/// The value and the slope of a polynomial in Bernstein's basis (de Casteljau).
 fn value_and_slope<const N: usize>(coefficients: &[f64; N], at: f64) -> (f64, f64) {
     let mut row = *coefficients;
     let mut slope = 0.0;
@@ -326,7 +326,7 @@ mod tests {
         }
     }
 
-    /// Where one shape is first within another, by small steps; half the last one as an error.
+    /// The time at which one shape is first within another, by small steps; the error is half the last step.
     fn stepped(way: &Parabola, gap: impl Fn(DVec3) -> f64, length: f64) -> Option<f64> {
         const STEPS: u32 = 20_000;
         let at = |i: u32| length * f64::from(i) / f64::from(STEPS);
@@ -381,7 +381,7 @@ mod tests {
         let mut found = 0;
         for _ in 0..20_000 {
             let mut numbers = [0; 5].map(|_| libm::pow(random.unit(), 6.0));
-            // Signs change once.
+            // The signs change once.
             let positive = 1 + random.below(4);
             numbers[positive..].iter_mut().for_each(|c| *c = -*c);
             let root = only_root(&numbers);
@@ -417,7 +417,7 @@ mod tests {
             assert_eq!(time(0.0, 0.0), None);
             assert_eq!(time(0.0, -1.0), None);
         }
-        // It rolls off, held by half of what would keep it there: fast enough it leaves.
+        // The ball rolls down, held by half of the force that would keep it there: fast enough, it leaves.
         let (first, second) = ball;
         let rolls = way(DVec3::Y, 2.0 * DVec3::X, -2.0 * DVec3::Y);
         assert!(first_on_parabola(first, second, &rolls, 0.1).is_none());

@@ -4,21 +4,20 @@ use glam::{DMat3, DQuat, DVec3, Vec3};
 
 use crate::Aabb;
 
-/// Where the second of two meshes is, seen from the first: displaced, and turned or not.
+/// The pose of the second of two meshes relative to the first: displaced, and perhaps rotated.
 ///
-/// Its vertices are *placed*, each once and for all: `fl64(f64(v) + offset)`, or with a rotation
-/// the products and sums of `R v + offset` in a fixed order. Every decision is exact for the placed
-/// vertices. Components of the offset below 2^-250 m count as zero, so that no product in an exact
-/// decision underflows.
+/// Its vertices are *placed*, each exactly once: `fl64(f64(v) + offset)`, or with a rotation the products and sums of
+/// `R v + offset` in a fixed order. Every decision is exact for the placed vertices. Components of the offset below
+/// 2^-250 m count as zero, so that no product in an exact decision underflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     offset: DVec3,
-    /// Columns of the rotation, where there is one.
+    /// Columns of the rotation, if there is one.
     turn: Option<DMat3>,
 }
 
 impl From<DVec3> for Placement {
-    /// Displaced by an offset, m. One that is no number, or beyond 1e100 m, leaves meshes apart.
+    /// Displaced by an offset, m. With an offset that is not a number, or is beyond 1e100 m, meshes are apart.
     fn from(offset: DVec3) -> Placement {
         Placement {
             offset: snap(offset),
@@ -28,9 +27,9 @@ impl From<DVec3> for Placement {
 }
 
 impl Placement {
-    /// Turned about its origin, then displaced, m; `None` unless `rotation` is of unit length.
+    /// Rotated about its origin, then displaced, m; `None` unless `rotation` is of unit length.
     pub fn turned(rotation: DQuat, offset: DVec3) -> Option<Placement> {
-        // To rounding: what passes as of unit length is not always a rotation to slabs.
+        // Normalised: the tolerance of the check is too wide for the bounds of slabs.
         let unit = rotation.is_normalized().then(|| rotation.normalize())?;
         let is_identity = unit.xyz() == DVec3::ZERO;
         Some(Placement {
@@ -60,17 +59,17 @@ impl Placement {
         }
     }
 
-    /// A point of the first mesh's frame in the second one's, m, rounded.
+    /// A point of the first mesh's frame, converted to the second one's, m, rounded.
     pub(super) fn back(&self, point: DVec3) -> DVec3 {
         self.direction_back(point - self.offset)
     }
 
-    /// A direction of the second mesh's frame in the first one's, rounded.
+    /// A direction of the second mesh's frame, converted to the first one's, rounded.
     pub(super) fn direction(&self, direction: DVec3) -> DVec3 {
         self.turn.map_or(direction, |turn| turn * direction)
     }
 
-    /// A direction of the first mesh's frame in the second one's, rounded.
+    /// A direction of the first mesh's frame, converted to the second one's, rounded.
     pub(super) fn direction_back(&self, direction: DVec3) -> DVec3 {
         self.turn
             .map_or(direction, |turn| turn.transpose() * direction)

@@ -1,10 +1,10 @@
-//! Cross and triple products in f64 with bounds on their errors, and a quick test on which side of
-//! a triangle's plane points are.
+//! Cross and triple products in f64 with bounds on their errors, and a quick test for the sides of a triangle's plane
+//! on which points are.
 
 use core::cmp::Ordering;
 use glam::DVec3;
 
-/// A number and how far it may be off.
+/// A number, and a bound on its error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Estimate {
     pub(super) value: f64,
@@ -12,7 +12,7 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
-    /// The sign, where the error leaves no doubt. Without products there is no error.
+    /// The sign, if the error leaves no doubt. Without products there is no error.
     #[inline(always)]
     pub(super) fn sign(self) -> Option<Ordering> {
         if self.value > self.error {
@@ -26,13 +26,13 @@ impl Estimate {
         }
     }
 
-    /// Whether the sign is that of the value, for certain.
+    /// Whether the sign is certainly that of the value.
     #[inline(always)]
     pub(super) fn is_certain(self) -> bool {
         self.value.abs() > self.error
     }
 
-    /// Which of two has the greater magnitude, where the errors leave no doubt.
+    /// Compares the magnitudes of two numbers, if the errors leave no doubt.
     #[inline(always)]
     pub(super) fn magnitude_cmp(self, other: Estimate) -> Option<Ordering> {
         let between = self.value.abs() - other.value.abs();
@@ -45,16 +45,16 @@ impl Estimate {
     }
 }
 
-/// A cross product, with what bounds the rounding errors of products with it.
+/// A cross product, and a bound on the rounding errors of its products.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cross {
     value: DVec3,
-    /// The same with all products taken as positive.
+    /// The same with the absolute values of all products.
     size: DVec3,
 }
 
 impl Cross {
-    /// Of two vectors, each a rounded difference or exact.
+    /// The cross product of two vectors, each a rounded difference or exact.
     #[inline(always)]
     pub(super) fn of(u: DVec3, v: DVec3) -> Cross {
         let products = DVec3::new(u.y * v.z, u.z * v.x, u.x * v.y);
@@ -65,7 +65,7 @@ impl Cross {
         }
     }
 
-    /// Its product with a third such vector: the determinant of the three without their rounding.
+    /// The dot product with a third such vector: the determinant of the three vectors as they are rounded.
     ///
     /// The bound is that of the first stage of Shewchuk's orient3d (1997, sec. 4.3),
     /// `(7 + 56 u) u` times the permanent with `u = 2^-53`; the determinant's rows are rounded

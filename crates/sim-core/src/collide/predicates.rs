@@ -1,9 +1,8 @@
 //! Exact answers about points, segments and triangles.
 //!
-//! Every decision is the sign of a determinant, computed exactly (Shewchuk 1997, "Adaptive
-//! precision floating-point arithmetic and fast robust geometric predicates", sec. 4). Sets are
-//! closed: sets that touch also meet. There is no tolerance, so two triangles that share an edge never
-//! disagree about it, and no point slips between them.
+//! Every decision is the sign of a determinant, computed exactly (Shewchuk 1997, "Adaptive precision floating-point
+//! arithmetic and fast robust geometric predicates", sec. 4). Sets are closed: sets that touch also meet. There is no
+//! tolerance, so two triangles that share an edge never disagree about it, and no point slips between them.
 //!
 //! Coordinates must lie within ±1e100 and be multiples of 2^-340, as those of placed vertices are
 //! ([`super`]), so that products of three differences neither overflow nor underflow.
@@ -38,8 +37,8 @@ pub fn segment_meets_triangle(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]) -> bool
     line_passes(p, q, [a, b, c])
 }
 
-/// Whether the line through `pq`, which crosses the plane of a triangle, passes through it: all
-/// edges on one side of the line.
+/// Whether the line through `pq`, which crosses the plane of a triangle, passes through the triangle: all edges are
+/// on one side of the line.
 pub(super) fn line_passes(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
     let opposite = |s: Ordering, t: Ordering| s != Ordering::Equal && s == t.reverse();
     let (s, t) = (side([p, q, a], b), side([p, q, b], c));
@@ -52,9 +51,8 @@ pub(super) fn line_passes(p: DVec3, q: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
 
 /// Whether two closed triangles share a point.
 ///
-/// They do if and only if an edge of one meets the other: where two triangles cross, the segment
-/// they share ends on an edge of either, and where one lies in the other's plane, edges cross or
-/// lie inside.
+/// They do if and only if an edge of one meets the other. If two triangles cross, the segment that they share ends on
+/// an edge of one of them. If one lies in the other's plane, edges cross or lie inside.
 pub fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
     let t_sides = sides(s, t);
     if t_sides[0] != Ordering::Equal && t_sides == [t_sides[0]; 3] {
@@ -78,26 +76,25 @@ pub fn triangles_meet(s: [DVec3; 3], t: [DVec3; 3]) -> bool {
     crossing_meet(s_order.map(|i| s[i]), t_order.map(|i| t[i]))
 }
 
-/// Whether two triangles meet that cross each other's planes, with no corner in a plane and in the
-/// order of [`crossing_orders`]: whether the parts overlap in which they cut the line that the
-/// planes share (Guigue, Devillers 2003, "Fast and robust triangle-triangle overlap test using
-/// orientation predicates", sec. 3).
+/// Whether two triangles meet that cross each other's planes, with no corner in a plane and with corners in the order
+/// of [`crossing_orders`]. They meet if their intervals on the common line of the planes overlap (Guigue, Devillers
+/// 2003, "Fast and robust triangle-triangle overlap test using orientation predicates", sec. 3).
 #[inline(always)]
 pub(super) fn crossing_meet([p1, q1, r1]: [DVec3; 3], [p2, q2, r2]: [DVec3; 3]) -> bool {
     let between = p2 - p1;
     let q = Cross::of(q1 - p1, q2 - p2).dot(between);
     let r = Cross::of(r1 - p1, r2 - p2).dot(between);
     if q.is_certain() && r.is_certain() {
-        // Either sign is anyone's guess, so there is one branch for both.
+        // Both signs are unpredictable, so there is one branch for both.
         return (q.value > 0.0) & (r.value < 0.0);
     }
     // The first determinant is minus that of `p1`, `q1`, `p2`, `q2`.
     side([p1, q1, p2], q2) != Ordering::Greater && side([p1, r1, r2], p2) != Ordering::Greater
 }
 
-/// The order in which [`crossing_meet`] takes the corners of two triangles, of each of which some
-/// corners are above the other's plane and the others below, a bit each: the one that is alone on
-/// its side first, and wound so that each first corner lies above the other's plane.
+/// The order in which [`crossing_meet`] takes the corners of two triangles. The arguments have a bit for each corner
+/// above the other's plane; each triangle has corners on both sides. First comes the corner that is alone on its
+/// side. The winding is chosen so that each first corner lies above the other's plane.
 #[inline(always)]
 pub(super) fn crossing_orders(s_above: u32, t_above: u32) -> ([usize; 3], [usize; 3]) {
     let order = |above: u32, others: u32| {
@@ -107,8 +104,8 @@ pub(super) fn crossing_orders(s_above: u32, t_above: u32) -> ([usize; 3], [usize
     (order(s_above, t_above), order(t_above, s_above))
 }
 
-/// The corners of a triangle, the one that is alone above or below first, turned or as it is wound:
-/// which one it is, is anyone's guess, so it is looked up and not branched on.
+/// The corners of a triangle, first the one that is alone above or below, with reversed or original winding. A table,
+/// because a branch on this corner would be unpredictable.
 static ORDERS: [[[usize; 3]; 8]; 2] = {
     const TURNED: [[usize; 3]; 3] = [[0, 2, 1], [1, 0, 2], [2, 1, 0]];
     const AS_WOUND: [[usize; 3]; 3] = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
@@ -118,11 +115,11 @@ static ORDERS: [[[usize; 3]; 8]; 2] = {
     [by_bits(TURNED), by_bits(AS_WOUND)]
 };
 
-/// On which side of the plane of `abc` some points lie: above is where it is counter-clockwise.
+/// The sides of the plane of `abc` on which some points lie: `abc` is counter-clockwise seen from above.
 #[inline]
 fn sides(abc: [DVec3; 3], points: [DVec3; 3]) -> [Ordering; 3] {
     let plane = Plane::of(abc);
-    // Written out, as a closure would be called.
+    // Written out, because a closure would not be inlined.
     let [p, q, r] = points;
     [
         exact_side(plane, abc, p),
@@ -161,7 +158,7 @@ fn side_by_expansion([a, b, c]: [DVec3; 3], p: DVec3) -> Ordering {
     }
 }
 
-/// All signs in `[0, ∞)` or all in `(-∞, 0]`.
+/// Whether all signs are in `[0, ∞)` or all in `(-∞, 0]`.
 fn same_side(s1: f64, s2: f64, s3: f64) -> bool {
     (s1 >= 0.0 && s2 >= 0.0 && s3 >= 0.0) || (s1 <= 0.0 && s2 <= 0.0 && s3 <= 0.0)
 }
@@ -186,8 +183,8 @@ pub fn segments_meet(p: DVec3, q: DVec3, a: DVec3, b: DVec3) -> bool {
     if orient3d(p, q, a, b) != 0.0 {
         return false;
     }
-    // Some three of the points span the plane of all four; along an axis in which those three
-    // keep area, the plane projects one to one, and signs in the projection decide.
+    // Some three of the points span the plane of all four. Along an axis in which these three keep a positive area, the
+    // plane projects one to one, and signs in the projection decide.
     let triples = [(p, q, a), (p, q, b), (a, b, p), (a, b, q)];
     let axis = Axis::ALL
         .into_iter()
@@ -198,7 +195,7 @@ pub fn segments_meet(p: DVec3, q: DVec3, a: DVec3, b: DVec3) -> bool {
             let apart = |s: f64, t: f64| (s > 0.0 && t > 0.0) || (s < 0.0 && t < 0.0);
             !apart(pa, pb) && !apart(ap, aq)
         }
-        // All on one line, where lexicographic order is order along the line.
+        // All points are on one line, where lexicographic order is the order along the line.
         None => {
             let before = |s: DVec3, t: DVec3| (s.x, s.y, s.z) <= (t.x, t.y, t.z);
             let sorted = |s: DVec3, t: DVec3| if before(s, t) { (s, t) } else { (t, s) };
@@ -373,7 +370,7 @@ mod tests {
 
     #[test]
     fn an_edge_cannot_slip_between_two_triangles() {
-        // The line aims at points of the shared edge that are rounded off it, one way or the other.
+        // The line aims at points of the shared edge, which rounding has moved off it to one side or the other.
         let (a, b) = (v(0.1, 0.7, 0.3), v(0.9, -0.2, 0.4));
         let left = [a, b, v(-1.0, -1.0, 0.0)];
         let right = [b, a, v(2.0, 2.0, 0.1)];

@@ -10,23 +10,23 @@ use super::{
 };
 use crate::bvh::{Bvh, LEAF, MAX_DEPTH};
 
-/// Where a point is, seen from a closed mesh.
+/// The place of a point relative to a closed mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// A way out of the mesh crosses its surface an odd number of times.
+    /// Inside: a path out of the mesh crosses its surface an odd number of times.
     Inside,
     /// On a triangle.
     On,
-    /// Neither.
+    /// Neither inside nor on the surface.
     Outside,
 }
 
-/// Where a point is, in the mesh's frame, m, exactly; `None` if the mesh is open. What is no number
-/// is outside.
+/// The place of a point in the mesh's frame, m, exactly; `None` if the mesh is open. A point that is not a number is
+/// outside.
 ///
-/// The surface is crossed along the x axis. Where the way meets an edge or a corner, the point is
-/// taken as moved by an infinitesimal step along y and a yet smaller one along z, so that it
-/// crosses each edge on one side (Edelsbrunner, Mücke 1990, "Simulation of simplicity").
+/// A ray along the x axis crosses the surface. If the ray meets an edge or a corner, the point counts as moved by an
+/// infinitesimal step along y and a yet smaller one along z, so that it crosses each edge on one side (Edelsbrunner,
+/// Mücke 1990, "Simulation of simplicity").
 pub fn locate(mesh: &Bvh, point: DVec3) -> Option<Place> {
     if !mesh.is_closed() {
         return None;
@@ -52,9 +52,8 @@ pub fn locate(mesh: &Bvh, point: DVec3) -> Option<Place> {
     })
 }
 
-/// Whether a closed segment, in the mesh's frame, m, and the surface of a mesh share a point,
-/// exactly; `None` if an end is no number or beyond ±1e100 m. Components below 2^-250 m count as
-/// zero.
+/// Whether a closed segment, in the mesh's frame, m, and the surface of a mesh share a point, exactly. `None` if an
+/// end is not a number or is beyond ±1e100 m. Components below 2^-250 m count as zero.
 pub fn segment_meets(mesh: &Bvh, p: DVec3, q: DVec3) -> Option<bool> {
     let in_range = |p: DVec3| p.abs().cmple(DVec3::splat(FARTHEST)).all();
     (in_range(p) && in_range(q)).then(|| meets(mesh, snap(p), snap(q)))
@@ -70,16 +69,16 @@ fn meets(mesh: &Bvh, p: DVec3, q: DVec3) -> bool {
     each_in_box(mesh, p.min(q), p.max(q), meets).is_break()
 }
 
-/// Whether the second of two closed meshes lies wholly inside the first one, surfaces nowhere
-/// touching; the second has to hang together. No test of surfaces sees that.
+/// Whether the second of two closed meshes lies wholly inside the first one, without touching its surface. The second
+/// mesh must be connected. Tests of surfaces do not detect this case.
 pub fn contains(first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> bool {
     let at = at.into();
     let [corner, ..] = second.triangles(second.first_leaf()).corners(0);
     locate(first, at.place(corner)) == Some(Place::Inside) && !tree::intersect(first, second, at)
 }
 
-/// Visits the triangles, by index and corners, whose boxes meet a closed box, until told to stop;
-/// a few others may come as well.
+/// Visits the triangles, by index and corners, whose boxes meet a closed box, until told to stop. It may visit a few
+/// other triangles too.
 pub fn each_in_box(
     mesh: &Bvh,
     min: DVec3,
@@ -110,17 +109,16 @@ pub fn each_in_box(
     ControlFlow::Continue(())
 }
 
-/// Whether the way from a point along x, moved as said, crosses a triangle that the point is not
-/// on.
+/// Whether the ray from a point along x, moved as in `locate`, crosses a triangle that does not contain the point.
 fn crosses(triangle: [DVec3; 3], p: DVec3) -> bool {
     let [a, b, c] = triangle;
     let turns = [(a, b), (b, c), (c, a)].map(|(a, b)| {
         let turn = Axis::X.orient(a, b, p);
-        // Its derivatives by the point's y, then by its z.
+        // The derivatives of the turn with respect to the point's y, then to its z.
         let tie = [a.z - b.z, b.y - a.y].into_iter();
         core::iter::once(turn).chain(tie).find(|&x| x != 0.0)
     });
-    // A side on end has no turn, and the triangle no area seen along x.
+    // If a side is parallel to x it has no turn, and the projected triangle has no area.
     let [Some(u), Some(v), Some(w)] = turns else {
         return false;
     };

@@ -4,17 +4,17 @@
 //! that touches first along the relative motion of the step, because this feature stops the bodies;
 //! the features that overlap at the end of the step depend on the length of the step instead.
 //!
-//! - A vertex in a face gives the face's normal, two crossing edges give their common
-//!   perpendicular; it is turned to point from the first mesh to the second, against the motion.
-//! - Of features that touch at the same time, which is known exactly and rounded down, a vertex in
-//!   a face goes before two edges, since a face has a tangent plane of its own where the
-//!   perpendicular of two edges that end there may point anywhere. Of those left the one that
-//!   opposes the motion most goes first, then the one that comes first in the meshes.
+//! - A vertex in a face gives the face's normal; two crossing edges give their common perpendicular. The normal
+//!   points from the first mesh to the second, against the motion.
+//! - Of features that touch at the same time (times are known exactly and rounded down), a vertex in a face goes
+//!   before two edges, because a face has a tangent plane of its own, while the perpendicular of two edges that end
+//!   there may point anywhere. Of the rest, the feature whose normal opposes the motion most goes first, then the one
+//!   that is first in the meshes.
 //! - Edges that are parallel up to the rounding of placed vertices cross at a place that depends on this rounding, and
 //!   their perpendicular has no meaning. The normal of the adjacent face that opposes the motion most replaces it.
 //!
-//! So a cube that meets a cube face-on gets the face's normal and bounces straight back, though
-//! four corners, and edges with edges, touch at once.
+//! So a cube that meets a cube face-on gets the face's normal and bounces straight back, though four corners, and edges
+//! with edges, touch at the same time.
 //!
 //! The motion is a translation, so every time of contact solves a linear equation. With the
 //! second mesh moving by `d` and `h(x) = orient(a, b, c, x)`:
@@ -36,7 +36,7 @@ use super::{
 };
 use crate::bvh::Bvh;
 
-/// What touches what.
+/// The pair of features that touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Feature {
@@ -54,7 +54,7 @@ pub enum Feature {
         /// Vertex of the second mesh.
         vertex: u32,
     },
-    /// An edge of each.
+    /// An edge of each mesh.
     EdgeEdge {
         /// Edge of the first mesh.
         first: u32,
@@ -64,7 +64,7 @@ pub enum Feature {
 }
 
 impl Feature {
-    /// The same with the meshes in the other order.
+    /// The same pair with the meshes in the other order.
     pub(super) fn turned(self) -> Feature {
         match self {
             Feature::VertexFace { vertex, face } => Feature::FaceVertex { face, vertex },
@@ -80,27 +80,26 @@ impl Feature {
 /// The first contact along a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// Part of the motion done at the contact, 0 to 1, rounded down.
+    /// The part of the motion before the contact, 0 to 1, rounded down.
     pub time: f64,
-    /// Where, in the first mesh's frame, m (rounded).
+    /// The contact point in the first mesh's frame, m (rounded).
     pub point: DVec3,
     /// Unit normal, from the first mesh to the second.
     pub normal: DVec3,
-    /// What touches.
+    /// The features that touch.
     pub feature: Feature,
 }
 
-/// The first entering contact of two meshes, with the second displaced by `offset` and then moving by
-/// `motion` (m), both in the first one's frame. `None` if there is none on the way.
+/// The first entering contact of two meshes. The second one is displaced by `offset` and then moves by `motion` (m),
+/// both in the first one's frame. `None` if there is no contact within the motion.
 ///
-/// A contact enters if its normal opposes the motion and the meshes do not slip past each other there
-/// after a small move to the side, which is decided exactly: to slide along a face is no contact, nor
-/// is to part from what is touched at the start. So meshes that are apart at the start and cross as
-/// soon as they touch have a contact at their [`time_of_impact`]. Which contacts there are is
-/// exact for the placed vertices ([`super::Placement`]); the time is the greatest f64 that is not
-/// above the exact one ([`super::moving`]). Meshes that meet at the start in no such feature are
-/// not found to. Components of `offset` and `motion` below 2^-250 m count as zero, and what is no
-/// number or beyond 1e100 m leaves the meshes apart.
+/// A contact enters if its normal opposes the motion and the meshes do not slip past each other there after a small
+/// move to the side, which is decided exactly. To slide along a face is no contact, nor is to move away from a
+/// surface that touches at the start. So meshes that are apart at the start and cross as soon as they touch have a
+/// contact at their [`time_of_impact`]. The set of contacts is exact for the placed vertices ([`super::Placement`]);
+/// the time is the greatest f64 that is not above the exact one ([`super::moving`]). If meshes meet at the start
+/// without such a feature, this is not found. Components of `offset` and `motion` below 2^-250 m count as zero. A
+/// component that is not a number or is beyond 1e100 m leaves the meshes apart.
 pub fn first_touch(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> Option<Touch> {
     let (offset, motion) = in_range(offset, motion)?;
     if let Some((first, second)) = first.cuboid().zip(second.cuboid())
@@ -111,17 +110,16 @@ pub fn first_touch(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> O
     Search::run(Kind::Entering, (first, second), offset, motion).best()
 }
 
-/// When the closed surfaces of two meshes first meet, with the second displaced by `offset` and then
-/// moving by `motion` (m), as a part of the motion, 0 to 1; `None` if they do not. Units, range and
-/// rounding as for [`first_touch`]; 0 if they meet at the start.
+/// The time when the closed surfaces of two meshes first meet, as a part of the motion, 0 to 1; `None` if they do
+/// not. The second mesh is displaced by `offset` and then moves by `motion` (m). Units, range and rounding are those
+/// of [`first_touch`]; 0 if the meshes meet at the start.
 ///
-/// It is exact, since surfaces that come to meet do so with a vertex in a triangle, or with two
-/// edges that cross in one point and not along the motion. Take triangles that touch for the first
-/// time, and a corner `p` of the convex set that they share. The least corners, edges or
-/// interiors in which `p` lies then have no direction in common, so their dimensions add up to
-/// three at most. An interior and an edge would have met before, displaced a little against the
-/// motion, and so would two edges in a plane along the motion. Of a triangle that is a segment, the
-/// longest edge is all.
+/// It is exact, because surfaces that come to meet do so with a vertex in a triangle, or with two edges that cross in
+/// one point and not along the motion. Proof: take triangles that touch for the first time, and a corner `p` of the
+/// convex set that they share. Consider the least corners, edges or interiors that contain `p`. They have no
+/// direction in common, so their dimensions add up to at most three. An interior and an edge would have met before,
+/// displaced a little against the motion, and so would two edges in a plane along the motion. Of a triangle that is a
+/// segment, the longest edge is the whole triangle.
 pub fn time_of_impact(first: &Bvh, second: &Bvh, offset: DVec3, motion: DVec3) -> Option<f64> {
     let (offset, motion) = in_range(offset, motion)?;
     if tree::intersect(first, second, offset) {
@@ -152,7 +150,7 @@ mod tests {
 
     #[test]
     fn cubes_face_on_touch_along_the_face_normal() {
-        // Aligned, offset, overhanging, and not quite straight on.
+        // Aligned, offset, overhanging, and slightly oblique.
         for (y, z) in [
             (0.0, 0.0),
             (0.3, 0.2),

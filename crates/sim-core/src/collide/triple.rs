@@ -1,5 +1,4 @@
-//! Triple products of differences of points, and their quotients: signs exactly, numbers rounded
-//! down.
+//! Triple products of differences of points, and their quotients: exact signs, and numbers rounded down.
 
 use core::cmp::Ordering;
 use glam::DVec3;
@@ -29,14 +28,14 @@ impl From<DVec3> for Difference {
     }
 }
 
-/// 2^-900: the digits of two factors whose product is larger have products without underflow.
+/// 2^-900: if a product is larger, products of the digits of its two factors do not underflow.
 const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
 
 /// The most terms of a triple product: six products of three pairs, each of four terms.
 const TERMS: usize = 6 * 8 * 4;
 
-/// The most terms where differences are no longer than f64: six products of four terms. Twice as many
-/// where those of one row are.
+/// The most terms if the differences are exact in f64: six products of four terms. Twice as many if the differences
+/// of one row are not.
 const FEW: usize = 6 * 4;
 
 /// The exact sign of `det(u, v, w) = (u × v)·w`.
@@ -46,7 +45,7 @@ pub(super) fn sign(rows: [Difference; 3]) -> Ordering {
     sign_of(Cross::of(u, v).dot(w), rows)
 }
 
-/// [`sign`] where the estimate is known.
+/// [`sign`], given the estimate.
 #[inline(always)]
 pub(super) fn sign_of(estimate: Estimate, rows: [Difference; 3]) -> Ordering {
     estimate.sign().unwrap_or_else(|| exact_sign(rows))
@@ -68,19 +67,18 @@ fn long_sign(rows: &[Exact; 3]) -> Ordering {
     exact::<TERMS>(rows).sign()
 }
 
-/// A difference as rounded components and what rounding took.
+/// A difference as rounded components and their rounding errors.
 type Exact = [(f64, f64); 3];
 
-/// Whether rounding took nothing.
+/// Whether all rounding errors are zero.
 #[inline(always)]
 fn is_short(row: &Exact) -> bool {
     row[0].1 == 0.0 && row[1].1 == 0.0 && row[2].1 == 0.0
 }
 
-/// The determinant; for how many terms see [`TERMS`] and [`FEW`].
+/// The determinant; [`TERMS`] and [`FEW`] give the number of terms.
 ///
-/// Nothing underflows, as components are multiples of 2^-340, nor overflows, as they are at most
-/// 2e100.
+/// There is no underflow, because components are multiples of 2^-340, and no overflow, because they are at most 2e100.
 #[inline]
 fn exact<const N: usize>(&[u, v, w]: &[Exact; 3]) -> Expansion<N> {
     let mut sum = Expansion::ZERO;
@@ -111,8 +109,8 @@ fn exact<const N: usize>(&[u, v, w]: &[Exact; 3]) -> Expansion<N> {
     sum
 }
 
-/// `u × v` to within some units in the last place of its largest component, scaled so that this is
-/// one, or zero.
+/// `u × v` to within some units in the last place of its largest component, scaled so that this component is one; or
+/// zero.
 pub(super) fn direction(u: Difference, v: Difference) -> DVec3 {
     let (u, v) = (u.exact(), v.exact());
     let component = |i: usize| {
@@ -139,8 +137,8 @@ pub(super) fn direction(u: Difference, v: Difference) -> DVec3 {
 
 /// The time at which a gap closes: `det(u, v, gap) / det(u, v, motion)`.
 ///
-/// The gap leads from what moves to what it meets, so that it closes where `u` and `v` span the
-/// directions along which they touch.
+/// The gap is a vector from the moving feature to the other one. `u` and `v` span the directions along which the
+/// features touch when the gap closes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Time {
     pub(super) u: Difference,
@@ -173,19 +171,19 @@ impl Time {
         [self.u, self.v, self.motion.into()]
     }
 
-    /// On which side of `u × v` the motion leads; if on neither, there is no time.
+    /// The side of `u × v` to which the motion leads; `Equal` means that there is no time.
     #[inline]
     pub(super) fn course(&self) -> Ordering {
         sign_of(self.under, self.rows_under())
     }
 
-    /// Whether it is 0, given that it is not negative.
+    /// Whether the time is 0, given that it is not negative.
     #[inline]
     pub(super) fn is_start(&self) -> bool {
         sign_of(self.over, self.rows_over()) == Ordering::Equal
     }
 
-    /// Whether it is in [0, 1], exactly, on a course that leads anywhere.
+    /// Whether the time is in [0, 1], exactly, given a course other than `Equal`.
     #[inline]
     pub(super) fn is_within(&self, course: Ordering) -> bool {
         let side = sign_of(self.over, self.rows_over());
@@ -205,7 +203,7 @@ impl Time {
         rest != course
     }
 
-    /// Passes on the terms of the numbers whose quotient it is.
+    /// Calls `then` with the terms of numerator and denominator.
     #[inline(always)]
     fn with_terms<T>(&self, then: impl FnOnce(&[f64], &[f64]) -> T) -> T {
         let [u, v, gap] = self.rows_over().map(Difference::exact);
@@ -227,11 +225,11 @@ impl Time {
         }
     }
 
-    /// Not above and not below it, quickly; of a time that is not negative.
+    /// A quick lower and upper bound on a time that is not negative.
     #[inline]
     pub(super) fn bounds(&self) -> (f64, f64) {
         let (over, under) = (self.over, self.under);
-        // For the roundings of sums, quotient and product.
+        // Cover the roundings of sums, quotient and product.
         const DOWN: f64 = 1.0 - 4.0 * f64::EPSILON;
         const UP: f64 = 1.0 + 4.0 * f64::EPSILON;
         let low = (over.value.abs() - over.error) / (under.value.abs() + under.error) * DOWN;
@@ -246,15 +244,15 @@ impl Time {
 
     /// The greatest f64 that is not above the time, for times in [0, 1].
     ///
-    /// So equal times are equal whatever they are the quotients of. Only where products in the check
-    /// would over- or underflow (coordinates above 1e94, or the last term of the denominator times
-    /// the quotient below 2^-900) it may be up to eight units in the last place less.
+    /// So equal times give equal numbers, whatever quotients they are. The result may be up to eight units in the
+    /// last place less only if products in the check would over- or underflow (coordinates above 1e94, or the last
+    /// term of the denominator times the quotient below 2^-900).
     pub(super) fn rounded_down(&self) -> f64 {
         self.with_terms(floor_of_quotient)
     }
 }
 
-/// The quotient of two sums, in [0, 1], as [`Time::rounded_down`] has it.
+/// The quotient of two sums, in [0, 1], rounded as in [`Time::rounded_down`].
 pub(super) fn floor_of_quotient(over: &[f64], under: &[f64]) -> f64 {
     let (Some(&least), Some(&most)) = (under.first(), under.last()) else {
         return 0.0;
@@ -289,8 +287,7 @@ pub(super) fn floor_of_quotient(over: &[f64], under: &[f64]) -> f64 {
     }
 }
 
-/// The sign of `over - time under`: from the largest term of each and the sum of the others, where
-/// that is enough.
+/// The sign of `over - time under`: from the largest term of each and the sum of the others, if that is enough.
 fn rest_sign(over: &[f64], under: &[f64], time: f64) -> Ordering {
     let top = |terms: &[f64]| match *terms {
         [ref others @ .., most] => (most, others.iter().sum()),
@@ -301,7 +298,7 @@ fn rest_sign(over: &[f64], under: &[f64], time: f64) -> Ordering {
     let (rest, lost) = two_sum(o, -high);
     let next = time * u_next;
     let value = rest + (((lost - low) + o_next) - next);
-    // Five roundings, and those of sums whose parts at least double from one to the next.
+    // Five roundings, and those of sums whose terms at least double from one to the next.
     let size = lost.abs() + low.abs() + o_next.abs() + next.abs();
     let error = (16.0 * size + 2.0 * rest.abs()) * f64::EPSILON;
     if value.abs() > error || error == 0.0 {
@@ -321,7 +318,7 @@ fn rest_sign(over: &[f64], under: &[f64], time: f64) -> Ordering {
     }
 }
 
-/// Terms of which all but a few sums have fewer.
+/// Nearly all sums have fewer terms than this.
 const SOME: usize = 24;
 
 #[inline(never)]

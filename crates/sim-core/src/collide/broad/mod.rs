@@ -1,10 +1,10 @@
-//! The broad phase: which of many boxes meet.
+//! The broad phase: the search for pairs of boxes that meet.
 //!
-//! A body that sweeps little of its own size in a step keeps its *neighbours* for some steps (Verlet 1967,
-//! "Computer experiments on classical fluids", sec. II). Neighbours are the bodies whose fat AABBs meet: boxes
-//! widened by the motion of bodies in a few steps. As long as a box stays within its fat AABB, no other body
-//! need be tested. Boxes that have left theirs are tested against all ([`rows`]); once there are many of
-//! them, all fat AABBs and neighbours are built anew.
+//! A body that sweeps little of its own size in a step keeps its *neighbours* for some steps (Verlet 1967, "Computer
+//! experiments on classical fluids", sec. II). Neighbours are the bodies whose fat AABBs meet: boxes widened by the
+//! motion of bodies in a few steps. As long as a box stays within its fat AABB, no other body need be tested. Boxes
+//! that have left their fat AABBs are tested against all boxes ([`rows`]); once there are many of them, all fat AABBs
+//! and neighbours are built anew.
 
 mod near;
 mod neighbours;
@@ -20,41 +20,40 @@ use neighbours::Neighbours;
 use rows::Rows;
 pub(crate) use volume::{Front, Swept};
 
-/// Steps of the mean length by which boxes are widened.
+/// Boxes are widened by the mean motion in this many steps,
 const STEPS: f64 = 8.0;
-/// Part of the mean size of boxes by which they are widened at most: in space, pairs grow with the
-/// third power.
+/// but at most by this part of their mean size: in three dimensions the number of pairs grows with the third power.
 const WIDEST: f64 = 0.5;
-/// One of so many boxes may leave its wide one.
+/// At most one in this many boxes may have left its fat AABB.
 const LEAVERS: usize = 8;
 
-/// Boxes and planes of bodies, filled anew in each step. What is kept saves time and changes no answer,
-/// so a copy starts without.
+/// Boxes and planes of bodies, filled anew in each step. The stored data saves time and changes no answer, so a copy
+/// starts without it.
 #[derive(Debug, Default)]
 pub(crate) struct Broad {
-    /// Who has a box.
+    /// The bodies that have a box.
     bodies: Vec<usize>,
-    /// By body, as filled and replaced.
+    /// For each body its box, as filled and replaced.
     now: Vec<Swept>,
-    /// By body, around those.
+    /// For each body its fat AABB.
     wide: Vec<Swept>,
-    /// By how much wider, m, and how many fills ago.
+    /// The width by which the fat AABBs exceed the boxes, m, and the number of fills since they were made.
     margin: DVec3,
     age: u32,
-    /// The wide ones, but of bodies that have left theirs those of now.
+    /// The fat AABBs; for bodies that have left theirs, the current boxes.
     rows: Rows,
-    /// Who has left.
+    /// The bodies that have left their fat AABBs.
     leavers: Vec<usize>,
     has_left: Vec<bool>,
     neighbours: Option<Neighbours>,
     walls: Vec<Wall>,
 }
 
-/// A plane, and the bodies whose wide boxes come to it.
+/// A plane, and the bodies whose fat AABBs reach it.
 #[derive(Clone, Debug)]
 struct Wall {
     now: Front,
-    /// How far it may come along its normal, rounding with it, m, before they are others.
+    /// The farthest level of the plane along its normal for which these bodies are valid, rounding included, m.
     level: f64,
     bodies: Vec<usize>,
 }
@@ -89,7 +88,7 @@ impl Broad {
             }
         }
         self.age += 1;
-        // Only lists of neighbours outlast a step.
+        // Only the lists of neighbours are kept from step to step.
         let is_listed = is_known && self.neighbours.is_some();
         if is_listed && LEAVERS * self.leavers.len() <= self.bodies.len() {
             for &body in &self.leavers {
@@ -110,12 +109,12 @@ impl Broad {
         }
     }
 
-    /// Whether it holds nobody: it has not been filled.
+    /// Whether it has no bodies, because it has not been filled.
     pub(crate) fn is_empty(&self) -> bool {
         self.bodies.is_empty() && self.walls.is_empty()
     }
 
-    /// Begins with other bodies.
+    /// Starts anew with other bodies.
     fn forget(&mut self, bodies: &[usize], front: impl Fn(usize) -> Option<Front>) {
         self.bodies.clear();
         self.walls.clear();
@@ -140,7 +139,7 @@ impl Broad {
         self.leavers.clear();
     }
 
-    /// Makes all wide boxes anew, by what bodies have moved a step since they were made.
+    /// Makes all fat AABBs anew, from the mean motion in a step since they were made.
     fn widen(&mut self, is_known: bool) {
         self.leavers.clear();
         let (mut moved, mut size) = (DVec3::ZERO, DVec3::ZERO);
@@ -169,8 +168,8 @@ impl Broad {
         }
     }
 
-    /// Each pair of bodies of which boxes meet, or a box and a plane, the lower body first; as filled,
-    /// without replacements.
+    /// Each pair of bodies whose boxes meet, or whose box and plane meet, the lower body first; as filled, without
+    /// replacements.
     pub(crate) fn each_pair(&self, mut found: impl FnMut(usize, usize)) {
         match &self.neighbours {
             None => self.rows.each_pair(&mut found),
@@ -182,7 +181,7 @@ impl Broad {
                 }
                 for &body in &self.leavers {
                     self.each_in_rows(body, |other| {
-                        // Of two that have left, the pair comes up twice.
+                        // A pair of two bodies that have left their fat AABBs is found twice.
                         if !self.has_left[other] || body < other {
                             found(body.min(other), body.max(other));
                         }
@@ -263,7 +262,7 @@ impl Broad {
 }
 
 impl Wall {
-    /// Takes a plane in the place of the last, and other bodies if it comes farther.
+    /// Replaces the plane, and finds its bodies anew if it comes farther than before.
     fn take(
         &mut self,
         front: Front,
@@ -304,7 +303,7 @@ mod tests {
         Swept { min, max, body }
     }
 
-    /// All that may be asked, against brute force.
+    /// Compares all queries with brute force.
     fn check(broad: &Broad, all: &[Swept], fronts: &[Front], with_pairs: bool) -> usize {
         let mut expected = vec![];
         for (j, second) in all.iter().enumerate() {
@@ -337,7 +336,7 @@ mod tests {
     #[test]
     fn pairs_and_partners_are_those_of_brute_force() {
         let cases = [0, 1, 2, 3, 10, 300, 600].map(|count| [(count, 1), (count, 12)]);
-        // How many there are, and of how many one moves.
+        // The number of bodies, and one in how many moves.
         for (count, moving) in cases.into_iter().flatten() {
             let bodies: Vec<usize> = (0..count + 2).collect();
             let mut random = Random(7 + count as u64);
@@ -360,7 +359,7 @@ mod tests {
             let (mut listed, mut left) = (0, 0);
             for step in 0..24 {
                 let fronts = fronts(step);
-                // Slowly; now and then fast, or one far away and back.
+                // Slowly; at times fast, or one body far away and back.
                 let by = if step % 9 == 8 { 6.0 } else { 0.02 };
                 for (swept, velocity) in all.iter_mut().zip(&velocity) {
                     (swept.min, swept.max) = (swept.min + by * velocity, swept.max + by * velocity);
@@ -375,7 +374,8 @@ mod tests {
                 assert!(count < 300 || pairs > 100);
                 listed += usize::from(broad.neighbours.is_some());
                 left += broad.leavers.len();
-                // Some are replaced, one of them twice, a little or altogether; so is a plane.
+                // Some bodies are replaced, one of them twice, by near or by quite different boxes; a plane is
+                // replaced too.
                 let mut new = all.clone();
                 for body in (0..count)
                     .step_by(7)

@@ -7,15 +7,15 @@ use super::{rows::Rows, volume::Swept};
 pub(crate) struct BoxTree(Rows);
 
 impl BoxTree {
-    /// Over the boxes of some bodies.
+    /// A tree over the boxes of some bodies.
     pub(crate) fn of(bodies: &[usize], swept: impl Fn(usize) -> Swept) -> BoxTree {
         let mut rows = Rows::default();
         rows.fill(bodies, false, swept);
         BoxTree(rows)
     }
 
-    /// Visits bodies, the nearest ones early. `near` tells from a box how near what is in it is at least, and
-    /// infinity for what is not to be visited; `visit` takes a body and returns how near others have to be.
+    /// Visits bodies, near ones early. `near` returns a lower bound on the distance for the contents of a box, and
+    /// infinity for a box to skip. `visit` receives a body and returns the limit for the next ones.
     pub(crate) fn visit(
         &self,
         near: impl Fn(&Swept) -> f64,

@@ -7,17 +7,17 @@ use super::rows::Rows;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Neighbours {
     pairs: Vec<(u32, u32)>,
-    /// Where the partners of each body begin.
+    /// The index of the first partner of each body.
     begin: Vec<u32>,
     partners: Vec<u32>,
 }
 
 impl Neighbours {
-    /// Takes the pairs of some rows, in which bodies below `bodies` have boxes.
+    /// Takes the pairs of some rows; `bodies` is above the index of every body.
     pub(super) fn fill(&mut self, rows: &Rows, bodies: usize) {
         self.pairs.clear();
         rows.each_pair(|i, j| self.pairs.push((i as u32, j as u32)));
-        // Counted, then put where the counts say.
+        // Counting sort by body.
         self.begin.clear();
         self.begin.resize(bodies + 1, 0);
         for &(i, j) in &self.pairs {

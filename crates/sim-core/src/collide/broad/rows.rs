@@ -1,4 +1,4 @@
-//! Boxes in order, and boxes around those.
+//! Sorted boxes, and a tree of boxes around them.
 //!
 //! The rows sort boxes along a curve that keeps neighbours together (Morton 1966, "A computer oriented
 //! geodetic data base and a new technique in file sequencing"). Eight boxes in a row have a box around them,
@@ -10,29 +10,28 @@ use glam::DVec3;
 
 use super::volume::{Front, Row, Swept, WIDTH};
 
-/// So many boxes are faster swept along an axis: sorted by their lower ends, a box can only meet
-/// those that begin before it ends (Baraff 1992, "Dynamic simulation of non-penetrating rigid
-/// bodies", sec. 2.1.3).
+/// Up to this many boxes, a sweep along an axis is faster. The boxes are sorted by their lower ends, so a box can
+/// only meet those that begin before it ends (Baraff 1992, "Dynamic simulation of non-penetrating rigid bodies", sec.
+/// 2.1.3).
 const FEW: usize = 512;
 
-/// Boxes in order.
+/// Sorted boxes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
     sorted: Vec<Swept>,
-    /// The axis along which they are sorted, if it is not the curve.
+    /// The axis along which they are sorted; `None` if they are sorted along the curve.
     sweep: Option<usize>,
-    /// Rows of the sorted boxes, of the boxes around those, and so on to one.
+    /// Rows of the sorted boxes, rows of the boxes around those, and so on up to one box.
     levels: Vec<Vec<Row>>,
-    /// For each body its place among the sorted.
+    /// For each body its index among the sorted boxes.
     place: Vec<usize>,
-    /// Boxes, and their places on the curve, before they are sorted along it.
+    /// The boxes with their places on the curve, before sorting.
     unsorted: Vec<Swept>,
     keys: Vec<(u64, u32)>,
 }
 
 impl Rows {
-    /// Takes the boxes of some bodies in the place of all others; the bodies are those of last time if
-    /// they are known.
+    /// Replaces all boxes by those of some bodies; `is_known` tells whether these are the bodies of the last fill.
     pub(super) fn fill(
         &mut self,
         bodies: &[usize],
@@ -48,7 +47,7 @@ impl Rows {
             self.sort_along_curve(bodies, swept);
         } else {
             if is_known {
-                // In the order of last time, which is nearly this one.
+                // In the last order, which is nearly the new one.
                 for known in &mut self.sorted {
                     *known = swept(known.body);
                 }
@@ -172,13 +171,12 @@ impl Rows {
         );
     }
 
-    /// Each body whose box may come to a plane.
+    /// Each body whose box may reach a plane.
     pub(super) fn each_before(&self, front: &Front, found: impl FnMut(usize)) {
         self.each(|row| row.reaching(front), found);
     }
 
-    /// Each body whose box is among those of a row that something selects, and so are those around
-    /// it.
+    /// Each body whose box is selected in its row, and so are the boxes around it.
     fn each(&self, select: impl Fn(&Row) -> u32, mut found: impl FnMut(usize)) {
         let top = (self.levels.len(), 0);
         self.each_row(&select, 0, top, &mut |row| {
@@ -186,8 +184,8 @@ impl Rows {
         });
     }
 
-    /// Each row of sorted boxes, from one on, that is in a selected box, within a row of a level.
-    /// Level 0 are the rows of sorted boxes themselves.
+    /// Each row of sorted boxes, from a given one on, that is inside selected boxes, below one row of a level. Level
+    /// 0 has the rows of sorted boxes themselves.
     fn each_row(
         &self,
         select: &impl Fn(&Row) -> u32,
@@ -198,7 +196,7 @@ impl Rows {
         if level <= 1 {
             return found(index);
         }
-        // How many rows of sorted boxes are in one of these.
+        // The number of rows of sorted boxes in one of these boxes.
         let inside = WIDTH.pow(level as u32 - 2);
         let mut selected = select(&self.levels[level - 1][index]);
         while selected != 0 {
@@ -210,7 +208,7 @@ impl Rows {
         }
     }
 
-    /// Some bodies of a row, those whose box is selected.
+    /// The bodies of a row whose boxes are selected.
     #[inline(always)]
     fn each_in_row(
         &self,
@@ -232,9 +230,9 @@ impl Rows {
 }
 
 impl Rows {
-    /// Visits bodies, those whose boxes are nearest first within each row: `near` tells from a box how near
-    /// what is in it is at least, infinite for nothing, and `visit` takes a body and returns how near it is worth
-    /// to look on.
+    /// Visits bodies, within each row those with the nearest boxes first. `near` returns a lower bound on the
+    /// distance for the contents of a box, infinity for an empty one. `visit` receives a body and returns the limit
+    /// for the next ones.
     pub(super) fn visit_near(
         &self,
         near: &impl Fn(&Swept) -> f64,
@@ -256,7 +254,7 @@ impl Rows {
         };
         let mut lanes: [(f64, usize); WIDTH] = core::array::from_fn(|lane| {
             let swept = row.lane(lane);
-            // Lanes that hold nothing.
+            // Empty lanes.
             let is_empty = swept.min.x > swept.max.x;
             let nearest = if is_empty {
                 f64::INFINITY
@@ -279,7 +277,7 @@ impl Rows {
     }
 }
 
-/// Sorts boxes by where they begin along an axis, soon if they nearly are.
+/// Insertion sort of boxes by their lower ends along an axis; it stops early if they are not nearly sorted.
 fn insert(boxes: &mut [Swept], axis: usize) {
     let mut moves = 8 * boxes.len();
     for i in 1..boxes.len() {
@@ -300,10 +298,10 @@ fn insert(boxes: &mut [Swept], axis: usize) {
     }
 }
 
-/// Cells of the curve along an axis.
+/// The number of cells of the curve along an axis.
 const CELLS: f64 = 2_097_151.0;
 
-/// The place of a cell on the curve: the bits of its three coordinates in turns.
+/// The place of a cell on the curve: the interleaved bits of its three coordinates.
 fn curve(cell: DVec3) -> u64 {
     let spread = |x: f64| {
         let mut bits = x as u64;

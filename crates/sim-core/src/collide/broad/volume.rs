@@ -1,8 +1,8 @@
-//! Volumes that bodies may reach in a step: boxes, planes, and boxes in rows of eight.
+//! The volumes that bodies may reach in a step: boxes, planes, and rows of eight boxes.
 
 use glam::DVec3;
 
-/// A box around something that moves, and whose it is.
+/// A box around a moving body, and the index of the body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swept {
     pub(crate) min: DVec3,
@@ -22,7 +22,7 @@ impl Swept {
         self.meets_along([0, 1, 2], other)
     }
 
-    /// Whether they overlap along some axes. By the widest gap, as branches would often be mispredicted.
+    /// Whether two boxes overlap along some axes. It uses the widest gap, because branches would often be mispredicted.
     #[inline(always)]
     pub(super) fn meets_along<const N: usize>(&self, axes: [usize; N], other: &Swept) -> bool {
         let gap = axes.into_iter().fold(f64::NEG_INFINITY, |gap, axis| {
@@ -35,7 +35,7 @@ impl Swept {
         gap <= 0.0
     }
 
-    /// Its low end along an axis; of an array, as an index into a vector is a match.
+    /// Its low end along an axis. The array avoids the `match` of indexing a vector.
     #[inline(always)]
     pub(super) fn begin(&self, axis: usize) -> f64 {
         let min: &[f64; 3] = self.min.as_ref();
@@ -48,7 +48,7 @@ impl Swept {
         max[axis]
     }
 
-    /// Whether a box lies within it.
+    /// Whether another box lies within it.
     #[inline(always)]
     pub(super) fn holds(&self, other: &Swept) -> bool {
         let inside = |axis: usize| {
@@ -57,7 +57,7 @@ impl Swept {
         inside(0) & inside(1) & inside(2)
     }
 
-    /// With a margin all around.
+    /// The box with a margin on all sides.
     pub(super) fn grown_by(&self, margin: DVec3) -> Swept {
         Swept {
             min: self.min - margin,
@@ -79,20 +79,20 @@ impl Swept {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Front {
     pub(crate) normal: DVec3,
-    /// The farthest that it comes along the normal, m.
+    /// The farthest level of the plane along the normal, m.
     pub(crate) level: f64,
-    /// More than is lost in rounding.
+    /// A bound on rounding, m.
     pub(crate) slack: f64,
     pub(crate) body: usize,
 }
 
 impl Front {
-    /// Whether a box may come to it; a "no" is a proof.
+    /// Whether a box may reach the plane; a "no" is a proof.
     pub(crate) fn may_meet(&self, swept: &Swept) -> bool {
         self.reaches([0, 1, 2].map(|axis| self.nearest(axis, &swept.min, &swept.max)[axis]))
     }
 
-    /// Of two, what is nearer to the plane along an axis.
+    /// The one of the two ends along an axis that is nearer to the plane.
     #[inline(always)]
     fn nearest<'a, T>(&self, axis: usize, min: &'a T, max: &'a T) -> &'a T {
         match self.normal[axis] > 0.0 {
@@ -112,7 +112,7 @@ impl Front {
 /// Boxes in a row.
 pub(super) const WIDTH: usize = 8;
 
-/// Boxes side by side, by axis, so that a few instructions take all.
+/// Boxes side by side, stored by axis, so that a few instructions test all of them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     min: [[f64; WIDTH]; 3],
@@ -147,7 +147,7 @@ impl Row {
         }
     }
 
-    /// A bit for each that meets a box.
+    /// A bit for each box that meets another box.
     #[inline(always)]
     pub(super) fn meeting(&self, of: &Swept) -> u32 {
         // The widest gap along an axis.
@@ -162,7 +162,7 @@ impl Row {
         bits(gaps.map(|gap| gap <= 0.0))
     }
 
-    /// A bit for each that may come to a plane.
+    /// A bit for each box that may reach a plane.
     #[inline(always)]
     pub(super) fn reaching(&self, front: &Front) -> u32 {
         let ends = [0, 1, 2].map(|axis| front.nearest(axis, &self.min, &self.max)[axis]);
@@ -173,7 +173,7 @@ impl Row {
         bits(reach)
     }
 
-    /// The box around all.
+    /// The box around all boxes of the row.
     pub(super) fn around(&self) -> Swept {
         let least = |x: &[f64; WIDTH]| x.iter().copied().fold(f64::INFINITY, f64::min);
         let greatest = |x: &[f64; WIDTH]| x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -185,7 +185,7 @@ impl Row {
     }
 }
 
-/// One instruction, as `f64::max` is not. A difference of numbers that differ is not zero.
+/// The maximum in one instruction, unlike `f64::max`. A difference of numbers that differ is not zero.
 #[inline(always)]
 fn greater(x: f64, y: f64) -> f64 {
     if x > y { x } else { y }

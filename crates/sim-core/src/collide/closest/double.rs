@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::expansion::{two_product, two_sum};
 
-/// `high + low`, with an error of some 2^-104 of what goes into a sum or product.
+/// `high + low`, with an error of some 2^-104 of the terms of a sum or factors of a product.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Double {
     high: f64,
@@ -20,7 +20,7 @@ impl Double {
         Double { high, low }
     }
 
-    /// Two numbers of which the second is the smaller one, with their digits apart.
+    /// A pair of numbers, the second one smaller, normalised so that their digits do not overlap.
     fn normal(high: f64, low: f64) -> Double {
         let sum = high + low;
         Double {

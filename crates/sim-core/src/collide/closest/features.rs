@@ -28,20 +28,20 @@ impl Triangle {
     }
 }
 
-/// Two points, one of each shape, and the way between them.
+/// Two points, one of each shape, and the vector between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Closest {
     /// m.
     pub(crate) distance: f64,
     /// In the first shape's frame, m.
     pub(crate) points: [DVec3; 2],
-    /// Unit normal, from the first point to the second; zero where rounding leaves no direction.
+    /// Unit normal, from the first point to the second; zero if rounding leaves no direction.
     pub(crate) normal: DVec3,
     pub(crate) parts: [Part; 2],
 }
 
 impl Closest {
-    /// The same with the shapes in the other order, in the frame of the one that is at `offset` now.
+    /// The same with the shapes in the other order, in the frame of the shape that is at `offset` now.
     pub(super) fn turned(self, offset: DVec3) -> Closest {
         let [first, second] = self.points;
         let [one, other] = self.parts;
@@ -69,10 +69,10 @@ impl Closest {
     }
 }
 
-/// Roundings of f64 that a product of three lengths, summed up to a determinant, has at most.
+/// A bound on the roundings of a product of three lengths in a determinant.
 const ROUNDINGS: f64 = 32.0 * f64::EPSILON;
 
-/// Takes what is closer than the closest so far, of two triangles.
+/// Keeps the closest features of two triangles, if they are closer than the best so far.
 pub(super) fn compare(
     first: &Triangle,
     second: &Triangle,
@@ -136,7 +136,7 @@ fn vertices(first: &Triangle, second: &Triangle) -> Closest {
     Closest::between(points, points[1] - points[0], parts)
 }
 
-/// A vertex before the inner part of an edge, from the edge to the vertex.
+/// A vertex opposite to the interior of an edge, from the edge to the vertex.
 fn vertex_edge((of, i): (&Triangle, usize), (on, k): (&Triangle, usize)) -> Option<Closest> {
     let (p, [a, b]) = (of.corners[i], on.edge(k));
     let along = b - a;
@@ -145,7 +145,7 @@ fn vertex_edge((of, i): (&Triangle, usize), (on, k): (&Triangle, usize)) -> Opti
         return None;
     }
     let length = along.length_squared();
-    // From the end that is nearer, of which less is rounded.
+    // From the nearer end, where less is rounded.
     let (end, part) = match from_a <= from_b {
         true => (a, from_a / length),
         false => (b, -from_b / length),
@@ -155,16 +155,16 @@ fn vertex_edge((of, i): (&Triangle, usize), (on, k): (&Triangle, usize)) -> Opti
     Some(Closest::between([end + part * along, p], way, parts))
 }
 
-/// A vertex before the inner part of a face, from the face to the vertex, if it is closer than a distance.
+/// A vertex opposite to the interior of a face, from the face to the vertex, if it is closer than a distance.
 fn vertex_face((of, i): (&Triangle, usize), on: &Triangle, within: f64) -> Option<Closest> {
     let (p, corners) = (of.corners[i], on.corners);
     let [a, b, c] = corners;
     let (ab, ac, q) = (b - a, c - a, p - a);
     let normal = ab.cross(ac);
-    // No component of the normal rounds by more than a few units of this.
+    // Each component of the normal rounds by at most a few units of this.
     let size = ROUNDINGS * ab.length() * ac.length();
     let reach = q.length() + within;
-    // A segment or a point has no inner part.
+    // A segment or a point has no interior.
     if size == 0.0 {
         return None;
     }
@@ -196,7 +196,7 @@ fn vertex_face((of, i): (&Triangle, usize), on: &Triangle, within: f64) -> Optio
     })
 }
 
-/// The inner parts of two edges where they pass each other, if they are closer than a distance.
+/// The interiors of two edges where they pass each other, if they are closer than a distance.
 fn edge_edge(
     (first, i): (&Triangle, usize),
     (second, k): (&Triangle, usize),
@@ -259,7 +259,7 @@ fn unit(vector: Vector) -> Option<Unit> {
     })
 }
 
-/// `normal · way` over the length of the normal.
+/// `normal · way`, divided by the length of the normal.
 fn over(normal: Vector, way: Vector, unit: Unit) -> f64 {
     normal.dot(way).rounded() / unit.length
 }

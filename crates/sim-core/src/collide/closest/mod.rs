@@ -1,7 +1,7 @@
 //! The distance of two meshes, or of a point and a mesh, and their closest points.
 //!
-//! Branch and bound: a priority queue holds pairs of nodes by the distance of their boxes. The search skips
-//! pairs that are no nearer than the closest triangles so far.
+//! Branch and bound: a priority queue holds pairs of nodes by the distance of their boxes. The search skips pairs
+//! that are no nearer than the closest triangles so far.
 
 mod double;
 mod features;
@@ -24,11 +24,10 @@ pub enum Part {
     Face(u32),
 }
 
-/// The closest points of two meshes that do not meet, the second one displaced by `offset`, m, if they are
-/// closer than a distance, m.
+/// The closest points of two meshes that do not meet, if they are closer than a distance, m. The second mesh is
+/// displaced by `offset`, m.
 ///
-/// Exact for the placed vertices but for 16 roundings (2^-53) of the sizes of the two triangles and of their
-/// distance.
+/// Exact for the placed vertices, up to 16 roundings (2^-53) of the sizes of the two triangles and of their distance.
 pub(crate) fn closest(first: &Bvh, second: &Bvh, offset: DVec3, within: f64) -> Option<Closest> {
     if is_turned(offset) {
         let found = Search::of(second, first, -offset, within).run()?;
@@ -37,7 +36,7 @@ pub(crate) fn closest(first: &Bvh, second: &Bvh, offset: DVec3, within: f64) -> 
     Search::of(first, second, offset, within).run()
 }
 
-/// The same of a mesh and a point in its frame, m, which is the second of the points; its own part says nothing.
+/// The same for a mesh and a point in its frame, m, which is the second of the points; its own part has no meaning.
 pub(crate) fn closest_to_point(mesh: &Bvh, point: DVec3, within: f64) -> Option<Closest> {
     let scale = scale_of(point);
     let (mut limit, mut best) = (within * scale, None);
@@ -98,14 +97,14 @@ fn rescaled(closest: Closest, scale: f64) -> Closest {
     }
 }
 
-/// A pair of nodes that waits, and how far their boxes are apart at least, m.
+/// A pair of nodes in the queue, and a lower bound on the distance of their boxes, m.
 type Waiting = (f64, (u32, u32));
 
 struct Search<'a> {
     meshes: [&'a Bvh; 2],
     at: Placement,
     scale: f64,
-    /// Only what is closer counts, scaled m.
+    /// Only smaller distances count, scaled m.
     limit: f64,
     best: Option<Closest>,
 }
@@ -124,7 +123,7 @@ impl<'a> Search<'a> {
 
     fn run(mut self) -> Option<Closest> {
         let [first, second] = self.meshes;
-        // Each pair that is opened leaves one less than it has children, on as many levels as both trees have.
+        // Each opened pair leaves one less than it has children, on as many levels as both trees have.
         let root = (0.0, (first.root(), second.root()));
         let mut stack: [Waiting; 2 * MAX_DEPTH * (WIDTH * WIDTH - 1) + 1] =
             [root; 2 * MAX_DEPTH * (WIDTH * WIDTH - 1) + 1];
@@ -139,7 +138,7 @@ impl<'a> Search<'a> {
         self.best.map(|closest| rescaled(closest, self.scale))
     }
 
-    /// Opens both nodes of a pair, or the one that is none of triangles; triangles are compared.
+    /// Opens both nodes of a pair, or the one that is not a leaf; compares the triangles of two leaves.
     fn open(&mut self, (a, b): (u32, u32), stack: &mut [Waiting], mut top: usize) -> usize {
         let [first, second] = self.meshes;
         let (one, other) = (first.node(a), second.node(b));
@@ -180,7 +179,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// How far two boxes are apart at least, m.
+    /// A lower bound on the distance of two boxes, m.
     #[inline]
     fn gap(&self, (one, i): (&Node, usize), (other, k): (&Node, usize)) -> f64 {
         let (one, other) = (Side::of(one, i), Side::of(other, k));
@@ -233,15 +232,15 @@ impl Side {
     }
 }
 
-/// How far two boxes are apart at least, from the way between their centres, the sum of their half extents,
-/// and the sum of all that has been rounded.
+/// A lower bound on the distance of two boxes, from the vector between their centres, the sum of their half extents,
+/// and the sum of all rounded terms.
 #[inline]
 fn box_gap(apart: DVec3, half: DVec3, size: DVec3) -> f64 {
     let gap = (apart.abs() - half - 4.0 * f64::EPSILON * size).max(DVec3::ZERO);
     gap.length() * (1.0 - 4.0 * f64::EPSILON)
 }
 
-/// The same of the boxes around two triangles: those of nodes are rounded to f32.
+/// The same for the boxes around two triangles; boxes of nodes are rounded to f32.
 #[inline]
 fn corner_gap(s: &Triangle, t: &Triangle) -> f64 {
     let low = |[a, b, c]: [DVec3; 3]| a.min(b).min(c);
@@ -263,7 +262,7 @@ fn triangle(mesh: &Bvh, leaf: &Node, lane: usize, place: impl Fn(glam::Vec3) -> 
     }
 }
 
-/// Puts what waits among those from a place on, the nearest one on top, and returns the new top.
+/// Inserts an entry among those from `start` on, so that the nearest one is on top; returns the new top.
 fn insert<T: Copy>(stack: &mut [(f64, T)], start: usize, top: usize, new: (f64, T)) -> usize {
     let mut place = top;
     while place > start && stack[place - 1].0 < new.0 {

@@ -1,10 +1,10 @@
-//! Sixteen floats at once: one lane for each pair of a tile.
+//! Sixteen floats at once: a lane for each pair of a tile.
 
 use super::{Stack, TILE};
 use crate::bvh::WIDTH;
 
-/// Sixteen floats, lane `4 i + j` for the pair of the first's lane `i` and the second's lane `j`.
-/// Levels may round sums of products differently, so only bounds are made of these.
+/// Sixteen floats; lane `4 i + j` is for the pair of the first mesh's lane `i` and the second mesh's lane `j`. Levels
+/// may round sums of products differently, so only bounds are computed with these.
 pub(in crate::collide) trait Lanes: Copy {
     fn splat(x: f32) -> Self;
     /// Lane `4 i + j` is `x[i]`.
@@ -17,30 +17,29 @@ pub(in crate::collide) trait Lanes: Copy {
     fn mul_add(self, factor: Self, sum: Self) -> Self;
     fn mul(self, factor: Self) -> Self;
     fn abs(self) -> Self;
-    /// Either where one is not a number.
+    /// Either number if one is NaN.
     fn min(self, other: Self) -> Self;
-    /// Either where one is not a number.
+    /// Either number if one is NaN.
     fn max(self, other: Self) -> Self;
-    /// A bit for each lane that is at most `other`'s; none where one is not a number.
+    /// A bit for each lane that is at most `other`'s; none if one is NaN.
     fn at_most(self, other: Self) -> u32;
-    /// A bit for each lane that is above `other`'s; none where one is not a number.
+    /// A bit for each lane that is above `other`'s; none if one is NaN.
     fn above(self, other: Self) -> u32;
-    /// The lane of the least float among those of some bits, roughly, and whether it is negative.
+    /// The lane of the least float, roughly, among the lanes of some bits, and whether this float is negative.
     fn least(self, among: u32) -> (u32, bool);
     fn store(self, to: &mut [f32; TILE]);
-    /// Puts the pairs of `rows[i]` and `columns[j]` of some bits on the stack, lowest first.
+    /// Pushes the pairs of `rows[i]` and `columns[j]` for some bits onto the stack, lowest first.
     fn push(stack: &mut Stack, bits: u32, rows: &[u32; WIDTH], columns: &[u32; WIDTH]);
 }
 
-/// What can be done in the lanes of any level. To be compiled for the instructions of each, it must be
-/// inlined.
+/// Work in the lanes of any level. It must be inlined to be compiled for the instructions of each level.
 pub(in crate::collide) trait InLanes {
     type Output;
 
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
-/// Lanes as the compiler makes them for the target it was given.
+/// Lanes for the instructions of the compiler's target.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Portable([f32; TILE]);
 

@@ -7,11 +7,11 @@ use super::{InLanes, Portable};
 /// Instructions that lanes may use. All give the same answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// What the crate was compiled for: 128-bit vectors on x86-64 and on AArch64.
+    /// The instructions for which the crate was compiled: 128-bit vectors on x86-64 and on AArch64.
     Portable,
     /// 256-bit vectors of x86-64.
     Avx2,
-    /// 512-bit vectors of x86-64: all of a tile in one.
+    /// 512-bit vectors of x86-64: a whole tile in one.
     Avx512,
 }
 
@@ -19,8 +19,8 @@ impl Level {
     /// Every level, narrowest first.
     pub const ALL: [Level; 3] = [Level::Portable, Level::Avx2, Level::Avx512];
 
-    /// Whether this processor has it. Without the feature `std` only what the crate was compiled
-    /// for is known.
+    /// Whether this processor has the instructions. Without the feature `std`, only those for which the crate was
+    /// compiled are known.
     #[inline]
     pub fn is_available(self) -> bool {
         self <= Level::best()
@@ -35,7 +35,7 @@ impl Level {
         Level::Portable
     }
 
-    /// Does work at this level; one that is not available is `Portable`.
+    /// Does work at this level, or at `Portable` if the level is not available.
     #[inline]
     pub(in crate::collide) fn run<W: InLanes>(self, work: W) -> W::Output {
         #[cfg(target_arch = "x86_64")]
@@ -47,7 +47,7 @@ impl Level {
     }
 }
 
-/// Not to take its stack in queries that do without it.
+/// Not inlined, so that queries without it do not pay for its stack frame.
 #[inline(never)]
 fn portable<W: InLanes>(work: W) -> W::Output {
     work.run::<Portable>()

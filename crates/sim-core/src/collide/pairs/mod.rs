@@ -1,9 +1,9 @@
 //! The descent through two hierarchies at once.
 //!
-//! A *tile* is a pair of nodes or leaves: the four boxes of one against the four of the other,
-//! sixteen pairs at once. Pairs of children that may meet go on a stack and become tiles in their turn;
-//! at first the most promising pair is next. A leaf against a node descends on the node's side
-//! only. For two leaves, the descent hands over the pairs of triangles whose boxes meet.
+//! A *tile* is a pair of nodes or leaves: the four boxes of one against the four of the other, sixteen pairs at once.
+//! Pairs of children that may meet go on a stack and become tiles later; at first the most promising pair is next. A
+//! leaf against a node descends on the node's side only. For two leaves, the descent passes on the pairs of triangles
+//! whose boxes meet.
 
 mod lanes;
 mod level;
@@ -25,35 +25,33 @@ pub(super) use stack::Stack;
 /// Pairs in a tile.
 pub(in crate::collide) const TILE: usize = WIDTH * WIDTH;
 
-/// What a descent does with boxes and triangles.
+/// The tests of a descent for boxes and triangles.
 pub(super) trait Tiles {
     type Lanes: Lanes;
 
-    /// A bit for each pair of boxes that is worth a look, and how far the centre of one is outside
-    /// the other of each: below zero within.
+    /// A bit for each pair of boxes that may meet; and for each pair the distance of one box's centre outside the
+    /// other box, negative inside.
     fn boxes(&mut self, first: &Boxes, second: &Boxes) -> (u32, Self::Lanes);
 
-    /// Those of some pairs that are worth it by their slabs too.
+    /// The pairs that may meet by their slabs too.
     fn slabs(&self, first: (&Boxes, &Slabs), second: (&Boxes, &Slabs), pairs: u32) -> u32;
 
-    /// Takes pairs of triangles of two leaves, a bit each.
+    /// Receives pairs of triangles of two leaves, a bit each.
     fn triangles(&mut self, first: u32, second: u32, pairs: u32) -> ControlFlow<()>;
 }
 
-/// How many tiles are looked at one after the other at most, always that pair next in which a
-/// centre lies deepest in the other box. Where meshes meet deeply, a hit is found by then as a
-/// rule.
+/// The most tiles that are tested one after the other. The next tile is always the pair in which a centre lies
+/// deepest in the other box. If meshes meet deeply, this usually finds a hit.
 const GREEDY: usize = 24;
-/// How many of them may be without promise: where no box is worth a look, or none that is holds
-/// the other's centre.
+/// The most tiles without promise among these: no pair of boxes may meet, or no box of such a pair contains the other's
+/// centre.
 const HOPE: usize = 10;
-/// How many more for two leaves in which boxes of triangles meet.
+/// The number of further such tiles for two leaves in which boxes of triangles meet.
 const MORE_HOPE: usize = 4;
-/// How many tiles are looked at side by side after that, in no order, as then the hope is gone and
-/// throughput counts.
+/// After that, this many tiles are tested side by side, in no order: a quick hit is unlikely, and throughput counts.
 const ABREAST: usize = 4;
 
-/// Visits the pairs of triangles that `tiles` leaves, until told to stop.
+/// Visits the pairs of triangles that `tiles` does not exclude, until told to stop.
 #[inline(always)]
 pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> ControlFlow<()> {
     let mut stack = Stack::new();
@@ -114,7 +112,7 @@ pub(super) fn descend<T: Tiles>(first: &Bvh, second: &Bvh, tiles: &mut T) -> Con
     }
 }
 
-/// What tells lanes of [`below`] apart: where a leaf stays, its number does not.
+/// The lanes that [`below`] distinguishes: for a leaf that stays, the number of the lane does not matter.
 #[inline(always)]
 fn kept(a: u32, b: u32) -> u32 {
     let of_first = if a & LEAF == 0 { 0b1111 } else { 0b0011 };
@@ -122,8 +120,8 @@ fn kept(a: u32, b: u32) -> u32 {
     of_first & of_second
 }
 
-/// The pairs to go on with: of two nodes all; where one is a leaf, it stays for the other's
-/// children, once for all its triangles; where both are leaves none.
+/// The pairs for the next tiles: for two nodes, all pairs. A leaf against a node stays for the node's children, once
+/// for all its triangles. For two leaves, none.
 #[inline(always)]
 fn below(a: u32, b: u32, pairs: u32) -> u32 {
     let columns = (pairs | pairs >> 4 | pairs >> 8 | pairs >> 12) & 0x000f;

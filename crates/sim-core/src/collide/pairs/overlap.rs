@@ -1,4 +1,4 @@
-//! Which boxes and slabs of two nodes meet, sixteen pairs at once.
+//! Tests whether boxes and slabs of two nodes meet, sixteen pairs at once.
 
 use core::ops::ControlFlow;
 
@@ -15,10 +15,10 @@ pub(in crate::collide) struct Meshes<'a> {
     pub(in crate::collide) at: &'a Placement,
 }
 
-/// What is asked about two meshes, triangle by triangle.
+/// A question about two meshes, triangle by triangle.
 pub(in crate::collide) trait Question {
-    /// Takes pairs of triangles of two leaves whose boxes meet, a bit each; `reach` is there where
-    /// f32 is. To be compiled for the instructions of each level, it must be inlined.
+    /// Receives pairs of triangles of two leaves whose boxes meet, a bit each; `reach` is present if f32 is used. It
+    /// must be inlined to be compiled for the instructions of each level.
     fn triangles<L: Lanes>(
         &mut self,
         meshes: Meshes<'_>,
@@ -27,12 +27,12 @@ pub(in crate::collide) trait Question {
         reach: Option<&Reach>,
     ) -> ControlFlow<()>;
 
-    /// Hears of each tile whose boxes are compared.
+    /// Called for each tile whose boxes are compared.
     fn tile(&mut self) {}
 }
 
-/// Asks about the pairs of triangles whose boxes meet, the most promising first as far as
-/// depth-first goes, until told to stop.
+/// Passes the pairs of triangles whose boxes meet to a question, the most promising first as far as depth-first order
+/// allows, until told to stop.
 #[inline]
 pub(in crate::collide) fn each_pair<Q: Question>(
     level: Level,
@@ -79,8 +79,8 @@ impl<Q: Question, const TURNED: bool> InLanes for Ask<'_, Q, TURNED> {
     }
 }
 
-/// Heights above slabs add up more products than boxes do: their roundings stay below 128 units
-/// `2^-24 S`, where the margin of boxes is sixteen. Twice that is allowed for.
+/// Heights above slabs are sums of more products than boxes need. Their roundings stay below 128 units `2^-24 S`,
+/// while the margin of boxes is sixteen. This factor allows for twice that.
 const SLACK: f32 = 16.0;
 
 struct Overlaps<'a, L, Q, const TURNED: bool> {
@@ -126,18 +126,17 @@ impl<L: Lanes, Q: Question, const TURNED: bool> Tiles for Overlaps<'_, L, Q, TUR
     }
 }
 
-/// How far apart the centres of boxes are along an axis.
+/// The distance of the centres of boxes along an axis.
 #[inline(always)]
 fn between<L: Lanes>(a: &Placed<L>, b: &Placed<L>, axis: usize) -> L {
     a.centre[axis].sub(b.centre[axis]).abs()
 }
 
-/// A bit for each pair in which a slab holds nothing of what lies in another slab and box.
+/// A bit for each pair in which the contents of one slab and box are outside the other slab.
 ///
-/// Along the normal `n` of the one, a point `x` of the other has the height
-/// `n·x = k m·x + (n - k m)·x` for any `k`, with the other's normal `m`. For `k = n·m` the second
-/// part is small where the normals are alike; the other's slab bounds the first part, its box the
-/// second one.
+/// Let `n` be the normal of the one slab and `m` that of the other. A point `x` of the other has the height `n·x = k
+/// m·x + (n - k m)·x` for any `k`. For `k = n·m` the second part is small if the normals are similar. The other's
+/// slab bounds the first part, its box the second one.
 #[inline(always)]
 fn slab_misses<L: Lanes>(
     slab: &PlacedSlabs<L>,
@@ -157,7 +156,7 @@ fn slab_misses<L: Lanes>(
     middle.abs().above(dot(&abs(&rest), &boxes.half, reach))
 }
 
-/// Boxes in f64, for meshes so large that f32 is of no use. It need not be fast.
+/// Boxes in f64, for meshes too large for f32. Its speed does not matter.
 struct Wide<'a, Q> {
     meshes: Meshes<'a>,
     question: &'a mut Q,

@@ -1,35 +1,35 @@
-//! A relative pose as comparisons in f32 use it.
+//! A relative pose in f32, for comparisons of boxes.
 
 use super::Lanes;
 use crate::bvh::{Boxes, Bvh, Slabs};
 use crate::collide::Placement;
 
-/// Where the second mesh is, in f32, and how much that may be wrong.
+/// The pose of the second mesh in f32, and a bound on its error.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::collide) struct Reach {
     offset: [f32; 3],
     /// Rows of the rotation.
     turn: [[f32; 3]; 3],
-    /// More than all roundings in a comparison of boxes, m.
+    /// A bound on all roundings in a comparison of boxes, m.
     margin: f32,
-    /// Whether heights above planes are within f32, and of meshes that are not turned.
+    /// Whether heights above planes are in the range of f32; only for meshes that are not rotated.
     planes: bool,
 }
 
-/// Beyond this, m, sums of products of coordinates with unit vectors leave f32.
+/// Beyond this, m, sums of products of coordinates with unit vectors exceed the range of f32.
 pub(in crate::collide) const LARGEST: f64 = 1e37;
-/// Beyond this, m, products of three coordinates do: with sides and distances up to twice the sizes
-/// a height above a plane stays below `3 · 8 S² · 2 S`.
+/// Beyond this, m, products of three coordinates exceed it: with sides and distances up to twice the sizes, a height
+/// above a plane stays below `3 · 8 S² · 2 S`.
 const LARGEST_FOR_PLANES: f64 = 1e12;
 
 impl Reach {
-    /// `None` if f32 does not reach so far.
+    /// `None` beyond the range of f32.
     ///
-    /// Let `S` be the sum of the magnitudes of both boxes and of the offset, for a turned mesh that
-    /// of all its coordinates, and `u = 2^-24`. A comparison `|c - c'| <= h + h'` of placed boxes
-    /// sees roundings of the offset, of the sum with it, the difference, the sum `h + h'` and the
-    /// subtraction, together below `7 u S`; a rotation adds below `2 (5 u S)` for entries, products
-    /// and sums of centre and half extents; placed vertices are rounded in f64, far below `u S`.
+    /// Let `S` be the sum of the magnitudes of both boxes and of the offset (for a rotated mesh, of all its
+    /// coordinates), and `u = 2^-24`. A comparison `|c - c'| <= h + h'` of placed boxes has roundings of the offset,
+    /// of the sum with it, the difference, the sum `h + h'` and the subtraction, together below `7 u S`. A rotation
+    /// adds less than `2 (5 u S)` for entries, products and sums of centre and half extents. Placed vertices are
+    /// rounded in f64, far below `u S`.
     pub(in crate::collide) fn new(first: &Bvh, second: &Bvh, at: &Placement) -> Option<Reach> {
         let size = |bvh: &Bvh| {
             bvh.bounds()
@@ -73,13 +73,13 @@ impl Reach {
         self.planes
     }
 
-    /// What f32 misses placed vertices by at most, m: `2 u S`, without rotation.
+    /// The most by which f32 misses placed vertices, m: `2 u S`, without rotation.
     #[inline(always)]
     pub(in crate::collide) fn miss(&self) -> f32 {
         self.margin * (1.0 / 4.0)
     }
 
-    /// What placing changes a difference of two vertices by at most, m: `2^-52 S`, without rotation.
+    /// The most by which placing changes a difference of two vertices, m: `2^-52 S`, without rotation.
     #[inline(always)]
     pub(in crate::collide) fn shift(&self) -> f32 {
         self.margin * (1.0 / (1 << 28) as f32)
@@ -99,8 +99,8 @@ pub(super) struct PlacedSlabs<L> {
     pub(super) half: L,
 }
 
-// Loops over axes are written out here and in what uses this: closures in the standard library's
-// loops would not be compiled for the instructions of a level.
+// Loops over axes are written out here and in the callers: closures in the standard library's loops would not be
+// compiled for the instructions of a level.
 impl<L: Lanes> Placed<L> {
     #[inline(always)]
     pub(super) fn first(boxes: &Boxes) -> Placed<L> {
@@ -111,7 +111,7 @@ impl<L: Lanes> Placed<L> {
         }
     }
 
-    /// Of the second mesh; `TURNED` tells whether there is a rotation.
+    /// Boxes of the second mesh; `TURNED` tells whether there is a rotation.
     #[inline(always)]
     pub(super) fn second<const TURNED: bool>(boxes: &Boxes, reach: &Reach) -> Placed<L> {
         let (c, h) = (&boxes.centre, &boxes.half);
@@ -154,7 +154,7 @@ impl<L: Lanes> PlacedSlabs<L> {
         }
     }
 
-    /// Of the second mesh: with a turned normal the heights change by those of the offset.
+    /// Slabs of the second mesh: along a rotated normal, the heights change by that of the offset.
     #[inline(always)]
     pub(super) fn second<const TURNED: bool>(slabs: &Slabs, reach: &Reach) -> PlacedSlabs<L> {
         let n = &slabs.normal;

@@ -1,7 +1,7 @@
 //! Lanes in 256- and 512-bit vectors of x86-64.
 //!
-//! The `unsafe` here only asserts that the processor has the instructions: no pointer is made or followed
-//! except in loads and stores of whole arrays.
+//! The `unsafe` here only asserts that the processor has the instructions: no pointer is made or followed except in
+//! loads and stores of whole arrays.
 #![allow(unsafe_code)]
 
 use core::arch::x86_64::*;
@@ -32,7 +32,7 @@ fn widest_of_processor() -> Level {
 #[cfg(feature = "std")]
 #[inline]
 pub(super) fn widest() -> Level {
-    // Asked once, as a query that ends at once would feel the asking.
+    // Asked once, because the check would be noticeable in very short queries.
     static WIDEST: std::sync::OnceLock<Level> = std::sync::OnceLock::new();
     *WIDEST.get_or_init(widest_of_processor)
 }
@@ -44,7 +44,7 @@ pub(super) fn widest() -> Level {
     widest_of_processor()
 }
 
-/// Does work at a level with instructions of its own that this processor has; gives it back otherwise.
+/// Does work at a level with special instructions, if this processor has them; otherwise returns the work.
 #[inline]
 pub(super) fn run<W: InLanes>(level: Level, work: W) -> Result<W::Output, W> {
     if level > widest() {
