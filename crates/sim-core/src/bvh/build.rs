@@ -1,4 +1,4 @@
-//! Building a BVH top down: first over cells of triangles, and below over triangles.
+//! Builds a BVH top down: first over cells of triangles, and below that over triangles.
 
 use alloc::{boxed::Box, vec, vec::Vec};
 use core::array;
@@ -12,15 +12,14 @@ use super::split::{Bounds, HALVE_FROM, Items, Run};
 use super::{Boxes, Bvh, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
 use crate::Mesh;
 
-/// Runs of so few cells, or of cells with so few triangles, are built over triangles: so near the
-/// leaves the borders of cells show. Twice as many make trees better by 1 % and the build dearer
-/// by 5 %.
+/// Runs of at most this many cells, or of cells with at most this many triangles, are built over triangles, because
+/// near the leaves the borders of cells show. Twice as many make trees better by 1 % and the build dearer by 5 %.
 const FEW_CELLS: usize = 4;
 const FEW: u32 = 32;
 
 pub(super) fn build(mesh: &Mesh) -> Bvh {
     let count = mesh.triangles().len();
-    // With a fourth coordinate each is one load.
+    // With a fourth coordinate, each vertex is one load.
     let vertices = mesh.vertices().iter();
     let vertices: Vec<Vec4> = vertices.map(|v| v.extend(Bounds::ONE)).collect();
     let mut grid = Grid::of(mesh, &vertices);
@@ -28,9 +27,9 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
     let mut tree = Tree::with_capacity(count);
     let mut depth = 0;
     let bounds = mesh.bounds();
-    // Nodes whose descendants are under way, and how many runs waited before these.
+    // Nodes whose descendants are being built, and the number of runs that waited before these.
     let mut open: Vec<(u32, usize)> = Vec::new();
-    // Those that wait to become children, the next one last.
+    // Runs that wait to become children, the next one last.
     let mut runs = vec![Run {
         start: 0,
         end: grid.cells.bounds[0].len() as u32,
@@ -111,7 +110,7 @@ pub(super) fn build(mesh: &Mesh) -> Bvh {
     }
 }
 
-/// A tree that grows, and what its nodes tell their parents.
+/// A tree under construction, and the data that its nodes pass to their parents.
 struct Tree {
     nodes: Vec<Node>,
     slabs: Vec<Slabs>,
@@ -152,7 +151,7 @@ impl Tree {
         self.below.push(Below::NONE);
     }
 
-    /// Gives a node its slabs, when all below it are there: they are still in the cache.
+    /// Computes the slabs of a node when all nodes below it exist: they are still in the cache.
     #[inline]
     fn close(&mut self, index: u32) {
         let index = index as usize;
@@ -169,7 +168,7 @@ impl Tree {
 
     #[inline]
     fn push_leaf(&mut self, sorted: &[Sorted], vertices: &[Vec4], items: &[Bounds]) -> Bounds {
-        // Lanes that hold nothing repeat the last one, so that they widen nothing.
+        // Empty lanes repeat the last triangle, so that they do not widen the box.
         let of_lane = array::from_fn(|lane| items[lane.min(items.len() - 1)]);
         let leaf = leaf(sorted, vertices, &of_lane);
         let place = self.triangles.len() as u32;

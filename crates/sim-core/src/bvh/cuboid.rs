@@ -4,17 +4,16 @@ use glam::DVec3;
 
 use crate::{Aabb, Mesh};
 
-/// A closed mesh of twelve triangles that is all of the surface of a box along the axes, and has its
-/// winding outward.
+/// A closed mesh of twelve triangles that is the whole surface of a box along the axes, wound outward.
 ///
-/// Corners of a box are numbered by where they are: bit `k` is set at the high end of axis `k`.
+/// Corners of a box are numbered by position: bit `k` is set at the high end of axis `k`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cuboid {
     /// Low and high corner, m.
     pub(crate) ends: [DVec3; 2],
     /// The mesh's vertex at each corner.
     pub(crate) vertices: [u32; 8],
-    /// By axis, the low and the high one.
+    /// For each axis, the faces at the low and the high end.
     pub(crate) faces: [[Face; 2]; 3],
 }
 
@@ -22,7 +21,7 @@ pub(crate) struct Cuboid {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Face {
     pub(crate) triangles: [u32; 2],
-    /// The corner of the first one that is not on the diagonal.
+    /// The corner of the first triangle that is not on the diagonal.
     pub(crate) corner: usize,
 }
 
@@ -69,7 +68,7 @@ impl Cuboid {
                 Some(_) => return None,
             }
         }
-        // Twelve triangles, two at most on a face, are two on each.
+        // Twelve triangles, at most two on a face, are two on each.
         let vertices = vertices.map(|vertex| vertex.unwrap_or(u32::MAX));
         let [x, y, z] = faces.map(|[low, high]| Some([low?, high?]));
         Some(Cuboid {
@@ -90,7 +89,7 @@ impl Cuboid {
         )
     }
 
-    /// Where a corner is, with low and high corner at `ends`.
+    /// The position of a corner of a box with low and high corner `ends`.
     pub(crate) fn corner(ends: &[DVec3; 2], corner: usize) -> DVec3 {
         DVec3::from_array([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]))
     }
@@ -133,7 +132,7 @@ mod tests {
                 assert!(!names.contains(&known.vertices[corner ^ diagonal]));
             }
         }
-        // Stretched, and with each diagonal turned.
+        // Stretched, and with each diagonal exchanged.
         let long = cube().transformed(DQuat::IDENTITY, DVec3::new(3.0, 0.1, 1.0));
         assert!(Cuboid::of(&long.unwrap()).is_some());
         let mut triangles = cube().triangles().to_vec();
@@ -156,7 +155,7 @@ mod tests {
         };
         not(&|corner, _| corner.x = corner.x.next_up());
         not(&|corner, _| corner.x = 0.3);
-        // A face turned over, two halves that overlap, a wall within.
+        // A face with reversed winding, two halves that overlap, a wall inside.
         not(&|_, triangles| triangles[3].swap(0, 1));
         not(&|_, triangles| triangles[3] = [triangles[2][0], triangles[2][1], 5]);
         not(&|_, triangles| triangles[0] = [0, 5, 7]);

@@ -1,6 +1,6 @@
 //! Triangles sorted into the cells of a grid by their centres.
 //!
-//! The builder makes the upper levels of a tree over cells rather than over triangles, ten times fewer
+//! The builder makes the upper levels of a tree over cells instead of triangles, because there are ten times fewer
 //! (Pantaleoni, Luebke 2010, "HLBVH", sec. 3; there the cells follow a space-filling curve).
 
 use alloc::{vec, vec::Vec};
@@ -9,19 +9,19 @@ use glam::{Vec3, Vec4};
 use super::split::{Bounds, Items, Run, WHOLE, whole};
 use crate::Mesh;
 
-/// Triangles in a cell that holds any, about: where they cover a surface of the size of the mesh's
-/// box. From 4 to 16 neither the time of the build nor the tree changes by more than 2 %.
+/// The approximate number of triangles in a cell that has any, if they cover a surface of the size of the mesh's box.
+/// From 4 to 16 neither the time of the build nor the tree changes by more than 2 %.
 const PER_CELL: f64 = 12.0;
 
-/// The cells that hold triangles, as items, and the triangles of each.
+/// The cells that have triangles, as items, and the triangles of each.
 pub(super) struct Grid {
-    /// The number of a cell is the place of its first triangle in `sorted`.
+    /// The number of a cell is the index of its first triangle in `sorted`.
     pub(super) cells: Items,
     pub(super) sorted: Vec<Sorted>,
 }
 
-/// Corners of a triangle, and its index in the mesh. Those of a cell lie side by side, so the builder
-/// reads them from there rather than from all over the mesh.
+/// Corners of a triangle, and its index in the mesh. The triangles of a cell lie side by side, so the builder reads
+/// them from there instead of from all over the mesh.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sorted {
     pub(super) corners: [u32; 3],
@@ -32,7 +32,7 @@ impl Grid {
     pub(super) fn of(mesh: &Mesh, vertices: &[Vec4]) -> Grid {
         let frame = Frame::of(mesh);
         let count = mesh.triangles().len();
-        // Numbers of cells from 1, in the order in which triangles come; 0 for none yet.
+        // Numbers of cells from 1, in the order of the triangles; 0 for a cell without a number yet.
         let mut numbers = vec![0u32; frame.cells()];
         let mut cells: Vec<Bounds> = Vec::with_capacity(count / 4);
         let mut of_face: Vec<u32> = Vec::with_capacity(count);
@@ -50,7 +50,7 @@ impl Grid {
             cell.set_count(count);
             *number - 1
         }));
-        // Where the next triangle of each cell goes.
+        // The index for the next triangle of each cell.
         let mut start = 0;
         let mut next: Vec<u32> = Vec::with_capacity(cells.len());
         for cell in &mut cells {
@@ -71,7 +71,7 @@ impl Grid {
         Grid { cells, sorted }
     }
 
-    /// The triangles of a run of cells, as items whose numbers are their places in `sorted`.
+    /// The triangles of a run of cells, as items whose numbers are their indices in `sorted`.
     pub(super) fn gather(&self, vertices: &[Vec4], run: &Run, items: &mut Items) -> Run {
         let triangles = &mut items.bounds[0];
         triangles.clear();
@@ -107,7 +107,7 @@ fn bounds(vertices: &[Vec4], corners: [u32; 3]) -> Bounds {
 
 /// Cubic cells that cover the box of a mesh.
 struct Frame {
-    /// Twice the box's minimum, as centres are twice centres.
+    /// Twice the box's minimum, because centres are doubled.
     origin: Vec4,
     scale: f32,
     last: Vec4,
@@ -121,7 +121,7 @@ impl Frame {
         let extent = bounds.max.as_dvec3() - bounds.min.as_dvec3();
         let area = 2.0 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x);
         let volume = extent.x * extent.y * extent.z;
-        // The size of cells: not so small either that there are more of them than triangles.
+        // The size of cells; not so small that there are more of them than triangles.
         let size = libm::sqrt(area * PER_CELL / count)
             .max(libm::cbrt(volume / count))
             .max(extent.max_element() * PER_CELL / count);

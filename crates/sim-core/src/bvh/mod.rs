@@ -18,9 +18,9 @@ pub(crate) use node::{Boxes, LEAF, MAX_DEPTH, Node, Triangles, WIDTH};
 pub use ray::RayHit;
 pub(crate) use slabs::Slabs;
 
-/// A tree of boxes, four below each, flat in memory; each leaf has up to four triangles.
+/// A tree of boxes, four below each node, stored in flat arrays; each leaf has up to four triangles.
 ///
-/// It holds all that a query needs; which edge or vertex a triangle has, it shares with the mesh.
+/// It has all data that a query needs; it shares the edges and vertices of triangles with the mesh.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     bounds: Aabb,
@@ -29,13 +29,13 @@ pub struct Bvh {
     count: usize,
     /// Nodes and leaves, parents before their children.
     nodes: Vec<Node>,
-    /// Beside each node.
+    /// The slabs of each node.
     slabs: Vec<Slabs>,
-    /// Of each leaf.
+    /// The triangles of each leaf.
     triangles: Vec<Triangles>,
-    /// Of the mesh, which shares it.
+    /// The topology of the mesh, shared with it.
     topology: Arc<Topology>,
-    /// What the mesh is, if it is one.
+    /// The box that the mesh is, if it is one.
     cuboid: Option<Box<Cuboid>>,
     depth: usize,
 }
@@ -46,24 +46,24 @@ impl Bvh {
         build::build(mesh)
     }
 
-    /// How many nodes there are, leaves among them.
+    /// The number of nodes, including leaves.
     pub fn node_count(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Levels of nodes and leaves.
+    /// The number of levels of nodes and leaves.
     pub fn depth(&self) -> usize {
         self.depth
     }
 
-    /// Expected number of boxes, of nodes, leaves and triangles, that a random ray through the
-    /// root's box meets: the surface area of each relative to the root's (MacDonald, Booth 1990).
+    /// The expected number of boxes (of nodes, leaves and triangles) that a random ray through the root's box meets:
+    /// the sum of their surface areas relative to the root's (MacDonald, Booth 1990).
     pub fn surface_area_cost(&self) -> f64 {
         let root = self.bounds.half_area();
         if root == 0.0 {
             return self.count as f64;
         }
-        // Lanes that hold nothing repeat a triangle, which counts once.
+        // Empty lanes repeat a triangle, which counts once.
         let leaves = (0..)
             .zip(&self.nodes)
             .filter(|&(i, node)| node.child[0] == i | LEAF);
@@ -75,7 +75,7 @@ impl Bvh {
         nodes.chain(triangles).sum::<f64>() / root
     }
 
-    /// Memory per triangle, bytes, beside what the tree shares with its mesh.
+    /// Memory per triangle, bytes, without the data that the tree shares with its mesh.
     pub fn bytes_per_triangle(&self) -> f64 {
         let bytes = size_of_val(&self.nodes[..])
             + size_of_val(&self.slabs[..])
@@ -88,7 +88,7 @@ impl Bvh {
         self.bounds
     }
 
-    /// All boxes with their level: the root's is 0, those of single triangles are not listed.
+    /// All boxes with their level: the root's is 0; boxes of single triangles are not listed.
     pub fn boxes(&self) -> impl Iterator<Item = (usize, Aabb)> {
         let mut pending = alloc::vec![(0, self.root, self.bounds)];
         core::iter::from_fn(move || {
@@ -117,7 +117,7 @@ impl Bvh {
         self.root
     }
 
-    /// Any leaf.
+    /// A leaf.
     pub(crate) fn first_leaf(&self) -> &Node {
         let mut code = self.root;
         while code & LEAF == 0 {
@@ -126,13 +126,13 @@ impl Bvh {
         self.node(code)
     }
 
-    /// The node or leaf of a code.
+    /// The node or leaf with a code.
     #[inline(always)]
     pub(crate) fn node(&self, code: u32) -> &Node {
         &self.nodes[(code & !LEAF) as usize]
     }
 
-    /// The slabs beside the boxes of a node or leaf.
+    /// The slabs of a node or leaf.
     #[inline(always)]
     pub(crate) fn slabs(&self, code: u32) -> &Slabs {
         &self.slabs[(code & !LEAF) as usize]
@@ -161,7 +161,7 @@ mod tests {
     use alloc::vec;
     use glam::{DQuat, DVec3, Vec3};
 
-    /// Every triangle in one leaf, every box around what is below it, no level too deep.
+    /// Checks that every triangle is in one leaf, that every box contains all below it, and that no level is too deep.
     fn check(mesh: &Mesh) -> Bvh {
         let bvh = Bvh::build(mesh);
         let mut seen = vec![0; mesh.triangles().len()];
@@ -228,7 +228,7 @@ mod tests {
         assert!(bvh.depth() < 12, "{}", bvh.depth());
     }
 
-    /// The corners of all triangles below a code, and how many leaves these are in.
+    /// The corners of all triangles below a code, and the number of leaves that have them.
     fn below(bvh: &Bvh, code: u32) -> (Vec<Vec3>, u32) {
         let node = bvh.node(code);
         let of_lane = |lane| match code & LEAF {
@@ -246,7 +246,7 @@ mod tests {
     #[test]
     fn slabs_hold_what_their_boxes_do() {
         let turned = DQuat::from_rotation_y(0.3) * DQuat::from_rotation_x(0.2);
-        // Half of a flat ball, as it lies on no axis.
+        // Half of a flat ball, because it lies on no axis.
         let ball = sphere(60);
         let at = |v: u32| ball.vertices()[v as usize];
         let is_above = |corners: &[u32; 3]| corners.iter().all(|&v| at(v).y > 0.0);
@@ -298,13 +298,13 @@ mod tests {
         check(&soup(
             (0..100).map(|i| t.map(|v| v * 1e38 + Vec3::Y * i as f32 * 2e36)),
         ));
-        // Each twice as far as the last: area would split off one triangle at a time.
+        // Each triangle is twice as far as the last: the surface area would split off one triangle at a time.
         let row = (0..120).map(|i| t.map(|v| (v + 1.0) * libm::exp2f(i as f32 - 60.0)));
         check(&soup(row));
     }
 
-    /// Cost of a tree of two below each node whose planes are the best across any axis, without
-    /// bins, in boxes met (see `surface_area_cost`).
+    /// The cost of a binary tree whose planes are the best across any axis, without bins, in boxes met (see
+    /// `surface_area_cost`).
     fn swept_cost(mut boxes: Vec<Aabb>) -> f64 {
         let around = |boxes: &[Aabb]| boxes.iter().fold(boxes[0], |all, &b| all.union(b));
         let root = around(&boxes).half_area();
@@ -344,7 +344,7 @@ mod tests {
         cost
     }
 
-    /// Of four below each node a tree has half of the levels, so it has fewer boxes to meet.
+    /// A tree with four children for each node has half of the levels, so it has fewer boxes to meet.
     #[test]
     fn trees_are_as_good_as_slowly_built_ones() {
         let mut random = Random(1);

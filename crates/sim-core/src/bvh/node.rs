@@ -5,23 +5,23 @@ use glam::{BVec4A, Vec3, Vec4};
 
 use crate::Aabb;
 
-/// Children of a node, and triangles of a leaf, at most.
+/// The most children of a node, and triangles of a leaf.
 pub(crate) const WIDTH: usize = 4;
 
-/// No path from the root has more nodes and leaves, whatever the input (see `build`).
+/// No path from the root has more nodes and leaves, for any input (see `build`).
 pub(crate) const MAX_DEPTH: usize = 32;
 
-/// Set in a code for a leaf. Meshes have fewer than 2^31 triangles.
+/// This bit of a code marks a leaf. Meshes have fewer than 2^31 triangles.
 pub(crate) const LEAF: u32 = 1 << 31;
 
-/// Four boxes by axis, so that one instruction takes all four, as centres and half extents
-/// rounded outward: boxes moved and turned stay sums of these, and overlap is one comparison an
-/// axis, `|c - c'| <= h + h'`.
+/// Four boxes by axis, so that one instruction processes all four. They are centres and half extents, rounded
+/// outward: the same form remains valid for moved and rotated boxes, and overlap is one comparison for each axis, `|c
+/// - c'| <= h + h'`.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(crate) struct Boxes {
     pub(crate) centre: [[f32; WIDTH]; 3],
-    /// Minus infinity in a lane that holds nothing: it meets no box.
+    /// Minus infinity in an empty lane, which so meets no box.
     pub(crate) half: [[f32; WIDTH]; 3],
 }
 
@@ -31,7 +31,7 @@ impl Boxes {
         half: [[f32::NEG_INFINITY; WIDTH]; 3],
     };
 
-    /// From their ends by axis; only the first `count` are boxes.
+    /// Boxes with given ends by axis; only the first `count` are boxes.
     #[inline]
     pub(crate) fn between(min: [Vec4; 3], max: [Vec4; 3], count: usize) -> Boxes {
         let mut boxes = Boxes::EMPTY;
@@ -40,7 +40,7 @@ impl Boxes {
         for axis in 0..3 {
             let (min, max) = (min[axis], max[axis]);
             let centre = 0.5 * min + 0.5 * max;
-            // Either difference is rounded once, the factor makes up for it.
+            // Each difference is rounded once; the factor compensates.
             let half = (max - centre).max(centre - min) * (1.0 + 2.0 * f32::EPSILON);
             boxes.centre[axis] = Vec4::select(used, centre, Vec4::ZERO).to_array();
             boxes.half[axis] = Vec4::select(used, half, Vec4::NEG_INFINITY).to_array();
@@ -69,17 +69,17 @@ impl Boxes {
     }
 }
 
-/// Four boxes and what is in them: of a node its children, of a leaf its triangles.
+/// Four boxes and their contents: the children of a node, or the triangles of a leaf.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
     pub(crate) boxes: Boxes,
-    /// Of a node the codes of its children: indices of nodes, with [`LEAF`] for a leaf. A leaf has
-    /// its own code in every lane, as it stays itself where only the other tree goes down.
+    /// The codes of a node's children: indices of nodes, with [`LEAF`] for a leaf. A leaf has its own code in every
+    /// lane, because it stays the same if the descent continues in the other tree only.
     pub(crate) child: [u32; WIDTH],
     /// Lanes in use.
     pub(crate) count: u32,
-    /// The place of its triangles; of a node that of the first leaf below it.
+    /// The index of a leaf's triangles; for a node, that of the first leaf below it.
     pub(crate) triangles: u32,
 }
 

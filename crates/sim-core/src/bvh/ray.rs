@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3, Vec4};
 use super::{Boxes, Bvh, LEAF, MAX_DEPTH, Triangles, WIDTH};
 use crate::Aabb;
 
-/// Where a ray meets a mesh.
+/// The hit of a ray on a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
     /// The point is `origin + t direction`.
@@ -25,7 +25,7 @@ impl Bvh {
         Some(self.cast(origin, direction, (f64::INFINITY, false))?.0)
     }
 
-    /// The same before a time, with the corners of the triangle.
+    /// The same before a given time, with the corners of the triangle.
     pub(crate) fn ray_before(
         &self,
         origin: DVec3,
@@ -41,7 +41,7 @@ impl Bvh {
             .is_some()
     }
 
-    /// The nearest hit before a time, or any.
+    /// The nearest hit before a given time, or any hit.
     fn cast(
         &self,
         origin: DVec3,
@@ -56,7 +56,7 @@ impl Bvh {
             let (t, face) = (nearest * ray.scale, triangles.face[lane]);
             (RayHit { t, face }, triangles.corners(lane))
         };
-        // Codes and where the ray enters their boxes. Each level leaves at most three siblings.
+        // Codes, and the times when the ray enters their boxes. Each level leaves at most three siblings.
         let mut stack = [(0, 0.0f32); 3 * MAX_DEPTH + 1];
         let (mut top, mut code) = (0, self.root());
         loop {
@@ -65,7 +65,7 @@ impl Bvh {
                 let enter = ray.enter(&node.boxes, leave);
                 let first = top;
                 for lane in node.lanes().filter(|&lane| enter[lane] < f32::INFINITY) {
-                    // Farthest first, as the last one is looked at next.
+                    // Farthest first, because the last one is visited next.
                     let mut place = top;
                     while place > first && stack[place - 1].1 < enter[lane] {
                         stack[place] = stack[place - 1];
@@ -106,27 +106,27 @@ impl Bvh {
     }
 }
 
-/// A ray whose direction has a largest component of one; `scale` leads back from its times.
+/// A ray, scaled so that the largest component of its direction is one; `scale` converts its times back.
 ///
-/// Boxes, and most triangles that it misses, it tells apart in f32, from a point `start` that is as near
-/// to the mesh as the mesh is large. What f32 does not decide, f64 does.
+/// It tests boxes, and excludes most triangles that it misses, in f32, from a point at time `start` that is as near
+/// to the mesh as the mesh is large. f64 decides the rest.
 struct Ray {
     origin: DVec3,
     scale: f64,
-    /// The largest component is the last axis; the shear that takes the ray to it.
+    /// The last axis is that of the largest component; the shear that maps the ray to it.
     axes: [usize; 3],
     shear: [f64; 2],
     forward: f64,
-    /// When it is at `near`.
+    /// The time when the ray is at `near`.
     start: f64,
     near: Vec3,
     inverse: Vec3,
-    /// More than a coordinate, computed in f32 and as seen from `near` or along the ray, is off by.
+    /// A bound on the error of a coordinate in f32, relative to `near` or along the ray.
     blur: f32,
 }
 
-/// Stands for the inverse of next to nothing. What a ray with such a component moves beside a mesh is far
-/// less than `blur`, and `blur` times this is farther than across the mesh.
+/// Replaces the inverse of a component near zero. The motion of a ray with such a component along the mesh is far
+/// less than `blur`, and `blur` times this number is more than the size of the mesh.
 const BEYOND: f32 = 1e18;
 
 impl Ray {
@@ -146,8 +146,8 @@ impl Ray {
         };
         let start = ((f64::from(first) - origin[z]) * forward).max(0.0);
         let near = origin + start * along;
-        // Eight roundings of 2^-24 to bring a coordinate into the frame of the ray, or a plane to a time;
-        // and those of f64, here and in `meet`.
+        // Eight roundings of 2^-24 to convert a coordinate into the frame of the ray, or a plane to a time; and the
+        // roundings of f64, here and in `meet`.
         let size = f64::from(bounds.min.abs().max(bounds.max.abs()).max_element())
             + near.abs().max_element();
         let far = origin.abs().max_element() + start;
@@ -165,7 +165,7 @@ impl Ray {
             start,
             near: near.as_vec3(),
             inverse: Vec3::new(inverse(along.x), inverse(along.y), inverse(along.z)),
-            // Where sums overflow, f32 rules nothing out.
+            // If sums overflow, f32 excludes nothing.
             blur: if size < 1e37 {
                 blur as f32
             } else {
@@ -174,13 +174,13 @@ impl Ray {
         })
     }
 
-    /// A time as one from `near` on, rounded up.
+    /// A time relative to `near`, rounded up.
     #[inline]
     fn up(&self, time: f64) -> f32 {
         ((time - self.start) as f32).next_up()
     }
 
-    /// When the ray enters four boxes, from `near` on and rounded down; infinity where it does not before
+    /// The times when the ray enters four boxes, relative to `near` and rounded down; infinity if it does not before
     /// `leave`.
     #[inline]
     fn enter(&self, boxes: &Boxes, leave: f32) -> [f32; WIDTH] {
@@ -191,7 +191,7 @@ impl Ray {
                 let middle = (boxes.centre[axis][lane] - near) * inverse;
                 let reach = (boxes.half[axis][lane] + self.blur) * inverse.abs();
                 let (first, last) = (middle - reach, middle + reach);
-                // Beyond the range of f32 these are not numbers, and rule nothing out.
+                // Beyond the range of f32 these are NaN, and exclude nothing.
                 enter[lane] = if first > enter[lane] {
                     first
                 } else {
@@ -213,7 +213,7 @@ impl Ray {
         })
     }
 
-    /// The lanes of the triangles that the ray may meet, as bits: all but those that it misses for certain.
+    /// The lanes of the triangles that the ray may meet, as bits: all except those that it certainly misses.
     #[inline]
     fn may_meet(&self, triangles: &Triangles) -> u32 {
         let [x, y, z] = self.axes;
@@ -228,17 +228,17 @@ impl Ray {
         let across = |p: [Vec4; 2], q: [Vec4; 2]| p[0] * q[1] - p[1] * q[0];
         let (u, v, w) = (across(c, b), across(a, c), across(b, a));
         let largest = |p: [Vec4; 2]| p[0].abs().max(p[1].abs());
-        // Each factor is off by `blur`, each product by 2^-24, and so is their difference.
+        // Each factor errs by `blur`, each product by 2^-24, and so does their difference.
         let r = largest(a).max(largest(b)).max(largest(c)) + blur;
         let error = r * r * (8.0 * f32::EPSILON) + 6.0 * r * blur + f32::MIN_POSITIVE;
         let (low, high) = (u.min(v).min(w), u.max(v).max(w));
         !(low.cmplt(-error) & high.cmpgt(error)).bitmask() & ((1 << WIDTH) - 1)
     }
 
-    /// When the ray meets a triangle; infinity if it does not.
+    /// The time when the ray meets a triangle; infinity if it does not.
     #[inline]
     fn meet(&self, triangles: &Triangles, lane: usize) -> f64 {
-        // The ray becomes the z axis: the largest component stays, the others are sheared off.
+        // Transform the ray to the z axis: the largest component stays, the others are sheared off.
         let [x, y, z] = self.axes;
         let corner = |k: usize| {
             let at = |axis: usize| f64::from(triangles.corners[k + axis][lane]) - self.origin[axis];
@@ -315,7 +315,7 @@ mod tests {
         }
     }
 
-    /// The nearest time of all triangles, each asked about in f64.
+    /// The nearest time of all triangles, each tested in f64.
     fn slowly(bvh: &Bvh, origin: DVec3, direction: DVec3) -> Option<f64> {
         let ray = Ray::new(origin, direction, bvh.bounds())?;
         let times = bvh.triangles.iter();
@@ -324,7 +324,7 @@ mod tests {
         (nearest < f64::INFINITY).then_some(nearest * ray.scale)
     }
 
-    /// Sizes at which products overflow or vanish in f32, far places, and directions along walls.
+    /// Sizes at which products overflow or underflow in f32, distant places, and directions along walls.
     #[test]
     fn what_is_ruled_out_in_f32_is_no_hit() {
         let ball = test_meshes::sphere(14);
@@ -358,7 +358,7 @@ mod tests {
                         along * DVec3::new(1.0, 1e-22, 1e-30),
                         -to,
                     ] {
-                        // Through the target also where it is not in that direction.
+                        // Through the target, also if it is not in that direction.
                         for origin in [origin, target - far * size * direction.normalize()] {
                             let found = bvh.ray(origin, direction).map(|hit| hit.t);
                             assert_eq!(found, slowly(&bvh, origin, direction), "{size} {far}");

@@ -1,5 +1,4 @@
-//! Splits runs of a few triangles by sorting them: the surface area heuristic makes nothing better
-//! of so few.
+//! Splits runs of a few triangles by sorting them: for so few the surface area heuristic is no better.
 
 use core::array;
 use glam::Vec4;
@@ -7,11 +6,11 @@ use glam::Vec4;
 use super::WIDTH;
 use super::split::{Bounds, Centres, WHOLE, whole};
 
-/// Triangles in a short run, at most: what four leaves hold.
+/// The most triangles in a short run: the capacity of four leaves.
 pub(super) const SHORT: usize = 4 * WIDTH;
 
-/// Sorts five to sixteen triangles along the axis on which their centres lie farthest apart, and
-/// tells where to cut them: near the middle, so that the parts fill as few leaves as the whole.
+/// Sorts five to sixteen triangles along the axis on which their centres lie farthest apart. Returns where to cut
+/// them: near the middle, so that the parts fill as few leaves as the whole.
 #[inline]
 pub(super) fn sort(from: &[Bounds], to: &mut [Bounds]) -> usize {
     let Centres { axis, low, high } = Centres::of(from);
@@ -33,8 +32,8 @@ pub(super) fn sort(from: &[Bounds], to: &mut [Bounds]) -> usize {
     }
 }
 
-/// Sorts up to `N` items along an axis, by how many come before each, as that takes no branches.
-/// Returns how many are below some place.
+/// Sorts up to `N` items along an axis, by the number of items before each, which takes no branches. Returns the
+/// number of items below a place.
 #[inline]
 fn rank<const N: usize>(from: &[Bounds], to: &mut [Bounds], axis: usize, place: f32) -> usize {
     let mut keys = [f32::INFINITY; N];
@@ -42,7 +41,7 @@ fn rank<const N: usize>(from: &[Bounds], to: &mut [Bounds], axis: usize, place: 
     for (i, (key, item)) in keys.iter_mut().zip(from).enumerate() {
         let along = item.along(axis).clamp(f32::MIN, f32::MAX);
         before += usize::from(along <= place);
-        // No two are the same: the last bits are the item's number.
+        // No two keys are the same: the last bits are the item's number.
         *key = f32::from_bits(along.to_bits() & !(N as u32 - 1) | i as u32);
     }
     // Counted in floats, as `WHOLE` plus the rank.

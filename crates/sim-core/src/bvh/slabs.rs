@@ -1,17 +1,16 @@
-//! Oriented slabs beside the boxes.
+//! Oriented slabs of nodes, in addition to the boxes.
 //!
-//! The triangles of a node are as a rule a patch of a surface; the smaller the patch, the flatter it is. A
-//! slab along the patch's normal is thin where a box is not. Boxes separate two surfaces that run side by
-//! side only at patches of the size of their distance; slabs separate them at patches of the size of the
-//! square root of it (Gottschalk, Lin, Manocha 1996, "OBBTree", sec. 5, on boxes of any orientation; here
-//! it is a box and one slab).
+//! The triangles of a node are usually a patch of a surface; the smaller the patch, the flatter it is. A slab along
+//! the patch's normal is thin where a box is not. Boxes separate two surfaces that run side by side only at patches
+//! of the size of their distance; slabs separate them at patches of the size of the square root of it (Gottschalk,
+//! Lin, Manocha 1996, "OBBTree", sec. 5, on boxes of any orientation; here it is a box and one slab).
 
 use glam::{BVec4A, Vec4};
 
 use super::{LEAF, Node, Triangles, WIDTH};
 
-/// A slab for each lane of a node, `|n·x - middle| <= half` but for rounding: heights are computed
-/// in f32 and err by less than `2^-20` of the largest coordinate.
+/// A slab for each lane of a node, `|n·x - middle| <= half` up to rounding: heights are computed in f32 and err by
+/// less than `2^-20` of the largest coordinate.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 pub(crate) struct Slabs {
@@ -21,7 +20,7 @@ pub(crate) struct Slabs {
     pub(crate) half: [f32; WIDTH],
 }
 
-/// What a node tells its parent: where its triangles are, and the sum of their area vectors.
+/// The data that a node passes to its parent: the place of its triangles, and the sum of their area vectors.
 #[derive(Clone, Copy)]
 pub(super) struct Below {
     start: u32,
@@ -30,7 +29,7 @@ pub(super) struct Below {
 }
 
 impl Slabs {
-    /// For a node whose slabs are not known yet.
+    /// For a node whose slabs have not been computed.
     pub(super) const NONE: Slabs = Slabs {
         normal: [[0.0; WIDTH]; 3],
         middle: [0.0; WIDTH],
@@ -56,15 +55,14 @@ impl Below {
     };
 }
 
-/// Unit vectors along area vectors. Any will do for a patch without one, or beyond the range of
-/// f32.
+/// Unit vectors along area vectors. For a patch without area, or beyond the range of f32, any vector is valid.
 #[inline]
 fn normals(area: [Vec4; 3]) -> [Vec4; 3] {
     let largest = area[0].abs().max(area[1].abs()).max(area[2].abs());
     let scale = largest.recip();
     let [x, y, z] = area.map(|axis| axis * scale);
-    // The square of a length from 1 to sqrt 3: a parabola has its inverse root to 0.02, and each
-    // step of Newton's method squares that, times 3/2.
+    // The square of a length from 1 to sqrt 3. A parabola approximates its inverse root to 0.02, and each step of
+    // Newton's method squares this error, times 3/2.
     let square = x * x + y * y + z * z;
     let usable = square.cmpge(Vec4::splat(0.9)) & square.cmple(Vec4::splat(3.1));
     let mut inverse = (0.0771 * square - 0.5094) * square + 1.4177;
@@ -84,13 +82,13 @@ fn dot(a: [Vec4; 3], b: [Vec4; 3]) -> Vec4 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Up to so many leaves below a child its slab is that of their corners, above that one around the
-/// slabs below it, which costs the same however many. With 4 instead, two spheres one in the other take
-/// half as many tiles more; without limit a build takes 4 % more instructions.
+/// With up to this many leaves below a child, its slab is that of their corners. With more, it is the slab around the
+/// slabs below it, whose cost does not depend on the number. With 4 instead, two spheres one in the other take half
+/// as many tiles more; without a limit, a build takes 4 % more instructions.
 pub(super) const FEW_LEAVES: u32 = 64;
 
-/// The slabs of a node, where those of its children are known, and what it tells its parent. The
-/// triangles below a node lie side by side.
+/// The slabs of a node whose children have slabs, and the data for its parent. The triangles below a node lie side by
+/// side.
 #[inline]
 pub(super) fn of_node(
     node: &Node,
@@ -136,7 +134,7 @@ impl Triangles {
         [0, 3, 6].map(|k| [0, 1, 2].map(|axis| Vec4::from_array(c[k + axis])))
     }
 
-    /// A slab for each triangle of a leaf, `count` of them; and what the leaf tells its parent.
+    /// A slab for each of the `count` triangles of a leaf, and the data for its parent.
     #[inline]
     pub(super) fn slabs(&self, count: usize, place: u32) -> (Slabs, Below) {
         let [a, b, c] = self.rows();
@@ -161,8 +159,8 @@ impl Triangles {
     }
 }
 
-/// More than a height of a corner, or of a slab's side, is off by, relative to its coordinates: some
-/// twenty roundings of 2^-24, and the 2^-20 of a slab.
+/// A bound on the error of the height of a corner, or of a slab's side, relative to its coordinates: some twenty
+/// roundings of 2^-24, and the 2^-20 of a slab.
 const ROUNDINGS: f32 = 32.0 * f32::EPSILON;
 
 /// The least and the greatest height of all corners along a normal.
@@ -177,10 +175,10 @@ fn heights(triangles: &[Triangles], normal: [Vec4; 3]) -> (f32, f32) {
     (low.min_element(), high.max_element())
 }
 
-/// The same of all that slabs and boxes of a node hold.
+/// The same for the contents of the slabs and boxes of a node.
 ///
-/// With the normal `m` of such a slab, `n·x = k m·x + (n - k m)·x` for any `k`; for `k = n·m` the second
-/// part is small where the normals are alike. The slab bounds the first part, the box the second.
+/// With the normal `m` of such a slab, `n·x = k m·x + (n - k m)·x` for any `k`. For `k = n·m` the second part is
+/// small if the normals are similar. The slab bounds the first part, the box the second.
 #[inline]
 fn heights_of_slabs(node: &Node, slabs: &Slabs, n: [Vec4; 3]) -> (f32, f32) {
     let axes = |of: &[[f32; WIDTH]; 3]| of.map(Vec4::from_array);
@@ -193,7 +191,7 @@ fn heights_of_slabs(node: &Node, slabs: &Slabs, n: [Vec4; 3]) -> (f32, f32) {
     let rest = [0, 1, 2].map(|axis| n[axis] - k * m[axis]);
     let middle = k * Vec4::from_array(slabs.middle) + dot(rest, centre);
     let reach = k.abs() * Vec4::from_array(slabs.half) + dot(rest.map(Vec4::abs), half);
-    // More than all roundings, here and in the slab.
+    // A bound on all roundings, here and in the slab.
     let size = dot([Vec4::ONE; 3], centre.map(Vec4::abs)) + dot([Vec4::ONE; 3], half);
     let reach = reach + ROUNDINGS * size;
     let mut heights = (f32::INFINITY, f32::NEG_INFINITY);

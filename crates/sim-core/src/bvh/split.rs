@@ -1,6 +1,6 @@
-//! Splits runs of boxes in two by the binned surface area heuristic (Wald 2007, "On fast
-//! construction of SAH-based bounding volume hierarchies"), and splits these again until there are four
-//! (Wald, Benthin, Boulos 2008, "Getting rid of packets").
+//! Splits runs of boxes in two by the binned surface area heuristic (Wald 2007, "On fast construction of SAH-based
+//! bounding volume hierarchies"), and splits the parts again until there are four (Wald, Benthin, Boulos 2008,
+//! "Getting rid of packets").
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -9,17 +9,17 @@ use glam::Vec4;
 use super::short::{SHORT, sort};
 use super::{MAX_DEPTH, WIDTH};
 
-/// Candidate split planes, less one; a power of two.
+/// One more than the number of candidate split planes; a power of two.
 const BINS: usize = 16;
-/// Runs of so few triangles are cut in the middle between their outer centres: with planes by the
-/// surface area heuristic a build took a sixth longer, and queries needed 1 to 2 % fewer tiles.
+/// Runs of at most this many triangles are cut in the middle between their outer centres. With planes by the surface
+/// area heuristic a build took a sixth longer, and queries needed 1 to 2 % fewer tiles.
 const FEW: usize = 64;
-/// From this level on, runs are halved by count. It leaves a quarter at most to each child, and a
-/// mesh has fewer than 4^16 triangles, so the tree stays within `MAX_DEPTH`.
+/// From this level on, runs are halved by count. This leaves at most a quarter to each child, and a mesh has fewer than
+/// 4^16 triangles, so the tree stays within `MAX_DEPTH`.
 pub(super) const HALVE_FROM: usize = MAX_DEPTH - 16;
 
-/// A box in two SIMD registers, and in their last lanes how many triangles are in it, and the number of
-/// what it is the box of.
+/// A box in two SIMD registers. Their last lanes hold the number of its triangles, and the index of the item that the
+/// box contains.
 #[derive(Clone, Copy)]
 pub(super) struct Bounds {
     pub(super) min: Vec4,
@@ -47,10 +47,10 @@ impl Bounds {
             .fold(Bounds::EMPTY, |all, &item| all.union(item))
     }
 
-    /// The last lane of a vertex, and so of the box of a triangle: that is one triangle.
+    /// The last lane of a vertex, and so of the box of a triangle: one triangle.
     pub(super) const ONE: f32 = f32::from_bits(f32::MIN_POSITIVE.to_bits() + 1);
 
-    /// The count as the float of the same bits, past those that processors are slow with.
+    /// Stores the count as a float of the same bits, offset beyond the subnormal numbers, which are slow in processors.
     #[inline]
     pub(super) fn set_count(&mut self, count: u32) {
         self.min.w = f32::from_bits(count + f32::MIN_POSITIVE.to_bits());
@@ -61,7 +61,7 @@ impl Bounds {
         self.min.w.to_bits() - f32::MIN_POSITIVE.to_bits()
     }
 
-    /// The number likewise.
+    /// Stores the index likewise.
     #[inline]
     pub(super) fn set_number(&mut self, number: u32) {
         self.max.w = f32::from_bits(number + f32::MIN_POSITIVE.to_bits());
@@ -72,20 +72,20 @@ impl Bounds {
         self.max.w.to_bits() - f32::MIN_POSITIVE.to_bits()
     }
 
-    /// Twice the centre; infinite for a huge box, which then counts as one that no plane separates.
+    /// Twice the centre; infinite for a huge box, which then counts as a box that no plane separates.
     #[inline]
     pub(super) fn centre(&self) -> Vec4 {
         self.min + self.max
     }
 
-    /// Twice the centre along an axis, straight from memory rather than from a register.
+    /// Twice the centre along an axis, read from memory instead of from a register.
     #[inline]
     pub(super) fn along(&self, axis: usize) -> f32 {
         let (min, max): (&[f32; 4], &[f32; 4]) = (self.min.as_ref(), self.max.as_ref());
         min[axis & 3] + max[axis & 3]
     }
 
-    /// Half of the surface area; infinite for huge boxes, and then no plane is the best.
+    /// Half of the surface area; infinite for huge boxes, for which then no plane is the best.
     #[inline]
     fn half_area(&self) -> f32 {
         let e = self.max - self.min;
@@ -93,20 +93,20 @@ impl Bounds {
     }
 }
 
-/// What is to be divided into a tree, in an order that changes run by run. Each run is in one of
-/// two buffers; a split writes its parts to the other one.
+/// The items to be divided into a tree; each division reorders a run. A run is in one of two buffers, and a split
+/// writes its parts to the other one.
 #[derive(Default)]
 pub(super) struct Items {
     pub(super) bounds: [Vec<Bounds>; 2],
 }
 
-/// Items on their way to becoming a child.
+/// Items that will become a child.
 #[derive(Clone, Copy)]
 pub(super) struct Run {
     pub(super) bounds: Bounds,
     pub(super) start: u32,
     pub(super) end: u32,
-    /// Triangles in the items.
+    /// The number of triangles in the items.
     pub(super) count: u32,
     pub(super) parent: u32,
     pub(super) lane: u8,
@@ -125,8 +125,7 @@ impl Run {
     }
 }
 
-/// What triangles in a box cost a query that reaches the box's parent, by the leaves that they
-/// fill.
+/// The cost of the triangles in a box for a query that reaches the parent of the box: area times leaves to fill.
 #[inline]
 fn cost(bounds: &Bounds, count: u32) -> f32 {
     bounds.half_area() * count.div_ceil(WIDTH as u32) as f32
@@ -137,7 +136,7 @@ impl Items {
         &self.bounds[run.buffer as usize][run.range()]
     }
 
-    /// Makes room for as many items as are in the first buffer.
+    /// Resizes the second buffer to the number of items in the first.
     pub(super) fn mirror(&mut self) {
         let len = self.bounds[0].len();
         if self.bounds[1].len() < len {
@@ -145,15 +144,15 @@ impl Items {
         }
     }
 
-    /// Cuts the last of some runs into two to four, none of them empty, reordering items. It has
-    /// more than four triangles and more than one item.
+    /// Cuts the last of some runs, which has more than four triangles and more than one item, into two to four runs.
+    /// None is empty; the items are reordered.
     pub(super) fn divide(&mut self, runs: &mut Vec<Run>) {
         let first = runs.len() - 1;
         let mut costs = [f32::INFINITY; WIDTH];
         let mut dearest = 0;
         for part in 1..WIDTH {
             let (left, right) = self.split(&runs[first + dearest]);
-            // Below the level of halving, the longest run has to go first.
+            // From the level of halving on, the longest run must be cut first.
             let cost = |run: &Run| {
                 if run.count <= WIDTH as u32 || run.len() == 1 {
                     -1.0
@@ -178,7 +177,7 @@ impl Items {
         }
     }
 
-    /// Cuts a run of two or more in two, along the axis on which centres lie farthest apart.
+    /// Cuts a run of at least two items in two, along the axis on which centres lie farthest apart.
     #[inline]
     fn split(&mut self, run: &Run) -> (Run, Run) {
         if run.len() == run.count as usize && run.len() <= SHORT {
@@ -191,7 +190,7 @@ impl Items {
             return self.halve(run);
         }
         if run.len() == run.count as usize && run.len() <= FEW {
-            // One at least lies beyond.
+            // At least one item lies beyond.
             let middle = (0.5 * low + 0.5 * high).min(high.next_down());
             let at = self.partition(run, |item| item.along(axis) <= middle);
             return self.parts(run, at - run.start);
@@ -220,14 +219,14 @@ impl Items {
         (left, right)
     }
 
-    /// Cuts a run of five to sixteen triangles in two that fill no more leaves than it does.
+    /// Cuts a run of five to sixteen triangles in two parts that fill no more leaves than the run.
     fn split_short(&mut self, run: &Run) -> (Run, Run) {
         let [from, to] = two(&mut self.bounds, run.buffer, run.range());
         let cut = sort(from, to) as u32;
         self.parts(run, cut)
     }
 
-    /// Both parts of a run of triangles that lie in the other buffer, `cut` of them in the first.
+    /// Both parts of a run of triangles, which are in the other buffer; the first part has `cut` triangles.
     #[inline]
     fn parts(&self, run: &Run, cut: u32) -> (Run, Run) {
         let buffer = 1 - run.buffer;
@@ -244,7 +243,7 @@ impl Items {
         (part(run.start, middle, left), part(middle, run.end, right))
     }
 
-    /// Cuts a run of five to sixteen triangles into leaves, as few as hold them.
+    /// Cuts a run of five to sixteen triangles into the least number of leaves.
     #[inline]
     pub(super) fn leaves(&mut self, run: &Run, mut leaf: impl FnMut(&[Bounds])) {
         let [from, to] = two(&mut self.bounds, run.buffer, run.range());
@@ -261,7 +260,7 @@ impl Items {
         }
     }
 
-    /// Cuts a run where it is whose centres no plane separates.
+    /// Halves a run by count, if no plane separates its centres.
     #[cold]
     fn halve(&self, run: &Run) -> (Run, Run) {
         let middle = run.start + run.len() as u32 / 2;
@@ -277,13 +276,12 @@ impl Items {
         (part(run.start, middle), part(middle, run.end))
     }
 
-    /// Writes a run to the other buffer, items that go left in front; returns where the others
-    /// begin.
+    /// Writes a run to the other buffer, items that go left in front. Returns the index of the first other item.
     #[inline]
     fn partition(&mut self, run: &Run, goes_left: impl Fn(&Bounds) -> bool) -> u32 {
         let [from, to] = two(&mut self.bounds, run.buffer, run.range());
-        // Those on the left from the left end, the others from the right: which of the two is a
-        // toss-up, so it is an index and not a branch.
+        // Left items fill the buffer from the left end, others from the right. The side is unpredictable, so it
+        // selects an index and not a branch.
         let (mut left, mut right) = (0, from.len());
         for item in from.iter() {
             let goes_left = goes_left(item);
@@ -304,7 +302,7 @@ fn two(buffers: &mut [Vec<Bounds>; 2], from: u8, range: Range<usize>) -> [&mut [
     [&mut from[range.clone()], &mut to[range]]
 }
 
-/// The axis along which the centres of some boxes lie farthest apart, and twice the outer ones.
+/// The axis along which the centres of some boxes lie farthest apart, and twice the outer centres on it.
 pub(super) struct Centres {
     pub(super) axis: usize,
     pub(super) low: f32,
@@ -332,8 +330,8 @@ impl Centres {
     }
 }
 
-/// A plane that items are split by: up to a [`place`] to the left, how many triangles these are, and the
-/// boxes of both sides.
+/// A plane that splits items: items up to a [`place`] go left. It has the number of their triangles, and the boxes of
+/// both sides.
 struct Plane {
     scale: f32,
     last_left: f32,
@@ -342,7 +340,7 @@ struct Plane {
     right: Bounds,
 }
 
-/// Adding this to a small float rounds it to whole numbers, which are then its last bits.
+/// Adding this to a small float rounds it to a whole number, which is then in its last bits.
 pub(super) const WHOLE: f32 = (3 << 22) as f32;
 
 #[inline]
@@ -356,13 +354,13 @@ fn place(item: &Bounds, axis: usize, origin: f32, scale: f32) -> f32 {
     (item.along(axis) - origin) * scale - 0.5 + WHOLE
 }
 
-/// The plane across an axis with the least area of boxes times leaves to fill in them.
+/// The plane across an axis that minimises the area of boxes times the leaves to fill in them.
 ///
-/// Planes across the other two axes as well, tried, took three times as long and saved queries no
-/// more than a few tiles in a hundred.
+/// Trying planes across the other two axes too took three times as long, and saved queries only a few tiles in a
+/// hundred.
 #[inline]
 fn best_plane(items: &[Bounds], count: u32, axis: usize, low: f32, high: f32) -> Option<Plane> {
-    // A little less than the bins, so that the highest centre still lies in the last one.
+    // A little less than the number of bins, so that the highest centre still lies in the last one.
     let scale = BINS as f32 * (1.0 - 1e-6) / (high - low);
     let mut bins = [Bounds::EMPTY; BINS];
     let mut counts = [0u32; BINS];
@@ -371,7 +369,7 @@ fn best_plane(items: &[Bounds], count: u32, axis: usize, low: f32, high: f32) ->
         bins[bin] = bins[bin].union(*item);
         counts[bin] += item.count();
     }
-    // What lies to the right of each plane, swept from the right.
+    // The boxes to the right of each plane, swept from the right.
     let mut right = [Bounds::EMPTY; BINS];
     for i in (1..BINS).rev() {
         right[i - 1] = right[i].union(bins[i]);

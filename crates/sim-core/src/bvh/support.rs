@@ -1,12 +1,12 @@
-//! How far a mesh reaches along a direction.
+//! The extent of a mesh along a direction.
 
 use glam::{DVec3, Vec3};
 
 use super::{Bvh, LEAF, MAX_DEPTH, WIDTH};
 
 impl Bvh {
-    /// The least `v · direction` (m, rounded once a product and a sum) of all corners of triangles,
-    /// and the middle of the corners that have it.
+    /// The least `v · direction` (m; products and sums are rounded) of all corners of triangles, and the middle of
+    /// the corners that attain it.
     pub(crate) fn least_along(&self, direction: DVec3) -> (f64, DVec3) {
         if let Some(cuboid) = self.cuboid() {
             return cuboid.least_along(direction);
