@@ -1,4 +1,4 @@
-//! Several simultaneous contacts between turning bodies.
+//! The response to several simultaneous contacts between turning bodies.
 //!
 //! As in [`super::together`], with velocities of six components: a contact at the arms `r1`, `r2` from the
 //! centres of mass opens at `n·(v2 + ω2×r2 - v1 - ω1×r1)`. Contacts are few, so the Delassus operator
@@ -12,7 +12,7 @@ use crate::pieces::ties;
 /// Two bodies in contact at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arms {
-    /// The bodies, as places in the list of motions.
+    /// The bodies, as indices in the list of motions.
     pub(crate) bodies: (usize, usize),
     /// A unit vector from the first to the second.
     pub(crate) normal: DVec3,
@@ -20,7 +20,7 @@ pub(crate) struct Arms {
     pub(crate) arms: (DVec3, DVec3),
 }
 
-/// What moves a body: inverse mass, 1/kg, and inverse inertia in the world, 1/(kg m²); zero where nothing does.
+/// The response of a body to impulses: inverse mass and inverse inertia; zero if it is immovable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Yielding {
     /// Inverse mass, 1/kg.
@@ -29,7 +29,7 @@ pub(crate) struct Yielding {
     pub(crate) inertia: DMat3,
 }
 
-/// How a body moves.
+/// The velocity and angular velocity of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Twist {
     /// Velocity of the centre of mass, m/s.
@@ -39,7 +39,7 @@ pub(crate) struct Twist {
 }
 
 impl Yielding {
-    /// Of what nothing moves.
+    /// For an immovable body.
     pub(crate) const NOTHING: Yielding = Yielding {
         mass: 0.0,
         inertia: DMat3::ZERO,
@@ -53,14 +53,14 @@ impl Twist {
 }
 
 impl Arms {
-    /// Speed at which the contact opens, m/s.
+    /// Opening speed of the contact, m/s.
     pub(crate) fn opening(&self, twists: &[Twist]) -> f64 {
         let (i, j) = self.bodies;
         let relative = twists[j].at(self.arms.1) - twists[i].at(self.arms.0);
         relative.dot(self.normal)
     }
 
-    /// What each body's motion changes by for an impulse of 1 N s.
+    /// The change of each body's motion by an impulse of 1 N s.
     fn response(&self, yielding: &[Yielding]) -> [(usize, Twist); 2] {
         let (i, j) = self.bodies;
         let of = |body: usize, arm: DVec3, normal: DVec3| {
@@ -77,7 +77,7 @@ impl Arms {
         ]
     }
 
-    /// The speed at which it opens by the change of one body's motion.
+    /// The change of the opening speed by the change of one body's motion.
     fn opened_by(&self, body: usize, change: &Twist) -> f64 {
         let mut sum = 0.0;
         if body == self.bodies.0 {
@@ -90,7 +90,7 @@ impl Arms {
     }
 }
 
-/// Adds impulses (N s) to motions.
+/// Adds the effects of impulses (N s) to motions.
 pub(crate) fn push(
     contacts: &[Arms],
     yielding: &[Yielding],
@@ -107,7 +107,7 @@ pub(crate) fn push(
     }
 }
 
-/// The matrix that takes impulses to the speeds at which contacts open, row by row.
+/// The Delassus operator, row by row.
 fn matrix(contacts: &[Arms], yielding: &[Yielding]) -> Vec<f64> {
     let count = contacts.len();
     let mut matrix = vec![0.0; count * count];
@@ -123,13 +123,13 @@ fn matrix(contacts: &[Arms], yielding: &[Yielding]) -> Vec<f64> {
     matrix
 }
 
-/// Part of a contact's own number below which what is left of it depends on the others: the root of rounding, as the
-/// least part that counts is what rounding of the others is divided by.
+/// A contact depends on others if the rest of its diagonal entry, after these are eliminated, is below this part of the
+/// entry. It is the square root of rounding, because the rounding of the others is divided by the rest.
 const DEPENDENT: f64 = 1.0 / (1_u64 << 24) as f64;
 
-/// The impulses, none negative, after which each contact opens by at least as much more as is wanted (m/s),
-/// and those that push by just that: of all motions that do, the nearest in the norm of kinetic energy. What
-/// no body that moves ties together is found apart.
+/// The impulses, none negative, after which each contact opens by at least `wanted` (m/s) more; those that push open
+/// by exactly that. Of all motions for which this holds it is the nearest in the norm of kinetic energy. Components
+/// that no movable body connects are solved separately.
 pub(crate) fn multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f64]) -> Vec<f64> {
     let moves = |body: usize| yielding[body].mass > 0.0 || yielding[body].inertia != DMat3::ZERO;
     let pairs = contacts.iter().map(|contact| contact.bodies);
@@ -148,9 +148,9 @@ pub(crate) fn multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f6
     given
 }
 
-/// The same of contacts that hang together, by active sets: each contact that lacks some of what is wanted pushes as
-/// far as those that push before allow, which cease to push where they would pull (Goldfarb, Idnani 1983, "A
-/// numerically stable dual method for solving strictly convex quadratic programs", section 3). What depends on others
+/// The same for connected contacts, by active sets: each contact whose residual is positive pushes as far as the
+/// contacts allow that push already; those that would pull cease to push (Goldfarb, Idnani 1983, "A numerically
+/// stable dual method for solving strictly convex quadratic programs", section 3). A contact that depends on others
 /// that push takes the place of one of them.
 fn tied_multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f64]) -> Vec<f64> {
     let count = contacts.len();
@@ -159,12 +159,12 @@ fn tied_multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f64]) ->
         .map(|k| 1.0 / libm::sqrt(matrix[k * count + k]))
         .collect();
     let entry = |k: usize, l: usize| matrix[k * count + l] * scale[k] * scale[l];
-    // In the scale in which each opens by 1 for what it gives itself.
+    // Scaled so that each diagonal entry is 1.
     let wanted: Vec<f64> = wanted.iter().zip(&scale).map(|(w, s)| w * s).collect();
     let mut given = vec![0.0; count];
     let mut pushes: Vec<usize> = Vec::new();
     let mut factor = Factor::default();
-    // Those that no others leave room for.
+    // Contacts for which the others leave no room.
     let mut barred = vec![false; count];
     let most = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
     let rounding = 64.0 * f64::EPSILON * most;
@@ -234,15 +234,15 @@ fn tied_multipliers(contacts: &[Arms], yielding: &[Yielding], wanted: &[f64]) ->
     given
 }
 
-/// Cholesky's decomposition of the rows and columns of those that push, in their order.
+/// Cholesky's decomposition of the rows and columns of the contacts that push, in their order.
 #[derive(Default)]
 struct Factor {
-    /// Of the lower triangle.
+    /// Rows of the lower triangle.
     rows: Vec<Vec<f64>>,
 }
 
 impl Factor {
-    /// Adds the rows that are missing.
+    /// Adds the missing rows.
     fn grow(&mut self, pushes: &[usize], entry: impl Fn(usize, usize) -> f64) {
         for k in self.rows.len()..pushes.len() {
             let mut row = self.forward(pushes[..k].iter().map(|&l| entry(pushes[k], l)));
@@ -254,8 +254,8 @@ impl Factor {
         }
     }
 
-    /// What is left of a contact's own number where those that push keep still, and what they push less by for what it
-    /// pushes.
+    /// The rest of a contact's diagonal entry while the contacts that push open no further, and the decrease of
+    /// their impulses for its impulse.
     fn reach(
         &self,
         pushes: &[usize],
@@ -267,7 +267,7 @@ impl Factor {
         (entry(next, next) - known, self.backward(row))
     }
 
-    /// The solution for a right-hand side, and once more for what is left of it.
+    /// The solution for a right-hand side, refined once by its residual.
     fn solve(
         &self,
         pushes: &[usize],
@@ -310,12 +310,12 @@ impl Factor {
     }
 }
 
-/// Most rounds of reflection, as in [`super::reflect`].
+/// The most rounds of reflection, as in [`super::reflect`].
 const ROUNDS: usize = 1000;
 
-/// Lets contacts bounce all at once with a restitution, and returns the impulse of each, N s. Motions go as
-/// far beyond those that close nothing as they are away from them, which keeps the energy where it is 1
-/// ([`super::reflect`]).
+/// Resolves all contacts at once with a restitution, and returns the impulse of each, N s. The motions go as far
+/// beyond the nearest motions without closing contacts as they were before them, times the restitution; for a
+/// restitution of 1 this conserves the energy ([`super::reflect`]).
 pub(crate) fn reflect(
     contacts: &[Arms],
     yielding: &[Yielding],
@@ -344,7 +344,7 @@ pub(crate) fn reflect(
         let part: Vec<Arms> = closing.iter().map(|&k| contacts[k]).collect();
         let wanted: Vec<f64> = part.iter().map(|c| -c.opening(twists)).collect();
         let mut given = multipliers(&part, yielding, &wanted);
-        // As in `reflect` without arms: of an exact projection the contacts give up all that they give.
+        // As in `reflect` without arms: in an exact projection the contacts lose as much energy as they give.
         let mut change = vec![Twist::default(); twists.len()];
         push(&part, yielding, &mut change, &given);
         let pairs = || part.iter().zip(&given);
@@ -377,7 +377,7 @@ mod tests {
     use super::*;
     use crate::test_random::Random;
 
-    /// Columns of cubes that stand on one floor, by corners.
+    /// Columns of cubes that stand on one floor, with a contact at each corner.
     fn columns(count: usize) -> (Vec<Arms>, Vec<Yielding>) {
         let mut yielding = vec![Yielding::NOTHING];
         let mut contacts = Vec::new();
@@ -421,8 +421,8 @@ mod tests {
         }
     }
 
-    /// A plate on many points, each of which wants it higher than the last did: no more than three of them can be told
-    /// apart, and those that push have to give way to others.
+    /// A plate on many points, each of which requires it to be higher than the last. At most three of them are
+    /// independent, so points that push must give way to others.
     #[test]
     fn of_points_that_depend_on_each_other_the_right_ones_push() {
         let plate = Yielding {
@@ -458,8 +458,8 @@ mod tests {
         }
     }
 
-    /// A body between two walls that both want it farther away, mostly without an answer: what pushes opens by what is
-    /// wanted all the same, and rounding is not taken for room.
+    /// A body between two walls that both push it away, mostly without a solution. A contact that pushes still opens
+    /// by what is wanted, and rounding does not count as room.
     #[test]
     fn what_has_no_room_is_pushed_no_farther_than_wanted() {
         let body = Yielding {

@@ -1,24 +1,24 @@
-//! Friction: impulses of contacts across their normals.
+//! Friction: impulses of contacts perpendicular to their normals.
 
 use alloc::{vec, vec::Vec};
 use glam::DVec3;
 
 use super::Joined;
 
-/// Sweeps that bring any contacts to the answer, at most. One or two are enough for a body on others; a row of
-/// them takes about the square of its length.
+/// The number of sweeps that is enough for any contacts. One or two are enough for a body on others; a row of bodies
+/// needs about the square of its length.
 pub const ALL_SWEEPS: usize = 2000;
 
-/// Brings what slides across the normals of contacts as near to rest as friction can: of the impulses
-/// `given` (N s, changed in place) that are no longer than the contact's `limit` (N s) those that leave
-/// the least energy (Moreau 1988, "Unilateral contact and dry friction in finite freedom dynamics": the
-/// principle of most dissipation). Velocities (m/s) hold what has been given already, and end within
-/// `enough` of the answer, which is told, or after so many sweeps; each contact slides by `more` than they say (m/s). Likewise
-/// for accelerations and forces.
+/// Brings the sliding velocities of contacts as near to zero as friction can. Among the impulses that are no longer
+/// than each contact's `limit` (N s), it finds those that leave the least energy (Moreau 1988, "Unilateral contact
+/// and dry friction in finite freedom dynamics": the principle of most dissipation), and writes them to `given` (N
+/// s). Velocities (m/s) include the impulses given so far. They end within `enough` of the answer, in which case the
+/// result says so, or after the given number of sweeps. Each contact slides by `more` (m/s) in addition to the
+/// velocities. The same holds for accelerations and forces.
 ///
-/// Impulses go round the contacts one by one (Gauss, Seidel), each to its best within its disc, sped up by
-/// conjugate directions (Silcowitz, Niebe, Erleben 2010, "A nonsmooth nonlinear conjugate gradient method
-/// for interactive contact force problems").
+/// The impulses of contacts are optimised one by one, each within its disc (Gauss, Seidel), accelerated by conjugate
+/// directions (Silcowitz, Niebe, Erleben 2010, "A nonsmooth nonlinear conjugate gradient method for interactive contact
+/// force problems").
 pub fn drag(
     contacts: &[Joined],
     inverse_mass: &[f64],
@@ -62,8 +62,8 @@ pub fn drag(
     false
 }
 
-/// The greatest friction of a contact that is pressed: by the coefficient, which may be infinite, times what
-/// presses it, if that is more than nothing.
+/// The greatest friction of a contact: the coefficient, which may be infinite, times the normal force or impulse if
+/// this is positive.
 pub fn limit(coefficient: f64, pressed: f64) -> f64 {
     match coefficient > 0.0 && pressed > 0.0 {
         true => coefficient * pressed,
@@ -71,9 +71,9 @@ pub fn limit(coefficient: f64, pressed: f64) -> f64 {
     }
 }
 
-/// The velocities (m/s) of two bodies, one of which may have infinite mass (kg), after an impact with an
-/// impulse along a unit normal (N s) has rubbed: by at most the coefficient of friction times that impulse,
-/// or until they do not slide.
+/// The velocities (m/s) of two bodies after friction in an impact with an impulse along a unit normal (N s); one body
+/// may have infinite mass (kg). The friction impulse is at most the coefficient times that impulse, and ends the
+/// sliding if it can.
 pub fn rub(
     (m1, m2): (f64, f64),
     velocity: (DVec3, DVec3),
@@ -93,7 +93,7 @@ pub fn rub(
     (both[0], both[1])
 }
 
-/// The vector nearest to one that is no longer than a limit.
+/// The vector of at most the length `limit` that is nearest to a given one.
 fn within(vector: DVec3, limit: f64) -> DVec3 {
     let length = vector.length();
     match length > limit {
@@ -102,7 +102,7 @@ fn within(vector: DVec3, limit: f64) -> DVec3 {
     }
 }
 
-/// Gives an impulse to the second body of a contact, and takes it from the first.
+/// Applies an impulse to the second body of a contact, and its opposite to the first.
 pub fn apply(contact: &Joined, inverse_mass: &[f64], velocity: &mut [DVec3], impulse: DVec3) {
     let (i, j) = contact.bodies;
     velocity[i] -= inverse_mass[i] * impulse;
@@ -141,7 +141,7 @@ mod tests {
         for (k, v) in velocity.iter().enumerate() {
             assert!(v.length() < 1e-12, "{k}: {v}");
         }
-        // The lowest contact stops all that stands on it.
+        // The lowest contact stops the whole stack.
         assert!((given[0].x + 12.0).abs() < 1e-11, "{}", given[0]);
     }
 
@@ -198,7 +198,7 @@ mod tests {
         for ((contact, given), limit) in contacts.iter().zip(&given).zip(limit) {
             assert!(given.length() <= limit * (1.0 + 1e-15));
             let sliding = contact.sliding(&velocity);
-            // What still slides has all friction against it.
+            // A contact that still slides has the full friction against its motion.
             if sliding.length() > 1e-12 {
                 assert!((given.length() - limit).abs() < 1e-14);
                 assert!(given.dot(sliding) <= -0.999_999 * limit * sliding.length());

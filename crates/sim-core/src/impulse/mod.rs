@@ -21,22 +21,21 @@ use crate::expansion::two_sum;
 pub use friction::{ALL_SWEEPS, apply, drag, limit, rub};
 pub use together::{Joined, Known, Prepared, greatest, project, project_with, reflect};
 
-/// What two bodies exchange.
+/// The impulse between two bodies, and its effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchange {
-    /// On the second body along the normal, and on the first against it, N s per length of the
-    /// normal.
+    /// Impulse on the second body along the normal, and on the first against it, N s per length of the normal.
     pub impulse: f64,
-    /// Velocities of the first body and of the second after it, m/s.
+    /// Velocities of the first body and of the second afterwards, m/s.
     pub after: (DVec3, DVec3),
 }
 
-/// The impulse after which two bodies of masses `m1`, `m2` (kg; one may be infinite) and velocities
-/// `v1`, `v2` (m/s) part along `normal` with the part `restitution` (0 to 1) of the speed at which
-/// they approach; `None` unless they do, and where nothing moves either.
+/// The impulse between two bodies of masses `m1`, `m2` (kg; one may be infinite) and velocities `v1`, `v2` (m/s).
+/// After it they part along `normal` at `restitution` (0 to 1) times the closing speed. `None` if they do not
+/// approach, or if both are immovable.
 ///
-/// Along an axis, velocities are rounded once. What differences lose is kept: bodies that meet
-/// millions of times lose it the same way again and again.
+/// Along an axis, velocities are rounded once. Rounding errors of differences are kept: bodies that meet millions of
+/// times would lose the same digits again and again.
 pub fn between(
     (m1, v1): (f64, DVec3),
     (m2, v2): (f64, DVec3),
@@ -48,11 +47,11 @@ pub fn between(
     if parting >= 0.0 || parting.is_nan() {
         return None;
     }
-    // Divided by n·n, an elastic exchange conserves energy however `normal` was rounded.
+    // Divided by n·n, so that an elastic exchange conserves energy for any rounding of `normal`.
     let factor = -(1.0 + restitution) / normal.length_squared();
     let (both, lost) = (factor * parting, factor * lost.dot(normal));
-    // The heavier one's small share first, and the rest to the other: where masses differ by orders
-    // of magnitude and meet again and again, no rounding of a share near one adds up.
+    // The small share of the heavier body first, and the rest to the other: if masses differ by orders of magnitude and
+    // the bodies meet again and again, no rounding of a share near one adds up.
     let (light, heavy) = (m1.min(m2), m1.max(m2));
     if light.is_infinite() {
         return None;
@@ -71,13 +70,13 @@ pub fn between(
     })
 }
 
-/// `v + by normal`, with `by` a sum of two.
+/// `v + by normal`, where `by` is a sum of two numbers.
 fn changed(v: DVec3, by: (f64, f64), normal: DVec3) -> DVec3 {
     let (sum, lost) = two_sums(v, by.0 * normal);
     sum + (lost + by.1 * normal)
 }
 
-/// A sum by components, and what rounding took.
+/// A sum by components, and its rounding errors.
 fn two_sums(u: DVec3, v: DVec3) -> (DVec3, DVec3) {
     let [x, y, z] = [0, 1, 2].map(|axis| two_sum(u[axis], v[axis]));
     (DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1))

@@ -1,4 +1,4 @@
-//! Several simultaneous contacts.
+//! The response to several simultaneous contacts.
 //!
 //! Velocities are allowed if no contact closes: `N v >= 0`, with a row for each contact that gives
 //! the speed at which it opens. The *projection* is the allowed velocity nearest to the given one in the norm
@@ -21,25 +21,26 @@ use super::complementarity::{self, FEW, Network, sum};
 /// Two bodies in contact, and the unit normal from the first to the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joined {
-    /// The bodies, as places in the list of velocities.
+    /// The bodies, as indices in the list of velocities.
     pub bodies: (usize, usize),
     /// From the first to the second.
     pub normal: DVec3,
 }
 
 impl Joined {
-    /// Speed at which the contact opens, m/s.
+    /// Opening speed of the contact, m/s.
     pub(crate) fn opening(&self, velocity: &[DVec3]) -> f64 {
         (velocity[self.bodies.1] - velocity[self.bodies.0]).dot(self.normal)
     }
 
-    /// Velocity of the second body against the first across the normal, m/s.
+    /// Velocity of the second body relative to the first, perpendicular to the normal, m/s.
     pub(crate) fn sliding(&self, velocity: &[DVec3]) -> DVec3 {
         let relative = velocity[self.bodies.1] - velocity[self.bodies.0];
         relative - relative.dot(self.normal) * self.normal
     }
 
-    /// Part of an impulse of another contact that arrives here, by inverse mass.
+    /// The entry of the Delassus operator for this contact and another one: the change of the opening speed here for
+    /// an impulse there.
     pub(super) fn shared(&self, other: &Joined, inverse_mass: &[f64]) -> f64 {
         let signs = |contact: &Joined| [(contact.bodies.0, -1.0), (contact.bodies.1, 1.0)];
         let mut sum = 0.0;
@@ -54,8 +55,8 @@ impl Joined {
     }
 }
 
-/// Most rounds of reflection. A few are enough where bodies can part at all; those that are wedged
-/// in cannot, and are left without a speed to close at.
+/// The most rounds of reflection. A few are enough if the bodies can part at all. Wedged bodies cannot; they are left
+/// without closing speed.
 const ROUNDS: usize = 1000;
 
 /// Velocities (m/s) after an impact of all contacts at once, with inverse masses (1/kg, 0 for an
@@ -77,7 +78,7 @@ pub fn reflect(
     for round in 0..ROUNDS {
         let mut closing = closing_by(rounding, velocity);
         if closing.is_empty() && round == 0 {
-            // A graze: it is an impact all the same, and would be found again.
+            // A grazing contact is an impact all the same; otherwise it would be found again.
             closing = closing_by(0.0, velocity);
         }
         if closing.is_empty() {
@@ -94,8 +95,8 @@ pub fn reflect(
         let part: Vec<Joined> = closing.iter().map(|&k| contacts[k]).collect();
         let missing = missing_speeds(&part, velocity);
         let mut given = multipliers(&part, inverse_mass, &missing, Known::default());
-        // Of an exact projection the contacts give up all that they give; the ratio makes up for
-        // rounding, so that energy is kept where the equations are solved badly.
+        // In an exact projection the contacts lose as much energy as they give. The ratio compensates for rounding,
+        // so that energy is conserved even if the equations are solved badly.
         let mut change = vec![DVec3::ZERO; velocity.len()];
         push(&part, inverse_mass, &mut change, &given);
         let pairs = || part.iter().zip(&given);
@@ -121,8 +122,8 @@ pub fn greatest(vectors: &[DVec3]) -> f64 {
     vectors.iter().fold(0.0, |most, v| v.length().max(most))
 }
 
-/// The nearest velocities, or accelerations, with which contacts open by at least as much more as is
-/// missing (m/s, or m/s²), and the impulse (or force) of each contact.
+/// The nearest velocities, or accelerations, with which each contact opens by at least its residual `missing` more
+/// (m/s, or m/s²), and the impulse (or force) of each contact.
 pub fn project(
     contacts: &[Joined],
     inverse_mass: &[f64],
@@ -132,20 +133,20 @@ pub fn project(
     project_with(contacts, inverse_mass, velocity, missing, Known::default())
 }
 
-/// What is known of a projection before it is made.
+/// Data about a projection that is known before it is computed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Known<'a> {
-    /// Contacts that open by just what is missing, by pulling as well; none where empty.
+    /// Contacts that open by exactly the residual, and may pull for this; none if empty.
     pub held: &'a [bool],
-    /// Impulses that may be near, N s; nothing where empty.
+    /// Initial guess of the impulses, N s; none if empty.
     pub warm: &'a [f64],
-    /// What may stay missing, m/s; little more than rounding where 0.
+    /// The residual at which the iteration may stop, m/s; little more than rounding if 0.
     pub enough: f64,
-    /// Of the same contacts and masses.
+    /// Prepared data of the same contacts and masses.
     pub prepared: Option<&'a Prepared>,
 }
 
-/// What heaps are solved with, for contacts that are solved more than once: it is made the first time.
+/// Data for solving heaps, for contacts that are solved more than once; computed the first time.
 #[derive(Clone, Debug, Default)]
 pub struct Prepared(OnceCell<Network>);
 
@@ -155,7 +156,7 @@ impl Prepared {
     }
 }
 
-/// The same with what is known beforehand.
+/// The same with data known beforehand.
 pub fn project_with(
     contacts: &[Joined],
     inverse_mass: &[f64],
@@ -168,7 +169,7 @@ pub fn project_with(
     given
 }
 
-/// What is missing where contacts may not close.
+/// The residuals of contacts that must not close.
 fn missing_speeds(contacts: &[Joined], velocity: &[DVec3]) -> Vec<f64> {
     contacts.iter().map(|c| -c.opening(velocity)).collect()
 }
@@ -183,7 +184,7 @@ fn push(contacts: &[Joined], inverse_mass: &[f64], velocity: &mut [DVec3], impul
         }
         return;
     }
-    // The terms of each body side by side: where they begin, and then where the next one goes.
+    // The terms of each body side by side: first their start, then the index of the next one.
     let mut next = vec![0; velocity.len() + 1];
     for contact in contacts {
         next[contact.bodies.0 + 1] += 1;
@@ -211,7 +212,7 @@ fn push(contacts: &[Joined], inverse_mass: &[f64], velocity: &mut [DVec3], impul
     }
 }
 
-/// The impulses of a projection.
+/// The lambdas of a projection.
 fn multipliers(
     contacts: &[Joined],
     inverse_mass: &[f64],
@@ -232,12 +233,12 @@ fn multipliers(
     }
 }
 
-/// Both at once if both push, otherwise the one that does.
+/// The lambdas of two contacts: both together if both push, otherwise that of the one that does.
 fn two(wanted: &[f64], [a, b]: [f64; 2], shared: f64) -> Vec<f64> {
     let det = a * b - shared * shared;
     let first = (wanted[0] * b - wanted[1] * shared) / det;
     let second = (wanted[1] * a - wanted[0] * shared) / det;
-    // Parallel contacts of the same bodies share what there is to give.
+    // Parallel contacts of the same bodies share the impulse.
     if det <= 4.0 * f64::EPSILON * a * b {
         let half = 0.5 * (wanted[0].max(wanted[1])).max(0.0);
         return vec![half / a, half / b];
@@ -350,7 +351,7 @@ mod tests {
     fn heaps_are_projected_as_well() {
         for seed in 0..80 {
             let (contacts, mut inverse, start) = scene(seed, 25, 10 + seed as usize);
-            // Every other one of masses up to a million times each other.
+            // In every other scene, masses differ by a factor of up to a million.
             let is_uneven = seed % 2 == 1;
             if is_uneven {
                 inverse.iter_mut().for_each(|w| *w = libm::pow(*w, 7.0));
@@ -372,7 +373,8 @@ mod tests {
         }
     }
 
-    /// What grazes two in one place closes by less than rounding of its own speed, and parts from them all the same.
+    /// A body that grazes two bodies in one place closes by less than the rounding of its speed, and moves away from
+    /// them all the same.
     #[test]
     fn grazes_part() {
         let contacts = [1, 2].map(|other| Joined {
@@ -393,7 +395,7 @@ mod tests {
             let count = 1 + seed as usize % 9;
             let (mut contacts, mut inverse, start) = scene(seed, 6, count);
             inverse[0] = 0.5;
-            // Some motion parts all of them: nothing is wedged in.
+            // Some motion opens all contacts: no body is wedged.
             let (.., parting) = scene(seed + 1000, 6, 1);
             for contact in &mut contacts {
                 contact.normal *= contact.opening(&parting).signum();
