@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::predicates::orient3d;
 
-/// Which of two meshes.
+/// One of two meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
     /// The mesh in whose frame the other is placed.
@@ -16,7 +16,7 @@ pub enum Side {
 /// An edge that meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Whose edge it is; the face belongs to the other mesh.
+    /// The mesh of the edge; the face belongs to the other mesh.
     pub edge_of: Side,
     /// Index of the edge in [`crate::Mesh::edges`].
     pub edge: u32,
@@ -29,7 +29,7 @@ pub struct Hit {
 }
 
 impl Hit {
-    /// Measures a hit that [`super::predicates::segment_meets_triangle`] has found.
+    /// The data of a hit that [`super::predicates::segment_meets_triangle`] has found.
     pub(super) fn new(
         (edge_of, edge, [p, q]): (Side, u32, [DVec3; 2]),
         (face, [a, b, c]): (u32, [DVec3; 3]),
@@ -50,13 +50,13 @@ impl Hit {
         }
     }
 
-    /// Order in which hits are listed.
+    /// The order in which hits are listed.
     pub(super) fn key(&self) -> (Side, u32, u32) {
         (self.edge_of, self.edge, self.face)
     }
 }
 
-/// The middle of the part of `pq` inside the triangle, both in one plane.
+/// The middle of the part of `pq` inside the triangle; both are in one plane.
 fn in_plane_point([p, q]: [DVec3; 2], corners: [DVec3; 3], normal: DVec3) -> DVec3 {
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
     for i in 0..3 {

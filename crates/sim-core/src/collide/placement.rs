@@ -95,7 +95,7 @@ impl Placement {
             turn.x_axis.abs() * half.x + turn.y_axis.abs() * half.y + turn.z_axis.abs() * half.z;
         let size =
             centre.abs().element_sum() + half.element_sum() + self.offset.abs().element_sum();
-        // More than all roundings, and than what becomes of small components.
+        // More than all roundings, and than small components that count as zero.
         let reach = reach + DVec3::splat(16.0 * f64::EPSILON * size + TINY);
         (middle - reach, middle + reach)
     }
@@ -104,7 +104,7 @@ impl Placement {
     #[inline]
     pub(super) fn boxes_meet(&self, first: &Aabb, second: &Aabb) -> bool {
         let (min, max) = self.corners(second);
-        // Corners beyond all numbers say nothing.
+        // Infinite corners prove nothing.
         let apart = first.min.as_dvec3().cmpgt(max) | min.cmpgt(first.max.as_dvec3());
         let is_apart = |turn| self.apart_along_second(turn, *first, *second);
         !apart.any() && !self.turn.as_ref().is_some_and(is_apart)
@@ -118,19 +118,19 @@ impl Placement {
         let height = back * (self.offset - near) + far;
         let reach = back.abs() * half + reach;
         let size = near.abs() + far.abs() + reach + half + self.offset.abs();
-        // More than all roundings, of placed corners as well.
+        // More than all roundings, including those of placed corners.
         let rounding = 64.0 * f64::EPSILON * size.element_sum() + TINY;
         height.abs().cmpgt(reach + DVec3::splat(rounding)).any()
     }
 
-    /// Whether it is a place at all: offsets that are no numbers, or beyond 1e100 m, farther than
-    /// any mesh reaches, leave meshes apart.
+    /// Whether the offset is in range: with an offset that is not a number, or is beyond 1e100 m, farther than any mesh
+    /// reaches, meshes are apart.
     pub(super) fn is_in_range(&self) -> bool {
         is_in_range(self.offset)
     }
 }
 
-/// Whether a point or vector is where exact decisions neither overflow nor fail; no number is not.
+/// Whether exact decisions about a point or vector neither overflow nor fail; false for NaN.
 pub(super) fn is_in_range(v: DVec3) -> bool {
     v.abs().cmple(DVec3::splat(FARTHEST)).all()
 }
@@ -141,10 +141,10 @@ pub(super) const FARTHEST: f64 = 1e100;
 /// 2^-250.
 const TINY: f64 = f64::from_bits((1023 - 250) << 52);
 
-/// A vector as it is used: components below 2^-250 are zero.
+/// The vector that decisions use: components below 2^-250 are zero.
 ///
-/// Placed vertices are then multiples of 2^-303, as f32 has none below 2^-149, and no product in
-/// an exact decision underflows.
+/// Placed vertices are then multiples of 2^-303, because f32 has no numbers below 2^-149, and no product in an exact
+/// decision underflows.
 pub(crate) fn snap(offset: DVec3) -> DVec3 {
     DVec3::select(offset.abs().cmplt(DVec3::splat(TINY)), DVec3::ZERO, offset)
 }

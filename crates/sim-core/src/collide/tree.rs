@@ -14,14 +14,14 @@ use super::{
 };
 use crate::bvh::{Bvh, WIDTH};
 
-/// Whether the surfaces of two meshes meet, the second one placed: displaced by a `DVec3` (m), or
-/// turned too ([`Placement::turned`]). Stops at the first hit and allocates nothing.
+/// Whether the surfaces of two meshes meet. The second one is placed: displaced by a `DVec3` (m), or rotated too
+/// ([`Placement::turned`]). Stops at the first hit and allocates nothing.
 pub fn intersect(first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> bool {
     intersect_at(Level::best(), first, second, at)
 }
 
-/// [`intersect`] with the instructions of a level, to compare levels. One mesh that is a box takes no
-/// wide instructions.
+/// [`intersect`] with the instructions of a level, to compare levels. If a mesh is a box, no wide instructions are
+/// used.
 pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> bool {
     let at = &at.into();
     let meshes = Meshes { first, second, at };
@@ -31,7 +31,7 @@ pub fn intersect_at(level: Level, first: &Bvh, second: &Bvh, at: impl Into<Place
     }
 }
 
-/// The answer and its cost where a mesh is a box, which needs no second tree.
+/// The answer and its cost if a mesh is a box, which needs no second tree.
 #[inline]
 pub(super) fn with_cuboid(Meshes { first, second, at }: Meshes<'_>) -> Option<Work> {
     let offset = at.offset();
@@ -80,7 +80,7 @@ impl Question for AnyHit {
     }
 }
 
-/// Not for lanes, and not to take their registers.
+/// Without lanes; not inlined, so that it does not use their registers.
 #[inline(never)]
 fn any_meets(meshes: Meshes<'_>, (a, b): (u32, u32), glance: &Glance) -> bool {
     let first = meshes.first.triangles(meshes.first.node(a));
@@ -100,7 +100,7 @@ fn any_meets(meshes: Meshes<'_>, (a, b): (u32, u32), glance: &Glance) -> bool {
     })
 }
 
-/// What [`intersect`] costs here: pairs of boxes compared, and pairs of triangles whose boxes meet.
+/// The cost of [`intersect`]: pairs of boxes compared, and pairs of triangles whose boxes meet.
 pub fn work(first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> Work {
     let at = &at.into();
     let meshes = Meshes { first, second, at };
@@ -115,7 +115,7 @@ pub fn work(first: &Bvh, second: &Bvh, at: impl Into<Placement>) -> Work {
     })
 }
 
-/// [`AnyHit`], counted.
+/// [`AnyHit`], with counts.
 #[derive(Default)]
 struct Counted {
     tiles: u64,
@@ -215,9 +215,8 @@ fn triangles(
     lanes(pairs).map(|(i, j)| ((s.face[i], s.corners(i)), (t.face[j], t.corners(j))))
 }
 
-/// The lanes of some pairs, which are in no order but so that both change from one to the next
-/// where they can: where a triangle misses, its neighbours in the other leaf are likely to be
-/// missed too.
+/// The lanes of some pairs. From one pair to the next both lanes change if possible: if a triangle misses, it probably
+/// misses its neighbours in the other leaf too.
 #[inline]
 fn lanes(pairs: u32) -> impl Iterator<Item = (usize, usize)> {
     let (mut pairs, mut turned) = (pairs as u16, 0);
@@ -234,7 +233,7 @@ fn lanes(pairs: u32) -> impl Iterator<Item = (usize, usize)> {
     })
 }
 
-/// The edges that either of two triangles owns, where they meet the other triangle.
+/// The edges owned by one of two triangles that meet the other triangle.
 fn pair_hits(
     meshes: Meshes<'_>,
     (s_face, s_corners): Face,
@@ -266,7 +265,7 @@ fn pair_hits(
             (0..3)
                 .filter(move |&i| edges_of.owned[triangle].edge[i])
                 .filter_map(move |i| {
-                    // The ends in the mesh's order, so that the point is the naive one to the bit.
+                    // The ends in the mesh's order, so that the point is that of the naive search to the bit.
                     let (mut p, mut q) = (i, (i + 1) % 3);
                     let vertices = edges_of.triangles[triangle];
                     if vertices[p] > vertices[q] {

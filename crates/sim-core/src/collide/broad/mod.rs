@@ -65,8 +65,8 @@ impl Clone for Broad {
 }
 
 impl Broad {
-    /// Takes boxes and planes of some bodies in the place of all others: planes of those that have
-    /// one, boxes of the others. As many bodies as last time are the same.
+    /// Replaces all boxes and planes by those of some bodies: planes of half-spaces, boxes of others. If the number
+    /// of bodies is that of the last fill, they are the same bodies.
     pub(crate) fn fill(
         &mut self,
         bodies: &[usize],

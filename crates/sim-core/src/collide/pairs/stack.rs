@@ -1,8 +1,8 @@
 //! A stack of pairs that the descent has still to visit.
 //!
-//! This is the only `unsafe` of the crate besides that of vector instructions. The stack has
-//! thirty-two kilobytes, enough for the deepest trees, of which a query uses a few hundred bytes: to set all
-//! of them to zero each time would cost more than the query. So they stay uninitialised until written.
+//! This is the only `unsafe` of the crate besides that of vector instructions. The stack has thirty-two kilobytes,
+//! enough for the deepest trees, of which a query uses a few hundred bytes. To set all of them to zero for each query
+//! would cost more than the query. So they stay uninitialised until written.
 #![allow(unsafe_code)]
 
 use core::mem::MaybeUninit;
@@ -10,11 +10,11 @@ use core::mem::MaybeUninit;
 use super::{ABREAST, TILE};
 use crate::bvh::MAX_DEPTH;
 
-/// The pairs pushed in one round, sixteen at most from each that it takes, form a group. A round
-/// takes pairs from the top, and what it pushes comes from them, so of two groups on the stack the
-/// upper one comes from pairs that lay above, or in, the lower one: the sum of both depths grows by
-/// at least one from group to group, and there are no more groups than that sum can have values. A
-/// tile's sixteen are written in one piece, however few count.
+/// The pairs pushed in one round, at most sixteen from each pair that it takes, form a group. A round takes pairs
+/// from the top, and pushes pairs that come from them. So of two groups on the stack the upper one comes from pairs
+/// that lay above, or in, the lower one: the sum of both depths grows by at least one from group to group. So there
+/// are no more groups than this sum can have values. The sixteen pairs of a tile are written together, however few
+/// count.
 const CAPACITY: usize = TILE * ABREAST * 2 * MAX_DEPTH + TILE;
 
 /// A stack of pairs, in two columns.
@@ -44,7 +44,7 @@ impl Stack {
         Some(unsafe { (first.assume_init(), second.assume_init()) })
     }
 
-    /// Takes pairs from the top, the lowest first, and returns how many.
+    /// Takes pairs from the top, the lowest first, and returns their number.
     #[inline(always)]
     pub(super) fn take(&mut self, pairs: &mut [(u32, u32); ABREAST]) -> usize {
         let count = self.len.min(ABREAST);

@@ -12,7 +12,6 @@
 //! holds and is concave, so where it is positive it has been positive since the start. The same holds if bounds on the
 //! second derivatives take the place of the second derivatives and of `J`. So the root of one function tells how long a
 //! direction separates all pairs of points, at the cost of one sum over the points.
-//! direction separates all pairs of points, at the cost of one sum over the points.
 
 use glam::DVec3;
 
