@@ -39,7 +39,7 @@ impl Serialize for Mesh {
     }
 }
 
-/// A mesh that several bodies may share is written with each of them.
+/// A mesh that several bodies may share; it is written once for each of them.
 pub(crate) mod shared {
     use super::*;
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-/// Why triangles do not make a mesh.
+/// The reason why triangles do not form a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
     /// There is no triangle.
@@ -14,14 +14,14 @@ pub enum MeshError {
         /// Index of the vertex, from 0.
         vertex: usize,
     },
-    /// A triangle names a vertex that does not exist.
+    /// A triangle refers to a vertex that does not exist.
     #[error("triangle {triangle} uses vertex {index}, but there are {vertices} (indices from 0)")]
     IndexOutOfRange {
         /// Index of the triangle, from 0.
         triangle: usize,
-        /// The vertex it asks for.
+        /// The index of the vertex in the triangle.
         index: u32,
-        /// How many there are.
+        /// The number of vertices.
         vertices: usize,
     },
     /// A triangle uses a vertex twice.
@@ -30,10 +30,10 @@ pub enum MeshError {
         /// Index of the triangle, from 0.
         triangle: usize,
     },
-    /// More triangles or vertices than 32-bit indices can name.
+    /// More triangles or vertices than 32-bit indices allow.
     #[error("the mesh has {count} elements: at most 1,000,000,000 triangles and as many vertices")]
     TooLarge {
-        /// How many there are.
+        /// The number of triangles or vertices.
         count: usize,
     },
     /// A scale that is zero or not finite along some axis.
@@ -43,7 +43,7 @@ pub enum MeshError {
         scale.x, scale.y, scale.z
     )]
     Scale {
-        /// The scale asked for.
+        /// The scale.
         scale: DVec3,
     },
     /// A rotation that is not a unit quaternion.
@@ -51,7 +51,7 @@ pub enum MeshError {
     Rotation,
 }
 
-/// Three edges for each triangle must still fit 32-bit indices.
+/// The indices of three edges for each triangle must fit 32 bits.
 const MOST: usize = 1_000_000_000;
 
 /// Checks sizes, coordinates and indices.

@@ -31,8 +31,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Takes a mesh as it is, or says what is wrong with it. Files and other untrusted input go
-    /// through [`Mesh::repaired`].
+    /// Takes a mesh unchanged, or returns an error. For files and other untrusted input use [`Mesh::repaired`].
     pub fn new(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Mesh, MeshError> {
         error::validate(&vertices, &triangles)?;
         if let Some(triangle) = triangles.iter().position(repair::has_repeated_corner) {
@@ -65,7 +64,7 @@ impl Mesh {
         &self.topology.triangle_edges
     }
 
-    /// Triangles and edges, to share.
+    /// The triangles and edges, to be shared.
     pub(crate) fn topology(&self) -> &Arc<Topology> {
         &self.topology
     }
@@ -85,14 +84,13 @@ impl Mesh {
         self.topology.closed
     }
 
-    /// Whether triangles that share an edge run along it in opposite directions, and none in
-    /// the same one.
+    /// Whether any two triangles that share an edge traverse it in opposite directions.
     pub fn is_oriented(&self) -> bool {
         self.topology.oriented
     }
 
-    /// The enclosed volume, m³, by the divergence theorem; `None` unless the mesh is closed and
-    /// oriented. Negative when wound inward.
+    /// The enclosed volume, m³, by the divergence theorem; `None` unless the mesh is closed and oriented. Negative if
+    /// the triangles are wound inward.
     pub fn volume(&self) -> Option<f64> {
         (self.is_closed() && self.is_oriented()).then(|| {
             // About the box's centre, so that a mesh far from its origin loses no digits.
@@ -109,9 +107,9 @@ impl Mesh {
 
     /// The mesh scaled along its own axes, then rotated, with vertices rounded to f32.
     ///
-    /// Bodies do not turn as they move, so an orientation and a scale are paid for once, here.
-    /// A scale that mirrors (an odd number of negative components) keeps the winding outward.
-    /// The components of `scale` must be finite and not zero; `rotation` must be of unit length.
+    /// A body without a [`turn`](crate::Body::turn) does not rotate, so its orientation and scale are applied once,
+    /// here. A scale that mirrors (an odd number of negative components) keeps the winding outward. The components of
+    /// `scale` must be finite and not zero; `rotation` must be of unit length.
     pub fn transformed(&self, rotation: DQuat, scale: DVec3) -> Result<Mesh, MeshError> {
         let mut mesh = self.clone();
         if !(scale.is_finite() && scale.cmpne(DVec3::ZERO).all()) {
@@ -137,7 +135,7 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// Turns every triangle over.
+    /// Reverses the winding of every triangle.
     fn reverse_winding(&mut self) {
         Arc::make_mut(&mut self.topology).reverse_winding();
     }
@@ -231,7 +229,7 @@ mod tests {
             let broken = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::splat(bad)], vec![[0, 1, 2]]);
             assert_eq!(broken, Err(MeshError::NotFinite { vertex: 2 }));
         }
-        // Nothing is left of a triangle that has shrunk to a segment.
+        // A triangle that has shrunk to a segment is removed.
         let gone = Mesh::repaired(vec![Vec3::ZERO, Vec3::X, Vec3::X], vec![[0, 1, 2]]);
         assert_eq!(gone.unwrap_err(), MeshError::Empty);
     }
@@ -269,7 +267,7 @@ mod tests {
     fn triangles_on_a_line_go_unless_they_close_the_mesh() {
         let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z].map(|v| v * 0.1);
-        // Beside the surface, and not by exact arithmetic on a line: a last bit away.
+        // Beside the surface: the point is off the line by one last bit, as exact arithmetic shows.
         let (third, off) = (Vec3::splat(0.1), Vec3::new(0.2, 0.2, 0.2_f32.next_up()));
         let vertices = |last| [&points[..], &[third, last]].concat();
         let with = |triangle| [&tetrahedron[..], &[triangle]].concat();
@@ -284,7 +282,7 @@ mod tests {
             (mesh.triangles().len(), repairs.degenerate_triangles),
             (5, 0)
         );
-        // The side from 0 to 1 is whole below and in halves above: a triangle fills the seam.
+        // The side from 0 to 1 is one edge below and two halves above: a triangle fills the seam.
         let halved = [
             [0, 2, 1],
             [0, 4, 3],

@@ -6,40 +6,40 @@ use robust::{Coord, orient2d};
 
 use super::{Mesh, MeshError, error};
 
-/// What [`Mesh::repaired`] changed. The set of points that the triangles cover stays the same,
-/// but for triangles that had shrunk to a segment or a point.
+/// The changes that [`Mesh::repaired`] made. The set of points that the triangles cover stays the same, except for
+/// triangles that had shrunk to a segment or a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repairs {
     /// Vertices merged into an earlier one at the same position.
     pub welded_vertices: usize,
-    /// Triangles dropped because they have no area: their corners lie on a line, by exact
-    /// arithmetic, or two are the same vertex.
+    /// Triangles dropped because they have no area: their corners lie on a line, by exact arithmetic, or two corners
+    /// are the same vertex.
     pub degenerate_triangles: usize,
     /// Triangles dropped because an earlier one has the same corners.
     pub duplicate_triangles: usize,
     /// Vertices dropped because no triangle uses them.
     pub unreferenced_vertices: usize,
-    /// Whether a closed mesh was wound inward and has been turned outward. Of several pieces the
-    /// sum of their volumes decides for all.
+    /// Whether a closed mesh was wound inward and was turned outward. If it has several pieces, the sum of their
+    /// volumes decides for all.
     pub reversed_winding: bool,
 }
 
 impl Repairs {
-    /// Whether the mesh was taken as it came.
+    /// Whether the mesh was not changed.
     pub fn is_empty(&self) -> bool {
         *self == Repairs::default()
     }
 }
 
 impl Mesh {
-    /// Welds vertices at equal positions, drops triangles without area or with the corners of an
-    /// earlier one, drops vertices without a triangle, and turns a closed mesh outward.
+    /// Welds vertices at equal positions, drops triangles without area or with the corners of an earlier one, drops
+    /// vertices without a triangle, and turns a closed mesh outward.
     ///
-    /// Where triangles on a line close the mesh, as between the two halves of a side and the whole
-    /// of it, they stay: without them there would be no inside.
+    /// Triangles on a line stay if they close the mesh, for example between the two halves of a side and the whole
+    /// side: without them the mesh would have no inside.
     ///
-    /// Files split vertices at seams of normals and texture coordinates; without the weld no
-    /// such mesh would be closed. Positions are compared exactly: no tolerance, no moved vertex.
+    /// Files split vertices at seams of normals and texture coordinates; without the weld no such mesh would be closed.
+    /// Positions are compared exactly: there is no tolerance, and no vertex moves.
     pub fn repaired(
         mut vertices: Vec<Vec3>,
         mut triangles: Vec<[u32; 3]>,
@@ -66,7 +66,7 @@ impl Mesh {
             triangles = solid;
             repairs.degenerate_triangles += on_a_line;
         }
-        // A vertex only of dropped triangles is gone with them.
+        // A vertex that only dropped triangles used is dropped too.
         drop_unreferenced(&mut vertices, &mut triangles);
 
         let mut mesh = Mesh::new(vertices, triangles)?;
@@ -82,7 +82,7 @@ pub(super) fn has_repeated_corner(&[a, b, c]: &[u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// Whether three points are on a line: exactly, as its shadow on each plane of the axes then is.
+/// Whether three points are on a line, exactly: their projections on all three coordinate planes are on a line.
 fn is_on_a_line(corners: [Vec3; 3]) -> bool {
     [[0, 1], [1, 2], [2, 0]].into_iter().all(|[u, v]| {
         let [a, b, c] = corners.map(|p| Coord {
@@ -93,7 +93,7 @@ fn is_on_a_line(corners: [Vec3; 3]) -> bool {
     })
 }
 
-/// Gives vertices at the same position one index, that of the first.
+/// Gives all vertices at the same position the index of the first one.
 fn weld(vertices: &mut Vec<Vec3>, triangles: &mut [[u32; 3]]) -> usize {
     let key = |v: Vec3| v.to_array().map(|x| (x + 0.0).to_bits()); // -0 is at 0
     let mut order: Vec<u32> = (0..vertices.len() as u32).collect();
@@ -135,7 +135,7 @@ fn drop_unreferenced(vertices: &mut Vec<Vec3>, triangles: &mut [[u32; 3]]) -> us
     before - kept
 }
 
-/// Keeps the first of the triangles over the same three vertices, whatever their winding.
+/// Of triangles with the same three vertices, keeps the first one, whatever their winding.
 fn drop_duplicates(triangles: &mut Vec<[u32; 3]>) -> usize {
     let key = |t: [u32; 3]| {
         let mut sorted = t;

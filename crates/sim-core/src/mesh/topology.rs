@@ -4,16 +4,16 @@ use alloc::{vec, vec::Vec};
 
 use crate::pieces::Pieces;
 
-/// Of the corners and edges of a triangle, those for which it is the first of all that have it. By
-/// owners, each edge and vertex comes up once.
+/// The corners and edges of a triangle that it owns: it is the first triangle that has them. Every edge and vertex has
+/// exactly one owner.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Owned {
     pub(crate) vertex: [bool; 3],
     pub(crate) edge: [bool; 3],
 }
 
-/// Triangles of a mesh, their edges, and what follows from counting the triangles at those: all
-/// but where the vertices are, so that a tree can share it.
+/// The triangles of a mesh, their edges, and properties that follow from the number of triangles at each edge:
+/// everything except the positions of vertices, so that a tree can share it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Topology {
     pub(crate) triangles: Vec<[u32; 3]>,
@@ -22,14 +22,14 @@ pub(crate) struct Topology {
     pub(crate) owned: Vec<Owned>,
     pub(crate) closed: bool,
     pub(crate) oriented: bool,
-    /// Whether edges lead from each vertex to every other.
+    /// Whether a path of edges leads from each vertex to every other one.
     pub(crate) connected: bool,
 }
 
 impl Topology {
-    /// Of triangles over so many vertices.
+    /// The topology of triangles over a number of vertices.
     pub(super) fn of(vertices: usize, triangles: Vec<[u32; 3]>) -> Topology {
-        // Every side of every triangle, sorted so that the sides of one edge lie together.
+        // Every side of every triangle, sorted so that the sides of one edge are adjacent.
         let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * triangles.len());
         for (triangle, &[a, b, c]) in triangles.iter().enumerate() {
             for (side, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
@@ -52,7 +52,7 @@ impl Topology {
             topology
                 .edges
                 .push([(run[0].0 >> 32) as u32, run[0].0 as u32]);
-            // Sides of one edge are in the order of their triangles.
+            // The sides of one edge are in the order of their triangles.
             let first = run[0].1 as usize;
             topology.owned[first / 3].edge[first % 3] = true;
             let mut upward = 0;
@@ -70,7 +70,7 @@ impl Topology {
         topology
     }
 
-    /// Turns every triangle over.
+    /// Reverses the winding of every triangle.
     pub(super) fn reverse_winding(&mut self) {
         for [_, b, c] in &mut self.triangles {
             core::mem::swap(b, c);
