@@ -9,17 +9,17 @@ use crate::{
     collide::{Closest, Form, closest, closest_to_point, is_turned, reach, tree},
 };
 
-/// How far two shapes are apart, m, and their closest points; `None` for two half-spaces. The distance is 0 just
-/// if [`intersects`] says that they meet, and then the points are one that both have.
+/// The distance of two shapes, m, and their closest points; `None` for two half-spaces. The distance is 0 if and only
+/// if [`intersects`] says that the shapes meet; then both points are one shared point.
 ///
 /// Between meshes the error is at most 16 roundings (2^-53) of the sizes of the two closest triangles and of the
-/// distance, also where triangles are needles and edges are nearly parallel; with a sphere or a half-space, of
-/// all coordinates, seen from the first shape.
+/// distance, also if triangles are needles and edges are nearly parallel. With a sphere or a half-space the error is
+/// relative to all coordinates, measured from the first shape.
 pub fn distance(first: Placed<'_>, second: Placed<'_>) -> Option<Hit> {
     distance_within(first, second, f64::INFINITY)
 }
 
-/// The same if they are closer than a distance, m.
+/// The same, if the shapes are closer than a distance, m.
 pub(crate) fn distance_within(first: Placed<'_>, second: Placed<'_>, within: f64) -> Option<Hit> {
     if let (Form::HalfSpace(_), Form::HalfSpace(_)) = (first.form, second.form) {
         return None;
@@ -29,7 +29,7 @@ pub(crate) fn distance_within(first: Placed<'_>, second: Placed<'_>, within: f64
         return (within > 0.0).then(|| Hit::meeting(point));
     }
     let hit = apart(first, second, within)?;
-    // What rounds to nothing is apart nevertheless.
+    // A distance that rounds to zero is positive nevertheless.
     let distance = hit.distance.max(f64::MIN_POSITIVE);
     (distance < within).then_some(Hit { distance, ..hit })
 }
@@ -105,14 +105,14 @@ fn shared_point(first: Placed<'_>, second: Placed<'_>) -> DVec3 {
             let found = closest_to_point(mesh, offset, f64::INFINITY);
             first.position + found.map_or(offset, |found| found.points[0])
         }
-        // On the line of centres, in the middle of what both have of it.
+        // On the line of centres, in the middle of the part that both share.
         (Form::Sphere(one), Form::Sphere(other)) => {
             let length = offset.length();
             let (low, high) = ((length - other).max(-one), (length + other).min(one));
             let along = offset.try_normalize().unwrap_or(DVec3::ZERO);
             first.position + 0.5 * (low + high) * along
         }
-        // What reaches farthest into it.
+        // The point that reaches farthest into the half-space.
         (Form::HalfSpace(normal), other) => second.position + reach(other, normal).1,
         (Form::Sphere(_), Form::Mesh(_))
         | (Form::Mesh(_) | Form::Sphere(_), Form::HalfSpace(_)) => shared_point(second, first),

@@ -41,7 +41,8 @@ pub use placed::Placed;
 pub use ray::ray;
 pub(crate) use ray::{Ray, ray_hit};
 
-/// Where two shapes are closest, or touch. For a ray cast the first shape is the one hit, the second one the ray.
+/// The closest points of two shapes, or their contact. For a ray cast the first shape is the one hit, the second one
+/// the ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Hit {
@@ -51,8 +52,8 @@ pub struct Hit {
     pub distance: f64,
     /// The closest points of the first and of the second shape at that time, m; the same if they meet.
     pub points: [DVec3; 2],
-    /// Unit normal, from the first shape to the second. Zero if there is none: for shapes that share a point
-    /// and do not move into each other.
+    /// Unit normal, from the first shape to the second. Zero if there is none: for shapes that share a point and do
+    /// not move into each other.
     pub normal: DVec3,
     /// The closest part of the first and of the second mesh; `None` for other shapes, and if it is not known
     /// (for a mesh against a half-space, and for shapes that share more than a point).
@@ -71,7 +72,7 @@ impl Hit {
         }
     }
 
-    /// The same with the shapes in the other order, neither of them moving.
+    /// The same with the shapes in the other order, for shapes that do not move.
     fn turned(self) -> Hit {
         let ([one, other], [first, second]) = (self.points, self.parts);
         Hit {
@@ -83,17 +84,17 @@ impl Hit {
     }
 }
 
-/// Whether two shapes share a point; for two half-spaces the answer is no.
+/// Whether two shapes share a point; always false for two half-spaces.
 ///
-/// Exact for meshes: for the vertices of one placed in the frame of the other, each of which is rounded once
-/// ([`collide::Placement`]). For others up to rounding in sums of products.
+/// Exact for meshes: for the vertices of one mesh placed in the frame of the other, each of which is rounded once
+/// ([`collide::Placement`]). For other shapes it is exact up to rounding in sums of products.
 pub fn intersects(first: Placed<'_>, second: Placed<'_>) -> bool {
     collide::meet(first.form, second.form, first.offset_to(second))
 }
 
-/// The shape cast: when the second shape, which moves by `motion` (m), first hits the first shape, which stands. `None`
-/// if it does not, and for two half-spaces. If both shapes move, `motion` is that of the second less that
-/// of the first, and the points are relative to the place of the first.
+/// The shape cast: the time when the second shape, which moves by `motion` (m), first hits the first shape, which is
+/// at rest. `None` if it does not, and for two half-spaces. If both shapes move, `motion` is that of the second
+/// relative to the first, and the points are relative to the position of the first.
 ///
 /// - Shapes that share a point at the start hit at time 0. The normal is zero unless the motion leads into the
 ///   contact.
@@ -104,7 +105,7 @@ pub fn intersects(first: Placed<'_>, second: Placed<'_>) -> bool {
 ///
 /// # Errors
 ///
-/// [`QueryError::Vector`] if a component of `motion` is no number within ±1e100 m.
+/// [`QueryError::Vector`] if a component of `motion` is not a number within ±1e100 m.
 pub fn time_of_impact(
     first: Placed<'_>,
     second: Placed<'_>,
@@ -118,7 +119,7 @@ pub(crate) fn check_motion(motion: DVec3) -> Result<(), QueryError> {
     check_vector("motion", motion)
 }
 
-/// The same of a motion that has been checked.
+/// The same for a motion that has been checked.
 pub(crate) fn first_hit(first: Placed<'_>, second: Placed<'_>, motion: DVec3) -> Option<Hit> {
     let offset = first.offset_to(second);
     let contact = collide::first_contact(first.form, second.form, offset, snap(motion));
@@ -152,16 +153,16 @@ fn hit_of(contact: &Contact, origin: DVec3) -> Hit {
     }
 }
 
-/// Where a point (m) is, seen from a shape; `None` if the shape is an open mesh, which has no inside. A closed
-/// mesh holds the points from which a way out crosses its surface an odd number of times, whichever way its
-/// triangles are wound.
+/// The place of a point (m) relative to a shape; `None` if the shape is an open mesh, which has no inside. A point is
+/// inside a closed mesh if a path from it to the outside crosses the surface an odd number of times, for any winding
+/// of the triangles.
 ///
-/// Exact for the point as it is seen from the shape's position, a difference that rounds once: of a mesh
-/// ([`collide::locate`]) and of a sphere; of a half-space up to rounding in a sum of three products.
+/// Exact for the point relative to the shape's position, a difference that rounds once, for a mesh
+/// ([`collide::locate`]) and for a sphere. For a half-space it is exact up to rounding in a sum of three products.
 ///
 /// # Errors
 ///
-/// [`QueryError::Vector`] if a component of `point` is no number within ±1e100 m.
+/// [`QueryError::Vector`] if a component of `point` is not a number within ±1e100 m.
 pub fn locate(shape: Placed<'_>, point: DVec3) -> Result<Option<Place>, QueryError> {
     check_vector("point", point)?;
     Ok(shape.locate(point - shape.position))

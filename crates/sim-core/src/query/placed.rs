@@ -25,7 +25,7 @@ impl<'a> Placed<'a> {
     ///
     /// # Errors
     ///
-    /// [`QueryError::Vector`] if a component of the position is no number within ±1e100 m.
+    /// [`QueryError::Vector`] if a component of the position is not a number within ±1e100 m.
     pub fn mesh(tree: &'a Bvh, position: DVec3) -> Result<Placed<'a>, QueryError> {
         check_vector("position", position)?;
         Ok(Placed {
@@ -34,7 +34,7 @@ impl<'a> Placed<'a> {
         })
     }
 
-    /// A solid ball of a radius about `position`, both m; of radius 0, a point.
+    /// A solid ball of a radius about `position`, both m; with radius 0 it is a point.
     ///
     /// # Errors
     ///
@@ -53,8 +53,8 @@ impl<'a> Placed<'a> {
     ///
     /// # Errors
     ///
-    /// [`QueryError::Direction`] if the normal is zero; [`QueryError::Vector`] if a component of normal or
-    /// position is no number within ±1e100.
+    /// [`QueryError::Direction`] if the normal is zero; [`QueryError::Vector`] if a component of normal or position
+    /// is not a number within ±1e100.
     pub fn half_space(normal: DVec3, position: DVec3) -> Result<Placed<'a>, QueryError> {
         let normal = check_direction("normal", normal)?;
         check_vector("position", position)?;
@@ -64,7 +64,7 @@ impl<'a> Placed<'a> {
         })
     }
 
-    /// Where the shape's origin is, m.
+    /// The position of the shape's origin, m.
     pub fn position(&self) -> DVec3 {
         self.position
     }
@@ -79,7 +79,7 @@ impl<'a> Placed<'a> {
         Ok(Placed { position, ..self })
     }
 
-    /// Low and high corner of the least box around the shape about its position, m; `None` of a half-space.
+    /// Low and high corner of the least box around the shape, relative to its position, m; `None` for a half-space.
     pub(crate) fn bounds(&self) -> Option<[DVec3; 2]> {
         match self.form {
             Form::Mesh(tree) => {
@@ -91,12 +91,12 @@ impl<'a> Placed<'a> {
         }
     }
 
-    /// Where the other shape is from this one, m.
+    /// The position of the other shape relative to this one, m.
     pub(super) fn offset_to(&self, other: Placed<'_>) -> DVec3 {
         snap(other.position - self.position)
     }
 
-    /// Where a point in the shape's frame is, m; `None` if the shape is an open mesh.
+    /// The place of a point in the shape's frame, m; `None` if the shape is an open mesh.
     pub(super) fn locate(&self, point: DVec3) -> Option<Place> {
         let order = match self.form {
             Form::Mesh(tree) => return collide::locate(tree, point),
@@ -111,14 +111,14 @@ impl<'a> Placed<'a> {
     }
 }
 
-/// The sign of the square of a point's distance from the origin less that of a radius, exactly but for what is
-/// too small or large for squares.
+/// The sign of the square of a point's distance from the origin less the square of a radius. It is exact, except for
+/// components whose squares are out of range.
 fn outside(point: DVec3, radius: f64) -> Ordering {
     let largest = point.abs().max_element().max(radius);
     if largest == 0.0 {
         return Ordering::Equal;
     }
-    // By a power of two, so that no square over- or underflows where it counts.
+    // Scaled by a power of two, so that no square that matters over- or underflows.
     let exponent = libm::ilogb(largest);
     let scaled = |x: f64| libm::scalbn(x, -exponent);
     let mut sum = Expansion::<8>::ZERO;

@@ -5,15 +5,15 @@ use glam::DVec3;
 use super::{Hit, Part, Placed, QueryError, error::check_vector};
 use crate::collide::Form;
 
-/// Where a ray from `origin` (m) along `direction` (of any length but 0) first hits a shape, however far away:
-/// at `origin + time · direction`. The normal is against the direction.
+/// The first hit of a ray from `origin` (m) along `direction` (of any length but 0) on a shape, at any distance: at
+/// `origin + time · direction`. The normal opposes the direction.
 ///
-/// Surfaces are hit from either side, so that a ray from within a sphere hits it where it leaves, as it does a mesh.
-/// None slips through between two triangles ([`Bvh::ray`](crate::Bvh::ray)). Times are rounded like any quotient.
+/// Surfaces are hit from either side: a ray from inside a sphere or a mesh hits it where it leaves. No ray passes
+/// between two adjacent triangles ([`Bvh::ray`](crate::Bvh::ray)). Times are rounded like any quotient.
 ///
 /// # Errors
 ///
-/// [`QueryError::Vector`] if a component of either is no number within ±1e100, [`QueryError::Direction`] if the
+/// [`QueryError::Vector`] if a component of either is not a number within ±1e100, [`QueryError::Direction`] if the
 /// direction is zero, or too short to be divided by.
 pub fn ray(shape: Placed<'_>, origin: DVec3, direction: DVec3) -> Result<Option<Hit>, QueryError> {
     let ray = Ray::new(origin, direction)?;
@@ -41,7 +41,7 @@ impl Ray {
     }
 }
 
-/// Where a ray first hits a shape, before a time.
+/// The first hit of a ray on a shape, before a given time.
 pub(crate) fn ray_hit(shape: Placed<'_>, ray: &Ray, within: f64) -> Option<Hit> {
     let (origin, direction) = (ray.origin - shape.position, ray.direction);
     let (time, normal, face) = match shape.form {
@@ -68,7 +68,7 @@ pub(crate) fn ray_hit(shape: Placed<'_>, ray: &Ray, within: f64) -> Option<Hit> 
     } else {
         normal
     };
-    // Beside a plane it is no number.
+    // For a ray parallel to a plane the time is NaN.
     (time >= 0.0 && time < within).then_some(Hit {
         time,
         distance: 0.0,
@@ -78,14 +78,14 @@ pub(crate) fn ray_hit(shape: Placed<'_>, ray: &Ray, within: f64) -> Option<Hit> 
     })
 }
 
-/// Of unit length; zero of what has no direction.
+/// The unit vector; zero for a vector without a direction.
 fn unit(normal: DVec3) -> DVec3 {
     let scaled = normal / normal.abs().max_element();
     scaled.normalize_or_zero()
 }
 
-/// When a ray first meets the surface of a ball about the origin, in lengths of its direction, and the normal
-/// there.
+/// The first time at which a ray meets the surface of a ball about the origin, in lengths of its direction, and the
+/// normal there.
 fn sphere(origin: DVec3, direction: DVec3, radius: f64) -> Option<(f64, DVec3)> {
     // Scaled first, so that no square over- or underflows.
     let longest = direction.abs().max_element();
@@ -98,7 +98,7 @@ fn sphere(origin: DVec3, direction: DVec3, radius: f64) -> Option<(f64, DVec3)> 
     }
     let (from, radius) = (origin / far, radius / far);
     let before = -from.dot(along);
-    // From the point nearest to the centre, rather than by b² - 4ac, which cancels far away.
+    // From the point nearest to the centre, and not by b² - 4ac, which cancels at a distance.
     let aside = from + before * along;
     let square = (radius - aside.length()) * (radius + aside.length());
     if square < 0.0 {

@@ -1,4 +1,4 @@
-//! Spheres, half-spaces and rays, and refused input; the tests across crates have meshes.
+//! Tests of spheres, half-spaces, rays and invalid input; the tests across crates cover meshes.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -50,7 +50,7 @@ fn every_pair_of_shapes_is_as_far_apart_as_it_looks() {
         assert_eq!((turned.distance, turned.normal), (apart, -x));
         assert_eq!(turned.parts, [hit.parts[1], hit.parts[0]]);
         assert!(!intersects(first, second) && !intersects(second, first));
-        // When it has gone all the way, and when it would have to go twice as far.
+        // A motion that ends at the contact, and one of twice the length.
         for (way, time) in [(1.0, 1.0), (2.0, 0.5)] {
             let hit = time_of_impact(first, second, -way * apart * x);
             let hit = hit.unwrap().unwrap();
@@ -126,7 +126,7 @@ fn points_are_located_exactly() {
             "{shape:?} {y}"
         );
     }
-    // 3² + 4² = 5², and a rounding beside it, at any size.
+    // 3² + 4² = 5², and points a rounding beside it, at any size.
     for scale in [1e-90, 1.0, 1e90] {
         let at = scale * v(3.0, 4.0, 0.0);
         let radius = 5.0 * scale;
@@ -168,7 +168,7 @@ fn rays_hit_surfaces_from_either_side() {
         );
         assert_eq!(ray(shape, v(0.0, 0.0, 9.0), DVec3::Z), Ok(None));
     }
-    // A tangent, far away and small; a point; and along a plane.
+    // A distant and a small tangent; a point; and a ray along a plane.
     let far = ball(1.0, v(1e8, 1.0, 0.0));
     assert!(ray(far, DVec3::ZERO, x).unwrap().is_some());
     assert_eq!(ray(far, v(0.0, -1e-7, 0.0), x), Ok(None));
@@ -180,7 +180,7 @@ fn rays_hit_surfaces_from_either_side() {
     assert_eq!(ray(wall(DVec3::Y, x), DVec3::ZERO, x), Ok(None));
 }
 
-/// A sphere and a fine mesh of one are hit alike.
+/// Rays hit a sphere and a fine mesh of it at the same place.
 #[test]
 fn rays_hit_a_ball_where_they_hit_its_mesh() {
     let tree = Bvh::build(&sphere(60));
@@ -230,7 +230,7 @@ fn what_is_no_number_or_too_far_is_refused_by_name() {
     assert!(Placed::sphere(-1.0, DVec3::ZERO).is_err());
     assert!(Placed::half_space(DVec3::ZERO, DVec3::ZERO).is_err());
     assert!(ray(one, DVec3::ZERO, DVec3::ZERO).is_err());
-    // The farthest that is allowed.
+    // The farthest positions that are allowed.
     let far = one.at(v(1e100, -1e100, 1e100)).unwrap();
     let hit = distance(at(&tree, v(-1e100, 1e100, -1e100)), far).unwrap();
     assert!((hit.distance / 1e100 - libm::sqrt(12.0)).abs() < 1e-15);
