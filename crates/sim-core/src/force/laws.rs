@@ -18,7 +18,7 @@ use super::{BodyMotion, Force, PairMotion};
 use crate::Jacobians;
 
 impl Force {
-    /// Force on one body, N, of a force that acts on single bodies.
+    /// Force on one body, N, for a force that acts on single bodies.
     #[inline]
     pub(crate) fn on_body(&self, at: &BodyMotion) -> DVec3 {
         match self {
@@ -48,7 +48,7 @@ impl Force {
         }
     }
 
-    /// Its derivatives.
+    /// The derivatives of this force.
     pub(crate) fn body_jacobians(&self, at: &BodyMotion) -> Jacobians {
         match self {
             Force::LinearDrag { coefficient, .. } => Jacobians {
@@ -88,7 +88,7 @@ impl Force {
         }
     }
 
-    /// Its potential energy, J.
+    /// The potential energy of this force, J.
     pub(crate) fn body_potential(&self, at: &BodyMotion) -> Option<f64> {
         match self {
             Force::Gravity { acceleration } => Some(-at.mass * dot(*acceleration, at.position)),
@@ -115,7 +115,7 @@ impl Force {
         }
     }
 
-    /// Force on the first of two bodies, N, of a force that acts between bodies.
+    /// Force on the first of two bodies, N, for a force that acts between bodies.
     #[inline]
     pub(crate) fn on_pair(&self, at: &PairMotion) -> DVec3 {
         match self {
@@ -142,7 +142,7 @@ impl Force {
         }
     }
 
-    /// Its derivatives with respect to the relative motion.
+    /// The derivatives of this force with respect to the relative motion.
     pub(crate) fn pair_jacobians(&self, at: &PairMotion) -> Jacobians {
         match self {
             Force::Spring {
@@ -173,8 +173,8 @@ impl Force {
         }
     }
 
-    /// How it changes with a small relative motion: the Jacobians' product with `dx` and `dv`,
-    /// which springs and gravitation have without the matrices.
+    /// The change of this force by a small relative motion: the product of the Jacobians with `dx` and `dv`. Springs
+    /// and gravitation compute it without the matrices.
     #[inline]
     pub(crate) fn pair_change(&self, at: &PairMotion, dx: DVec3, dv: DVec3) -> DVec3 {
         match self {
@@ -210,7 +210,7 @@ impl Force {
         }
     }
 
-    /// Its potential energy, J.
+    /// The potential energy of this force, J.
     pub(crate) fn pair_potential(&self, at: &PairMotion) -> Option<f64> {
         match self {
             Force::Spring {
@@ -260,13 +260,13 @@ fn spring_energy(stiffness: f64, rest_length: f64, d: DVec3) -> f64 {
     0.5 * stiffness * stretch * stretch
 }
 
-/// The part of `w` along `d`. At `d = 0` all of it: bodies that pass through each other move
-/// along the line through them.
+/// The part of `w` along `d`. At `d = 0` it is all of `w`, because bodies that pass through each other move along the
+/// line through them.
 fn along(d: DVec3, w: DVec3) -> DVec3 {
     direction(d).map_or(w, |n| dot(n, w) * n)
 }
 
-/// Its derivatives with respect to `d` and `w`.
+/// The derivatives of `along` with respect to `d` and `w`.
 fn along_slopes(d: DVec3, w: DVec3) -> (DMat3, DMat3) {
     let Some(n) = direction(d) else {
         return (DMat3::ZERO, DMat3::IDENTITY);
@@ -277,7 +277,7 @@ fn along_slopes(d: DVec3, w: DVec3) -> (DMat3, DMat3) {
     (slope * (1.0 / length(d)), radial)
 }
 
-/// `d / |d|³`, infinite or NaN at 0, which the world reports.
+/// `d / |d|³`; infinite or NaN at 0, which the world reports.
 #[inline]
 fn inverse_square(d: DVec3) -> DVec3 {
     let squared = dot(d, d);
@@ -310,8 +310,8 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// Central differences of a force. The step is about the cube root of the rounding unit, where
-/// rounding and the third derivative weigh the same.
+/// Central differences of a force. The step is about the cube root of the rounding unit, at which the errors of
+/// rounding and of the third derivative are equal.
 pub(super) fn differences(x: DVec3, v: DVec3, force: impl Fn(DVec3, DVec3) -> DVec3) -> Jacobians {
     let step = |at: DVec3| 6e-6 * (1.0 + at.abs().max_element());
     let (hx, hv) = (step(x), step(v));

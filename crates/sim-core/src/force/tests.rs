@@ -127,7 +127,7 @@ proptest! {
             prop_assert!((slope + force).length() < 1e-5 * (1.0 + force.length()), "{body:?}");
         }
         let at = |position| PairMotion { time: 0.0, mass: [mass, 2.0], position, velocity };
-        // The first is pulled towards the second: down the slope for it is up for the offset.
+        // The spring pulls the first body towards the second: against the slope for the first, along it for the offset.
         let slope = slope(&|x| pair.pair_potential(&at(x))).expect("pairs have a potential");
         let force = pair.on_pair(&at(position));
         prop_assert!((slope - force).length() < 1e-5 * (1.0 + force.length()), "{pair:?}");
