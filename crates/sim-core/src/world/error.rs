@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::BodyHandle;
 use crate::{Body, BodyKind, Force, Shape, force::ForceError};
 
-/// Why a world refuses a value or a call.
+/// The reason why a world refuses a value or a call.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WorldError {
@@ -15,7 +15,7 @@ pub enum WorldError {
     Vector {
         /// Index of the body.
         body: usize,
-        /// Which quantity.
+        /// The quantity.
         field: &'static str,
         /// The value refused.
         value: DVec3,
@@ -76,27 +76,27 @@ pub enum WorldError {
         /// Index of the body.
         body: usize,
     },
-    /// A body that cannot turn, because it has no inertia.
+    /// A body that cannot rotate, because it has no inertia.
     #[error("body {body} cannot turn: {error}")]
     Inertia {
         /// Index of the body.
         body: usize,
-        /// Why.
+        /// The reason.
         error: crate::InertiaError,
     },
-    /// A body without a rotation.
+    /// A body that cannot rotate.
     #[error("body {body} does not turn: add it with `turn`")]
     DoesNotTurn {
         /// Index of the body.
         body: usize,
     },
-    /// A kind that leaves the inertia of a body that turns unknown.
+    /// A change of kind for which the inertia of a turning body is not known.
     #[error("body {body} turns: it stays dynamic, or not, as it was added")]
     TurningKind {
         /// Index of the body.
         body: usize,
     },
-    /// A half-space that is to turn.
+    /// A half-space with a rotation.
     #[error("body {body} is a half-space, which cannot turn")]
     TurningHalfSpace {
         /// Index of the body.
@@ -105,9 +105,9 @@ pub enum WorldError {
     /// A body that does not exist.
     #[error("there is no body {body}: the world has {bodies}, counted from 0")]
     NoBody {
-        /// Index asked for.
+        /// The requested index.
         body: usize,
-        /// How many bodies there are.
+        /// The number of bodies.
         bodies: usize,
     },
     /// A handle of a body that has been removed, or of another world.
@@ -125,28 +125,28 @@ pub enum WorldError {
     /// A number that a force cannot have.
     #[error("force {index} ({kind}): {error}")]
     Force {
-        /// Its place in the list of forces.
+        /// Its index in the list of forces.
         index: usize,
-        /// Name of its kind.
+        /// The name of its kind.
         kind: &'static str,
-        /// Which field, and why.
+        /// The field, and the reason.
         error: ForceError,
     },
     /// A force that does not exist.
     #[error("there is no force {index}: the world has {forces}, counted from 0")]
     NoForce {
-        /// Place asked for.
+        /// The requested index.
         index: usize,
-        /// How many forces there are.
+        /// The number of forces.
         forces: usize,
     },
-    /// A tolerance that is no error to aim at.
+    /// A tolerance out of range.
     #[error("the tolerance is {value}: it must be between 1e-15 and 1")]
     Tolerance {
         /// The value refused.
         value: f64,
     },
-    /// A step that is not a length of time.
+    /// A step length out of range.
     #[error("dt is {value} s: it must be between 1e-100 and 1e100")]
     Dt {
         /// The value refused, s.
@@ -154,8 +154,7 @@ pub enum WorldError {
     },
 }
 
-/// A step that could not be done. Every variant names the body, the step (from 1) and the title
-/// of the method.
+/// A step that failed. Every variant names the body, the step (from 1) and the title of the method.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StepError {
@@ -171,11 +170,11 @@ pub enum StepError {
         step: u64,
         /// Title of the method.
         method: &'static str,
-        /// The largest `dt`, s, at which the method is stable on the forces where the growth began,
-        /// as in [`StepError::Unstable`], if `dt` is longer: 0 if it is stable at none at all.
+        /// The largest `dt`, s, for which the method is stable for the forces where the growth began, as in
+        /// [`StepError::Unstable`], if `dt` is longer: 0 if it is stable for none.
         stable_dt: Option<f64>,
     },
-    /// Speeds have grown a millionfold, and the step is longer than the method is stable for.
+    /// Speeds have grown a millionfold, and the step is longer than the stability limit of the method.
     #[error(
         "step {step}: the motion of body {body} grows without bound: dt is too long for \
          {method}, which is stable up to {stable_dt:.4e} s where the growth began"
@@ -187,24 +186,24 @@ pub enum StepError {
         step: u64,
         /// Title of the method.
         method: &'static str,
-        /// The largest `dt`, s, at which the method is stable on the forces where the growth began.
+        /// The largest `dt`, s, for which the method is stable for the forces where the growth began.
         ///
-        /// That is not where the step failed: under a force that grows faster than the motion, as
-        /// quadratic drag does, what has blown up is stiffer by as much as it has grown. The world
-        /// keeps the motion at the start, or when bodies, forces or settings were last set, and
-        /// each time that the greatest speed has doubled since. This is the limit at the first of
-        /// these, and of where each leads in a step by a stable method, at which it is below `dt`.
-        /// Where forces get stiffer still on a stable way, a run with this `dt` says so in its turn.
+        /// This is not the limit where the step failed: under a force that grows faster than the motion, as quadratic
+        /// drag does, the motion that has blown up is stiffer by as much as it has grown. The world keeps the motion
+        /// at the start, or when bodies, forces or settings were last set, and each time that the greatest speed has
+        /// doubled since. It examines each of these motions, and the motion one step later by a stable method. This
+        /// is the first limit among them that is below `dt`. If forces become still stiffer on a stable trajectory, a
+        /// run with this `dt` reports that in turn.
         stable_dt: f64,
     },
-    /// A body turns too fast to be followed.
+    /// A body rotates too fast for its rotation to be computed.
     #[error("step {step}: body {body} cannot be turned: {error}")]
     Turning {
         /// Index of the body.
         body: usize,
         /// The step that failed, from 1.
         step: u64,
-        /// Why.
+        /// The reason.
         error: crate::rotation::FlightError,
     },
     /// An implicit method found no solution of its equations.
@@ -216,7 +215,7 @@ pub enum StepError {
     NotConverged {
         /// Index of the body farthest from a solution.
         body: usize,
-        /// The nearest of those that forces tie it to, if there are some.
+        /// The nearest of the bodies that forces connect to it, if any.
         other: Option<usize>,
         /// The step that failed, from 1.
         step: u64,
@@ -234,7 +233,7 @@ pub enum StepError {
     TooManySteps {
         /// Index of the body.
         body: usize,
-        /// The nearest of those that forces tie it to, if there are some.
+        /// The nearest of the bodies that forces connect to it, if any.
         other: Option<usize>,
         /// The step that failed, from 1.
         step: u64,
@@ -252,12 +251,12 @@ pub enum StepError {
     Squeezed {
         /// Index of the body.
         body: usize,
-        /// Those between which it is, or others on their way.
+        /// The bodies between which it is, or other bodies in their way.
         between: (usize, usize),
         /// The step that failed, from 1.
         step: u64,
     },
-    /// Impacts without end.
+    /// The number of impacts reached its limit.
     #[error(
         "step {step}: body {body} has an impact after {impacts} others in the step; lower dt, or \
          part what it is caught between"
@@ -269,11 +268,11 @@ pub enum StepError {
         step: u64,
         /// Title of the method.
         method: &'static str,
-        /// Impacts answered.
+        /// The number of impacts resolved.
         impacts: u64,
     },
-    /// A body that moves, turns or is pushed so fast that it is not followed: the step would take thousands
-    /// of times as long as one without impacts.
+    /// A body moves, rotates or is pushed so fast that the step would take thousands of times as long as one without
+    /// impacts.
     #[error(
         "step {step}: body {body} is too fast for its size to be followed under {method}: the step would \
          cost thousands of steps without impacts; lower dt, the force or the velocity"
@@ -289,7 +288,7 @@ pub enum StepError {
 }
 
 impl StepError {
-    /// Index of the body where it happened.
+    /// Index of the body at which the step failed.
     pub fn body(&self) -> usize {
         match *self {
             StepError::OutOfRange { body, .. }
@@ -308,7 +307,7 @@ fn beside(other: Option<usize>) -> String {
     other.map_or_else(String::new, |other| format!(" beside body {other}"))
 }
 
-/// Where two are so close that their coordinates have few digits for it.
+/// The remedy for two bodies that are so close that their coordinates have few digits for the distance.
 fn nearer_origin(other: Option<usize>) -> &'static str {
     other.map_or("", |_| ", or put the origin nearer to both")
 }
@@ -332,7 +331,7 @@ pub(super) fn check_vector(
     field: &'static str,
     value: DVec3,
 ) -> Result<(), WorldError> {
-    // NaN is not below anything.
+    // NaN fails the comparison.
     if value.abs().cmple(DVec3::splat(LARGEST)).all() {
         Ok(())
     } else {
@@ -357,7 +356,7 @@ pub(super) fn check_kind(body: usize, kind: BodyKind, velocity: DVec3) -> Result
     }
 }
 
-/// All of a body but its shape.
+/// Checks all properties of a body except its shape.
 pub(super) fn check_body(index: usize, body: &Body) -> Result<(), WorldError> {
     check_vector(index, "position", body.position)?;
     check_vector(index, "velocity", body.velocity)?;
@@ -385,7 +384,7 @@ pub(super) fn check_restitution(body: usize, value: f64) -> Result<(), WorldErro
 }
 
 pub(super) fn check_friction(body: usize, value: f64) -> Result<(), WorldError> {
-    // NaN is not above anything.
+    // NaN fails the comparison.
     if value >= 0.0 {
         Ok(())
     } else {
@@ -393,7 +392,7 @@ pub(super) fn check_friction(body: usize, value: f64) -> Result<(), WorldError> 
     }
 }
 
-/// The shape with its normal of unit length.
+/// The shape, with its normal of unit length.
 pub(super) fn check_shape(body: usize, shape: Shape) -> Result<Shape, WorldError> {
     match shape {
         Shape::Mesh(_) => Ok(shape),
@@ -401,7 +400,7 @@ pub(super) fn check_shape(body: usize, shape: Shape) -> Result<Shape, WorldError
         Shape::Sphere { radius: value } => Err(WorldError::Radius { body, value }),
         Shape::HalfSpace { normal } => {
             check_vector(body, "normal", normal)?;
-            // Scaled first, so that no square overflows or vanishes.
+            // Scaled first, so that no square overflows or underflows.
             let scaled = normal / normal.abs().max_element();
             let unit = scaled.try_normalize();
             let normal = unit.ok_or(WorldError::Normal {

@@ -21,7 +21,7 @@ fn body(mesh: &Arc<Mesh>, mass: f64, position: DVec3, velocity: DVec3) -> Body {
     }
 }
 
-/// The discrete mode of the course.
+/// A world in the discrete mode of the course.
 fn world(bodies: impl IntoIterator<Item = Body>) -> World {
     let settings = Settings {
         collision: Collision::Bvh,
@@ -204,7 +204,7 @@ fn pairs_that_begin_in_overlap_are_told_and_only_part() {
         for _ in 0..120 {
             let before = gap(&world);
             world.step().unwrap();
-            // One step in is seen at its end.
+            // A body that is inside after one step is detected at the end of this step.
             assert!(gap(&world) >= before - 2.0 / 60.0 - 1e-12);
             assert!(world.kinetic_energy() <= energy * (1.0 + 4.0 * f64::EPSILON));
         }
@@ -243,7 +243,7 @@ fn an_impact_says_where_its_bodies_were() {
         ..Body::default()
     };
     for collision in [Collision::Continuous, Collision::Bvh, Collision::Naive] {
-        // Also off a wall that moves and that nothing moves.
+        // Also against a moving wall that is not movable.
         for kind in [BodyKind::Dynamic, BodyKind::Kinematic] {
             let mut world = world([ball(0.0, 20.0, BodyKind::Dynamic), ball(1.2, -10.0, kind)]);
             let settings = Settings {
@@ -265,7 +265,7 @@ fn an_impact_says_where_its_bodies_were() {
     }
 }
 
-/// A clock that goes on by one each time it is read.
+/// A clock that advances by one each time it is read.
 fn ticks() -> u64 {
     use core::sync::atomic::{AtomicU64, Ordering};
     static TICKS: AtomicU64 = AtomicU64::new(0);
@@ -312,7 +312,7 @@ fn time_is_steps_times_dt_also_after_a_change_of_dt() {
         ..*world.settings()
     };
     for _ in 0..4 {
-        // Setting what is set already rounds nothing.
+        // Setting a value to itself does not round it.
         world.set_settings(slower).unwrap();
         run(&mut world, 1);
     }
