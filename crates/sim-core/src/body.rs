@@ -1,10 +1,10 @@
-//! Bodies as a user describes them to a world.
+//! Bodies as the input of a world.
 
 use glam::{DQuat, DVec3};
 
 use crate::{Groups, Inertia, Shape};
 
-/// What moves a body.
+/// What can move a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum BodyKind {
@@ -52,30 +52,29 @@ pub struct Body {
     pub shape: Option<Shape>,
     /// Whether forces, its own velocity, or nothing moves it.
     pub kind: BodyKind,
-    /// Place of the shape's origin, m; of a body that turns, of its centre of mass.
+    /// Position of the shape's origin, m; for a turning body, position of its centre of mass.
     pub position: DVec3,
-    /// Velocity, m/s; zero of a static body; of a body that turns, of its centre of mass.
+    /// Velocity, m/s; zero for a static body; for a turning body, velocity of its centre of mass.
     pub velocity: DVec3,
-    /// Mass, kg, from 1e-100 to 1e100. It counts while the body is dynamic.
+    /// Mass, kg, from 1e-100 to 1e100. It has an effect while the body is dynamic.
     pub mass: f64,
-    /// Constant resultant of all forces, N. It counts while the body is dynamic.
+    /// Constant resultant of all forces, N. It has an effect while the body is dynamic.
     pub force: DVec3,
-    /// Part of the approaching speed with which it leaves an impact, 0 to 1. The lesser value of two bodies
-    /// counts.
+    /// Coefficient of restitution, 0 to 1: the opening speed after an impact as a part of the closing speed. For two
+    /// bodies the lesser value counts.
     pub restitution: f64,
-    /// Coefficient of Coulomb friction µ: the force along a contact is at most µ times the force
-    /// across it, the same in every direction and whether the bodies slide or not. From 0, smooth,
-    /// to infinity inclusive, which never slips.
+    /// Coefficient of Coulomb friction µ: the tangential force of a contact is at most µ times the normal force, in
+    /// every direction and whether the bodies slide or not. From 0 (smooth) to infinity inclusive (never slips).
     ///
     /// For two bodies the geometric mean `sqrt(µ1 µ2)` counts. If one of them is smooth it is 0, for any value of
     /// the other (0 times infinity is 0).
     #[cfg_attr(feature = "serde", serde(with = "crate::serde_number"))]
     pub friction: f64,
-    /// The groups that select the bodies it collides with.
+    /// The groups that select the bodies with which it collides.
     pub groups: Groups,
-    /// A number for the user of the world, which does not read it.
+    /// A number for the user; the world does not read it.
     pub user_data: u64,
-    /// Its rotation; `None` for a body that only translates, and pays nothing for rotations.
+    /// Its rotation; `None` for a body that only translates, which costs nothing for rotations.
     pub turn: Option<Turn>,
 }
 
@@ -87,15 +86,15 @@ pub struct Body {
     serde(default, deny_unknown_fields)
 )]
 pub struct Turn {
-    /// Turns the shape's frame into the world; of unit length.
+    /// The rotation from the shape's frame into the world; of unit length.
     pub rotation: DQuat,
     /// Angular velocity in the world, rad/s.
     pub spin: DVec3,
     /// Constant torque about the centre of mass in the world, N m.
     pub torque: DVec3,
-    /// Centre of mass, principal moments and axes in the shape's frame. `None` takes those of a body
-    /// of uniform density within its closed mesh, or ball. A body that is not dynamic, whose
-    /// spin nothing changes, takes any, about its centre.
+    /// Centre of mass, principal moments and axes in the shape's frame. `None` means those of a body of uniform
+    /// density within its closed mesh, or ball. For a body that is not dynamic, whose spin is constant, `None` means
+    /// any moments about its centre.
     pub inertia: Option<Inertia>,
 }
 

@@ -1,4 +1,4 @@
-//! Frame time into whole steps.
+//! Converts frame time to whole steps.
 //!
 //! Frames have any duration; a step is always `dt`. The clock adds elapsed time to the remainder of the
 //! last frame, takes whole steps from the sum, and keeps the rest for the next frame (Fiedler 2004,
@@ -37,24 +37,24 @@ pub struct FixedStep {
     dropped: Duration,
 }
 
-/// A step length that the clock cannot run at.
+/// A step length that the clock does not support.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("dt = {dt} s: a clock steps by 1e-9 s to 1e3 s")]
 pub struct ClockError {
-    /// The step asked for, s.
+    /// The step length, s.
     pub dt: f64,
 }
 
-/// The most nanoseconds counted at once, 4.9 hours. At the least step a nanosecond has 2^82
-/// units, so that 2^44 of them twice, waiting and added, stay below 2^128.
+/// The most nanoseconds counted at once, 4.9 hours. At the least step a nanosecond has 2^82 units, so twice 2^44 of
+/// them, waiting and added, stay below 2^128.
 const LONGEST_NS: u128 = 1 << 44;
 
 impl FixedStep {
     /// Least and greatest step, s.
     pub const DT_RANGE: RangeInclusive<f64> = 1e-9..=1e3;
 
-    /// A clock that steps by `dt` seconds (1e-9 to 1e3) and lets at most `catch_up` (up to 4.8
-    /// hours) of elapsed time wait, but always at least one step.
+    /// A clock that steps by `dt` seconds (1e-9 to 1e3). At most `catch_up` (up to 4.8 hours) of elapsed time waits,
+    /// but always at least one step.
     pub fn new(dt: f64, catch_up: Duration) -> Result<FixedStep, ClockError> {
         if !FixedStep::DT_RANGE.contains(&dt) {
             return Err(ClockError { dt });
@@ -76,13 +76,13 @@ impl FixedStep {
         })
     }
 
-    /// Adds the time since the last call. Time beyond the catch-up limit is dropped and
-    /// returned, so that one stall does not turn into ever longer frames.
+    /// Adds the time since the last call. Time beyond the catch-up limit is dropped and returned, so that one stall
+    /// does not lead to ever longer frames.
     pub fn advance(&mut self, elapsed: Duration) -> Duration {
         let total_ns = elapsed.as_nanos();
         let counted_ns = total_ns.min(LONGEST_NS);
         self.waiting += counted_ns << self.shift;
-        // Whole steps above the limit go; the fraction stays, so that drawing does not jump.
+        // Whole steps above the limit are dropped; the fraction stays, so that drawing does not jump.
         let excess = (self.waiting / self.step).saturating_sub(self.most_steps);
         self.give_up(excess, total_ns - counted_ns)
     }
@@ -96,23 +96,23 @@ impl FixedStep {
         due
     }
 
-    /// Gives up the whole steps still waiting, for a caller that has no time for them.
+    /// Drops the whole steps that wait, for a caller without time for them.
     pub fn drop_backlog(&mut self) -> Duration {
         self.give_up(self.waiting / self.step, 0)
     }
 
     /// The remaining time, in steps: 0 draws the previous state, 1 the current one.
     pub fn fraction(&self) -> f64 {
-        // Below one step the ratio is below 1, but its rounding may not be.
+        // Below one step the ratio is below 1, but it may round to 1.
         (self.waiting as f64 / self.step as f64).min(1.0 - f64::EPSILON / 2.0)
     }
 
-    /// The step, s.
+    /// The step length, s.
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// All the time dropped so far: how far the simulation is behind real time.
+    /// The sum of dropped time: the delay of the simulation behind real time.
     pub fn dropped(&self) -> Duration {
         self.dropped
     }

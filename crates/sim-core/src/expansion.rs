@@ -8,7 +8,7 @@ use core::cmp::Ordering;
 /// A sum of at most `N` terms, exact as long as nothing over- or underflows.
 #[derive(Clone)]
 pub(crate) struct Expansion<const N: usize> {
-    /// The first `len` do not overlap, grow, and are not zero.
+    /// The first `len` terms do not overlap, increase, and are not zero.
     terms: [f64; N],
     len: usize,
 }
@@ -23,7 +23,7 @@ impl<const N: usize> Expansion<N> {
         &self.terms[..self.len]
     }
 
-    /// Adds a number; at most `N` times but for zeros (Shewchuk's GROW-EXPANSION, without the zeros).
+    /// Adds a number; at most `N` numbers that are not zero (Shewchuk's GROW-EXPANSION, without the zeros).
     #[inline]
     pub(crate) fn add(&mut self, x: f64) {
         if x == 0.0 {
@@ -61,13 +61,13 @@ impl<const N: usize> Expansion<N> {
         }
     }
 
-    /// To within some units in the last place: each term is below the lowest digit of the next.
+    /// The sum to within some units in the last place: each term is below the lowest digit of the next.
     pub(crate) fn rounded(&self) -> f64 {
         self.terms().iter().sum()
     }
 }
 
-/// `x + y` as a rounded sum and what rounding took.
+/// `x + y` as a rounded sum and its rounding error.
 #[inline(always)]
 pub(crate) fn two_sum(x: f64, y: f64) -> (f64, f64) {
     let sum = x + y;
@@ -76,7 +76,7 @@ pub(crate) fn two_sum(x: f64, y: f64) -> (f64, f64) {
     (sum, (x - of_x) + (y - of_y))
 }
 
-/// `x y` as a rounded product and what rounding took; `x` and `y` up to 2^990.
+/// `x y` as a rounded product and its rounding error; `x` and `y` up to 2^990.
 #[inline(always)]
 pub(crate) fn two_product(x: f64, y: f64) -> (f64, f64) {
     let product = x * y;
@@ -84,7 +84,7 @@ pub(crate) fn two_product(x: f64, y: f64) -> (f64, f64) {
     (product, b * d - (((product - a * c) - b * c) - a * d))
 }
 
-/// Two halves of the digits (Veltkamp; Shewchuk's SPLIT).
+/// Splits the digits of a number into two halves (Veltkamp; Shewchuk's SPLIT).
 #[inline(always)]
 fn halves(x: f64) -> (f64, f64) {
     const SPLITTER: f64 = ((1 << 27) + 1) as f64;

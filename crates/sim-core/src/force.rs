@@ -25,31 +25,31 @@ use crate::Jacobians;
 pub enum Force {
     /// Weight: every body falls with the same acceleration.
     Gravity {
-        /// m/s².
+        /// The acceleration, m/s².
         acceleration: DVec3,
     },
     /// Stokes' drag, `F = -c v`.
     LinearDrag {
-        /// The body it acts on; `None`: every body.
+        /// The body on which it acts; `None` for every body.
         body: Option<usize>,
         /// `c`, kg/s, from 0.
         coefficient: f64,
     },
     /// Newton's drag, `F = -c |v| v`.
     QuadraticDrag {
-        /// The body it acts on; `None`: every body.
+        /// The body on which it acts; `None` for every body.
         body: Option<usize>,
         /// `c`, kg/m, from 0.
         coefficient: f64,
     },
-    /// A spring and a damper between a body and a fixed point, `F = -k (1 - L/|d|) d - c v` with
-    /// `d` from the anchor to the body. The damper works against motion in every direction. With
-    /// `L > 0` a body exactly at the anchor is pushed nowhere.
+    /// A spring and a damper between a body and a fixed point, `F = -k (1 - L/|d|) d - c v` with `d` from the anchor
+    /// to the body. The damper opposes motion in every direction. With `L > 0` there is no spring force on a body
+    /// exactly at the anchor.
     Anchor {
-        /// The body it acts on.
+        /// The body on which it acts.
         body: usize,
-        /// The point of it that is tied, in the frame of its shape, m; `None`: its position. A body that turns
-        /// is turned by what pulls at a point of it.
+        /// The attached point of the body, in the frame of its shape, m; `None` for its position. A force at a point
+        /// rotates a turning body.
         #[cfg_attr(feature = "serde", serde(default))]
         point: Option<DVec3>,
         /// The fixed point, m.
@@ -61,13 +61,12 @@ pub enum Force {
         /// `c`, kg/s, from 0.
         damping: f64,
     },
-    /// A spring and a damper between two bodies, along the line through them:
-    /// `F = (k (|d| - L) + c n·w) n` on the first, with `d = |d| n` and `w` the place and velocity
-    /// of the second as seen from the first.
+    /// A spring and a damper between two bodies, along the line through them: `F = (k (|d| - L) + c n·w) n` on the
+    /// first, with `d = |d| n` and `w` the position and velocity of the second relative to the first.
     Spring {
         /// The bodies, two different ones.
         bodies: [usize; 2],
-        /// The points of both that are tied, each in the frame of its body's shape, m; `None`: their positions.
+        /// The attached points of both, each in the frame of its body's shape, m; `None` for their positions.
         #[cfg_attr(feature = "serde", serde(default))]
         points: Option<[DVec3; 2]>,
         /// Rest length `L`, m, from 0.
@@ -77,19 +76,19 @@ pub enum Force {
         /// `c`, kg/s, from 0.
         damping: f64,
     },
-    /// A constant force at a point of a body, which turns a body that does: with it alone a free body
-    /// is a heavy top about its centre of mass.
+    /// A constant force at a point of a body; it rotates a turning body. With this force alone a free body is a heavy
+    /// top about its centre of mass.
     Push {
-        /// The body it acts on.
+        /// The body on which it acts.
         body: usize,
-        /// Where, in the frame of its shape, m.
+        /// The point, in the frame of the body's shape, m.
         point: DVec3,
-        /// N, in the world.
+        /// The force in the world, N.
         force: DVec3,
     },
-    /// Attraction to a fixed point as by a large mass there, `F = -m μ d / |d|³`.
+    /// Attraction to a fixed point, as by a large mass there, `F = -m μ d / |d|³`.
     Attraction {
-        /// The body it acts on; `None`: every body.
+        /// The body on which it acts; `None` for every body.
         body: Option<usize>,
         /// The point, m.
         centre: DVec3,
@@ -101,25 +100,25 @@ pub enum Force {
         /// `G`, m³/(kg s²), from 0.
         constant: f64,
     },
-    /// A law of one body's motion from outside. It is code: `serde` refuses it.
+    /// An external law of one body's motion. It is code: `serde` refuses it.
     #[cfg_attr(feature = "serde", serde(skip))]
     Body {
-        /// The body it acts on; `None`: every body.
+        /// The body on which it acts; `None` for every body.
         body: Option<usize>,
         /// The law.
         law: Law<dyn BodyLaw>,
     },
-    /// A law of two bodies' relative motion from outside. It is code: `serde` refuses it.
+    /// An external law of two bodies' relative motion. It is code: `serde` refuses it.
     #[cfg_attr(feature = "serde", serde(skip))]
     Pair {
-        /// The bodies it acts on, two different ones; `None`: every two.
+        /// The bodies on which it acts, two different ones; `None` for every two.
         bodies: Option<[usize; 2]>,
         /// The law.
         law: Law<dyn PairLaw>,
     },
 }
 
-/// The motion of one body, as a law sees it.
+/// The motion of one body, as input of a law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMotion {
     /// Time, s.
@@ -132,16 +131,16 @@ pub struct BodyMotion {
     pub velocity: DVec3,
 }
 
-/// The relative motion of two bodies, as a law sees it.
+/// The relative motion of two bodies, as input of a law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairMotion {
     /// Time, s.
     pub time: f64,
-    /// Masses, kg; infinite of a body that is not dynamic.
+    /// Masses, kg; infinite for a body that is not dynamic.
     pub mass: [f64; 2],
-    /// From the first to the second, m.
+    /// The vector from the first to the second, m.
     pub position: DVec3,
-    /// Velocity of the second less that of the first, m/s.
+    /// Velocity of the second relative to the first, m/s.
     pub velocity: DVec3,
 }
 
@@ -171,8 +170,8 @@ pub trait BodyLaw: Debug + Send + Sync {
     /// The force, N.
     fn force(&self, at: &BodyMotion) -> DVec3;
 
-    /// How the force changes with the body's position and velocity, N/m and kg/s. Unless it is
-    /// given, central differences, right to about ten digits.
+    /// The derivatives of the force with respect to the body's position and velocity, N/m and kg/s. The default uses
+    /// central differences, correct to about ten digits.
     fn jacobians(&self, at: &BodyMotion) -> Jacobians {
         laws::differences(at.position, at.velocity, |position, velocity| {
             self.force(&BodyMotion {
@@ -183,7 +182,7 @@ pub trait BodyLaw: Debug + Send + Sync {
         })
     }
 
-    /// Potential energy, J, if the force is the slope of one.
+    /// Potential energy, J, if the force has a potential.
     fn potential(&self, _at: &BodyMotion) -> Option<f64> {
         None
     }
@@ -191,11 +190,11 @@ pub trait BodyLaw: Debug + Send + Sync {
 
 /// A force between two bodies.
 pub trait PairLaw: Debug + Send + Sync {
-    /// The force on the first, N; the second one feels the opposite.
+    /// The force on the first body, N; the force on the second one is the opposite.
     fn force(&self, at: &PairMotion) -> DVec3;
 
-    /// How the force changes with the relative position and velocity, N/m and kg/s. Unless it is
-    /// given, central differences, right to about ten digits.
+    /// The derivatives of the force with respect to the relative position and velocity, N/m and kg/s. The default
+    /// uses central differences, correct to about ten digits.
     fn jacobians(&self, at: &PairMotion) -> Jacobians {
         laws::differences(at.position, at.velocity, |position, velocity| {
             self.force(&PairMotion {
@@ -206,13 +205,13 @@ pub trait PairLaw: Debug + Send + Sync {
         })
     }
 
-    /// Potential energy, J, if the force is the slope of one.
+    /// Potential energy, J, if the force has a potential.
     fn potential(&self, _at: &PairMotion) -> Option<f64> {
         None
     }
 }
 
-/// A law from outside, shared. Two are equal if they are the same one.
+/// An external law, shared. Two laws are equal if they are the same object.
 #[derive(Debug)]
 pub struct Law<T: ?Sized>(pub Arc<T>);
 
@@ -242,10 +241,10 @@ impl Law<dyn PairLaw> {
     }
 }
 
-/// Whom a force acts on.
+/// The bodies on which a force acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Reach {
-    /// Every body alike, as a constant acceleration.
+    /// Every body with the same constant acceleration.
     Weight,
     Body(usize),
     EachBody,
@@ -269,7 +268,7 @@ impl Force {
         }
     }
 
-    /// The bodies it names; others may feel it too.
+    /// The bodies that the force names; it may act on others too.
     pub fn bodies(&self) -> impl Iterator<Item = usize> + use<> {
         let [first, second] = match self.reach() {
             Reach::Body(body) => [Some(body), None],
@@ -279,8 +278,8 @@ impl Force {
         first.into_iter().chain(second)
     }
 
-    /// The same on other bodies: `renumber` gives the new index of each that it names. `None` if
-    /// that gives none.
+    /// The same force on other bodies: `renumber` gives the new index of each body that it names. `None` if
+    /// `renumber` gives none.
     pub fn renumbered(mut self, renumber: impl Fn(usize) -> Option<usize>) -> Option<Force> {
         match &mut self {
             Force::Gravity { .. } | Force::Gravitation { .. } => {}
@@ -321,7 +320,7 @@ impl Force {
         }
     }
 
-    /// The point of the body that it acts on, in the frame of its shape, m; `None`: the body's position.
+    /// The point of the body on which it acts, in the frame of its shape, m; `None` for the body's position.
     pub fn point(&self) -> Option<DVec3> {
         match *self {
             Force::Push { point, .. } => Some(point),
@@ -337,7 +336,7 @@ impl Force {
         }
     }
 
-    /// The same of the two bodies that it acts between.
+    /// The same for the two bodies between which it acts.
     pub fn points(&self) -> Option<[DVec3; 2]> {
         match *self {
             Force::Spring { points, .. } => points,
@@ -373,7 +372,7 @@ impl Force {
         }
     }
 
-    /// The first number of it that is out of range, by the name of its field.
+    /// Checks all numbers; the error names the field of the first one that is out of range.
     pub fn check(&self) -> Result<(), ForceError> {
         let least = |field, value| match value {
             0.0..=LARGEST => Ok(()),
@@ -441,7 +440,7 @@ impl Force {
     }
 }
 
-/// A number or a body that a force cannot have.
+/// A number or a pair of bodies that a force cannot have.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ForceError {
     /// A number that is negative, NaN or huge.
@@ -469,7 +468,7 @@ pub enum ForceError {
 }
 
 impl ForceError {
-    /// The field that is wrong.
+    /// The name of the invalid field.
     pub fn field(&self) -> &'static str {
         match self {
             ForceError::Number { field, .. } | ForceError::Vector { field, .. } => field,

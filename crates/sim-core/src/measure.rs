@@ -1,11 +1,11 @@
-//! Quantities that a force-free world conserves. Only dynamic bodies count.
+//! Quantities that a world without forces conserves. Only dynamic bodies count.
 
 use glam::DVec3;
 
 use crate::World;
 
 impl World {
-    /// Kinetic energy of all dynamic bodies, J, with that of turning.
+    /// Kinetic energy of all dynamic bodies, J, including that of rotation.
     pub fn kinetic_energy(&self) -> f64 {
         let moving: f64 = self
             .movable()
@@ -14,7 +14,7 @@ impl World {
         moving + self.turning_energy()
     }
 
-    /// Kinetic energy of all bodies that is in how they turn about their centres of mass, J.
+    /// The part of the kinetic energy that is in rotations about centres of mass, J.
     pub fn turning_energy(&self) -> f64 {
         self.turning_bodies()
             .filter(|&i| self.kind(i).is_movable())

@@ -9,7 +9,7 @@ pub(crate) struct Pieces {
 }
 
 impl Pieces {
-    /// As many components as elements.
+    /// Each element is a component of its own.
     pub(crate) fn new(count: usize) -> Pieces {
         Pieces {
             parent: (0..count as u32).collect(),
@@ -26,7 +26,7 @@ impl Pieces {
         at
     }
 
-    /// Joins the components of two elements, and tells whether these were different.
+    /// Joins the components of two elements; returns whether they were different.
     pub(crate) fn join(&mut self, one: usize, other: usize) -> bool {
         let (one, other) = (self.first(one), self.first(other));
         self.parent[one.max(other)] = one.min(other) as u32;
@@ -34,7 +34,7 @@ impl Pieces {
     }
 }
 
-/// For each pair of bodies a number; pairs that movable bodies connect have the same number.
+/// A number for each pair of bodies; pairs connected by movable bodies have the same number.
 pub(crate) fn ties(
     pairs: impl Iterator<Item = (usize, usize)> + Clone,
     bodies: usize,

@@ -3,7 +3,7 @@
 use core::fmt;
 use serde::{Deserializer, Serializer, de};
 
-/// What an infinite number is called where a person may read it.
+/// The text for an infinite number in human-readable formats.
 const INFINITE: &str = "inf";
 
 pub(crate) fn serialize<S: Serializer>(number: &f64, to: S) -> Result<S::Ok, S::Error> {

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::Mesh;
 
-/// The shape of a body about its position.
+/// The shape of a body, relative to its position.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -20,10 +20,9 @@ pub enum Shape {
         /// Its radius, m, from 0 (a point that collides) to 1e100.
         radius: f64,
     },
-    /// Everything on one side of a plane through the position: a floor or a wall. Two of them
-    /// never collide.
+    /// Everything on one side of a plane through the position: a floor or a wall. Two half-spaces never collide.
     HalfSpace {
-        /// Points out of it; of any length but 0.
+        /// Points out of the half-space; of any length but 0.
         normal: DVec3,
     },
 }
@@ -37,8 +36,8 @@ impl Shape {
         }
     }
 
-    /// Low and high corner of the least box around it, m, about its position; `None` of a half-space, which no
-    /// box holds.
+    /// Low and high corner of the least box around the shape, relative to its position, m; `None` for a half-space,
+    /// which has no bounding box.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
         match self {
             Shape::Mesh(mesh) => {
@@ -51,21 +50,21 @@ impl Shape {
     }
 }
 
-/// How far a shape reaches about its origin.
+/// The extent of a shape about its origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Extent {
-    /// Low and high corner of the box around it, m; zero where no box holds it.
+    /// Low and high corner of its bounding box, m; zero if it has none.
     pub(crate) low: DVec3,
     pub(crate) high: DVec3,
     /// Largest half extent, m.
     pub(crate) half: f64,
-    /// Largest coordinates of what is placed with it, m, by axis, and the largest of them.
+    /// Largest coordinates of the points placed with it, m, by axis, and the largest of them.
     pub(crate) reach: DVec3,
     pub(crate) farthest: f64,
 }
 
 impl Extent {
-    /// Of a ball.
+    /// The extent of a ball.
     pub(crate) fn of_ball(radius: f64) -> Extent {
         Extent {
             low: DVec3::splat(-radius),

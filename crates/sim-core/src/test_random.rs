@@ -28,7 +28,7 @@ impl Random {
         DVec3::from_array(self.three(most).map(|x| x as f64))
     }
 
-    /// A whole number less than a count.
+    /// A whole number from 0, less than `count`.
     pub(crate) fn below(&mut self, count: usize) -> usize {
         (self.unit() * count as f64) as usize
     }
