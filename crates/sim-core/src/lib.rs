@@ -24,7 +24,7 @@
 //! 5. A body that comes to rest on another stays in contact with it from step to step
 //!    ([`World::contacts`], [`World::contact_features`]): contact forces press on both, friction
 //!    ([`Body::friction`]) slows and holds them, and bodies that lie still sleep. If many contacts of a heap
-//!    begin and end within a step, they are solved at once, and [`World::bundled`] tells what that costs.
+//!    begin and end within a step, they are solved at once, and [`World::bundled`] reports the error of this.
 //! 6. [`World::impacts`] counts impacts, [`World::step_reporting`] lists them, and
 //!    [`World::interpolated`] gives positions between the last two states, for drawing.
 //!    [`World::contact_events`] lists the contacts that begin, persist and end, with their impulses.

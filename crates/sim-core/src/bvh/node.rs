@@ -15,8 +15,8 @@ pub(crate) const MAX_DEPTH: usize = 32;
 pub(crate) const LEAF: u32 = 1 << 31;
 
 /// Four boxes by axis, so that one instruction processes all four. They are centres and half extents, rounded
-/// outward: the same form remains valid for moved and rotated boxes, and overlap is one comparison for each axis, `|c
-/// - c'| <= h + h'`.
+/// outward: the same form remains valid for moved and rotated boxes, and overlap is one comparison for each axis,
+/// `|c - c'| <= h + h'`.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(crate) struct Boxes {

@@ -6,14 +6,14 @@
 //! largest part of the exact arithmetic.
 //!
 //! The bound. A height `h = n·w` above a plane through corner `a`, with `n = u × v` and `w = p - a`, is a determinant
-//! whose rows are differences of corners. Computed from exact corners with `e = 2^-24` it errs by at most `(7 + 56 e)
-//! e` times its permanent (Shewchuk 1997, sec. 4.3), here `16 e`. There are three more errors. First, `w` has a
-//! placed corner, which f32 misses by `d`; this adds `|n|·d`. Second, `u` and `v` of the second mesh are computed
-//! before placing, which moves them by at most `q`; this adds `dn·|w|` with `dn_x = q (|u_y| + |v_y| + |u_z| + |v_z|
-//! + 2 q)` and so on. Third, products below the range of f32 vanish; this adds a small constant. The boxes meet, so
-//! no component of `w` exceeds twice the sum of the half extents and the margin of their comparison. The bound uses
-//! the greatest of these in each leaf, which needs errors of four triangles instead of sixteen pairs. Sizes are
-//! limited so that no product overflows ([`Reach::has_planes`]).
+//! whose rows are differences of corners. Computed from exact corners with `e = 2^-24` it errs by at most
+//! `(7 + 56 e) e` times its permanent (Shewchuk 1997, sec. 4.3), here `16 e`. There are three more errors. First, `w`
+//! has a placed corner, which f32 misses by `d`; this adds `|n|·d`. Second, `u` and `v` of the second mesh are
+//! computed before placing, which moves them by at most `q`; this adds `dn·|w|` with
+//! `dn_x = q (|u_y| + |v_y| + |u_z| + |v_z| + 2 q)` and so on. Third, products below the range of f32 vanish; this
+//! adds a small constant. The boxes meet, so no component of `w` exceeds twice the sum of the half extents and the
+//! margin of their comparison. The bound uses the greatest of these in each leaf, which needs errors of four
+//! triangles instead of sixteen pairs. Sizes are limited so that no product overflows ([`Reach::has_planes`]).
 
 use super::pairs::{Lanes, Meshes, Reach, dot0, splat};
 use crate::bvh::{Boxes, Triangles, WIDTH};

@@ -10,8 +10,8 @@ use glam::DVec3;
 
 use super::form::{Contact, Form, reach, unit};
 
-/// The motion of the second of two shapes relative to the first. Its position at time `t` is `offset + t (velocity + t
-/// acceleration / 2)`, in m, m/s and m/s².
+/// The motion of the second of two shapes relative to the first. Its position at time `t` is
+/// `offset + t (velocity + t acceleration / 2)`, in m, m/s and m/s².
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parabola {
     pub(crate) offset: DVec3,
@@ -65,7 +65,7 @@ impl Parabola {
 
 enum Start {
     Apart,
-    /// Apart by no more than rounding and approaching: the contact is at once.
+    /// Apart by no more than rounding and approaching: the contact is immediate.
     Near,
     /// Touching, and closing or pressed together.
     Touching,

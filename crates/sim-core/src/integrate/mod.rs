@@ -45,7 +45,7 @@ pub struct Method {
     pub order: u32,
     /// Stability on `x'' = -ω² x`, in a few words.
     pub stability: &'static str,
-    /// Where it is described.
+    /// The publication that describes it.
     pub source: &'static str,
     /// Whether it keeps the symplectic form of forces that have a potential: energy does not
     /// drift.

@@ -4,12 +4,12 @@
 //! palindrome is reversible (Hairer, Lubich, Wanner 2006, sec. II.5 and III.3).
 //!
 //! Forces that depend on the velocity have no such part. A sequence of drifts `a_i` and kicks `b_i` is also a
-//! sequence of symplectic Euler steps and their adjoints, of lengths `α_1 = a_1, α_2 = b_1 - α_1, α_3 = a_2 - α_2,
-//! ...`. It keeps its order with any other pair of a first-order method and its adjoint (McLachlan 1995, "On the
-//! numerical integration of ordinary differential equations by symmetric composition methods", SIAM J. Sci. Comput.
-//! 16, p. 151). So a kick has two parts: `v += α_2i-1 h a(t, x, v)` with the velocity before it, and `v += α_2i h
-//! a(t, x, v)` with the velocity after it. Order and reversibility remain; symplecticity is not defined for such
-//! forces.
+//! sequence of symplectic Euler steps and their adjoints, of lengths
+//! `α_1 = a_1, α_2 = b_1 - α_1, α_3 = a_2 - α_2, ...`. It keeps its order with any other pair of a first-order method
+//! and its adjoint (McLachlan 1995, "On the numerical integration of ordinary differential equations by symmetric
+//! composition methods", SIAM J. Sci. Comput. 16, p. 151). So a kick has two parts: `v += α_2i-1 h a(t, x, v)` with
+//! the velocity before it, and `v += α_2i h a(t, x, v)` with the velocity after it. Order and reversibility remain;
+//! symplecticity is not defined for such forces.
 
 use glam::DVec3;
 

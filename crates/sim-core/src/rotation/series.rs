@@ -35,8 +35,8 @@ pub(super) const FARTHEST: f64 = 0.16;
 ///
 /// For a real body `|I_j - I_k| <= I_i`. So without torque `y' = y²/√3` majorises the speed; it has its pole at
 /// `√3/|Ω|`. With a torque, `y' = y²/√3 + a z, z' = z y` majorises it, where `z` majorises the torque in the frame of
-/// the body. With time in units of `1/(|Ω| + √a)`, all terms of that are at most those of `y' = y²/√3 + z, z' = z y,
-/// y(0) = z(0) = 1`, which has its pole at 1.02126.
+/// the body. With time in units of `1/(|Ω| + √a)`, all terms of that are at most those of
+/// `y' = y²/√3 + z, z' = z y, y(0) = z(0) = 1`, which has its pole at 1.02126.
 pub(super) fn rate(spin: f64, a: f64) -> f64 {
     match a > 0.0 {
         true => (spin + libm::sqrt(a)) / 1.0212,

@@ -188,7 +188,7 @@ impl World {
         self.bodies.force[body] / self.bodies.mass[body] + self.forces.weight
     }
 
-    /// Updates the world after a change of forces. `is_weight` tells whether one of them is a weight: forces are
+    /// Updates the world after a change of forces. `is_weight` says whether one of them is a weight: forces are
     /// often added one by one, and only a weight changes the acceleration of all bodies.
     fn forces_changed(&mut self, is_weight: bool) {
         self.forces.forget_plan();

@@ -246,7 +246,7 @@ impl World {
     ///
     /// # Errors
     ///
-    /// [`QueryError::Vector`] if a component of `point` is no number within ±1e100 m.
+    /// [`QueryError::Vector`] if a component of `point` is not a number within ±1e100 m.
     pub fn nearest(
         &self,
         point: DVec3,

@@ -31,7 +31,7 @@ impl Triangle {
 /// Two points, one of each shape, and the vector between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Closest {
-    /// m.
+    /// The distance, m.
     pub(crate) distance: f64,
     /// In the first shape's frame, m.
     pub(crate) points: [DVec3; 2],
@@ -213,7 +213,7 @@ fn edge_edge(
     if normal.dot(r).abs() > within * normal.length() + size * (far + within) {
         return None;
     }
-    // Parts of the edges, times the square of the normal.
+    // Positions along the edges as parts of their lengths, times the square of the normal.
     let (along_u, along_v) = (r.cross(v).dot(normal), r.cross(u).dot(normal));
     let slack_u = size * (far * v.length() + u.length() * v.length());
     let slack_v = size * (far * u.length() + u.length() * v.length());

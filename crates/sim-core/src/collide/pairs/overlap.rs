@@ -134,9 +134,9 @@ fn between<L: Lanes>(a: &Placed<L>, b: &Placed<L>, axis: usize) -> L {
 
 /// A bit for each pair in which the contents of one slab and box are outside the other slab.
 ///
-/// Let `n` be the normal of the one slab and `m` that of the other. A point `x` of the other has the height `n·x = k
-/// m·x + (n - k m)·x` for any `k`. For `k = n·m` the second part is small if the normals are similar. The other's
-/// slab bounds the first part, its box the second one.
+/// Let `n` be the normal of the one slab and `m` that of the other. A point `x` of the other has the height
+/// `n·x = k m·x + (n - k m)·x` for any `k`. For `k = n·m` the second part is small if the normals are similar. The
+/// other's slab bounds the first part, its box the second one.
 #[inline(always)]
 fn slab_misses<L: Lanes>(
     slab: &PlacedSlabs<L>,

@@ -50,7 +50,7 @@ pub(super) fn run<W: InLanes>(level: Level, work: W) -> Result<W::Output, W> {
     if level > widest() {
         return Err(work);
     }
-    // SAFETY: the processor has what these are compiled for, as it has the level.
+    // SAFETY: the processor has the level, and so the instructions for which these are compiled.
     match level {
         Level::Portable => Err(work),
         Level::Avx2 => Ok(unsafe { avx2(work) }),
@@ -270,7 +270,7 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn least(self, among: u32) -> (u32, bool) {
         call! {
-            // The lowest bits name the lane.
+            // The lowest bits hold the number of the lane.
             let bits = _mm512_castps_si512(self.0);
             let lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
             let key = _mm512_or_si512(_mm512_and_si512(bits, _mm512_set1_epi32(!15)), lane);
@@ -293,8 +293,7 @@ impl Lanes for Avx512 {
     }
 }
 
-/// Floats whose lowest bits name their lane; those of lanes that are not among some bits are
-/// infinite.
+/// The floats with the number of their lane in the lowest bits; infinite for lanes outside `among`.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn keys(x: __m256, lane: __m256i, among: u32) -> __m256 {
@@ -306,7 +305,7 @@ fn keys(x: __m256, lane: __m256i, among: u32) -> __m256 {
     _mm256_blendv_ps(key, _mm256_set1_ps(f32::INFINITY), is_not)
 }
 
-/// Within each four lanes, takes the one of their own number.
+/// Indices that select, within each row of four lanes, the lane with the number of the row.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn row_of_lane() -> __m512i {
