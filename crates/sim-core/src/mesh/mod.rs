@@ -107,9 +107,9 @@ impl Mesh {
 
     /// The mesh scaled along its own axes, then rotated, with vertices rounded to f32.
     ///
-    /// A fixed orientation and scale are applied once, here. A scale that mirrors (an odd number of negative components)
-    /// keeps the winding outward. The components of `scale` must be finite and not zero; `rotation` must be of unit
-    /// length.
+    /// A fixed orientation and scale are applied once, here. A scale that mirrors (an odd number of negative
+    /// components) keeps the winding outward. The components of `scale` must be finite and not zero; `rotation` must
+    /// be of unit length.
     pub fn transformed(&self, rotation: DQuat, scale: DVec3) -> Result<Mesh, MeshError> {
         let mut mesh = self.clone();
         if !(scale.is_finite() && scale.cmpne(DVec3::ZERO).all()) {
