@@ -224,9 +224,9 @@ impl Ball {
             let point = nearest(centre, corners);
             let apart = square(centre - point, (centre, point), corners);
             let distance = apart.length();
-            // Over a face, use the face's normal: a small distance does not spoil it, and rounding beside it does not
-            // either. At an edge, once the ball is there, use the last normal: the direction to a nearest point at
-            // distance zero is only rounding.
+            // Over a face, use the face's normal: neither a small distance nor rounding sideways spoils it. At an
+            // edge, once the ball is there, use the last normal: the direction to a nearest point at distance zero is
+            // only rounding.
             let side = apart.dot(across);
             let upright = || {
                 let normal = unit(across)? * libm::copysign(1.0, side);

@@ -151,8 +151,8 @@ impl System for Part<'_> {
             out[i].velocity += share * slopes.velocity;
         };
         self.on_bodies(|force, i| add(i, &force.body_jacobians(&self.body(at, i)), 1.0));
-        // The Jacobian is with respect to the second body's position relative to the first; the first body's own has
-        // the opposite sign.
+        // The Jacobian is that of the force on the first body with respect to the relative position, from the first to
+        // the second. For the first body the position has the opposite sign, for the second body the force has.
         self.on_pairs(|force, i, j| {
             let slopes = force.pair_jacobians(&self.pair(at, i, j));
             add(i, &slopes, -1.0);

@@ -123,7 +123,8 @@ impl<'a> Search<'a> {
 
     fn run(mut self) -> Option<Closest> {
         let [first, second] = self.meshes;
-        // Each opened pair leaves one less than it has children, on as many levels as both trees have.
+        // Each opened pair leaves on the stack one pair less than it has children, on as many levels as both trees
+        // have together.
         let root = (0.0, (first.root(), second.root()));
         let mut stack: [Waiting; 2 * MAX_DEPTH * (WIDTH * WIDTH - 1) + 1] =
             [root; 2 * MAX_DEPTH * (WIDTH * WIDTH - 1) + 1];

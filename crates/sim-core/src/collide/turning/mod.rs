@@ -10,9 +10,9 @@
 //! takes the pair with the least time and certifies it anew from its pose at that time. If the certificate of a pair
 //! of boxes is too short to be worth its cost, the search splits the pair into pairs of their children. The children
 //! are searched only until the boxes may have moved past each other; then the pair of boxes returns to the queue, so
-//! that the cost follows the pairs that are near. At every time each two triangles belong to exactly one pair in the
-//! queue, or to a pair that was certified for longer. So no contact is before the least time in the queue: **a time of
-//! impact is never later than the first contact, and the answer "no contact" is proven.** Triangles nearer than
+//! that the cost follows the pairs that are near. At every time every two triangles belong to exactly one pair in the
+//! queue, or to a pair that was certified for longer. So no contact is before the least time in the queue: **a time
+//! of impact is never later than the first contact, and the answer "no contact" is proven.** Triangles nearer than
 //! [`NEAR`] roundings are a contact, unless they move apart or are certified to the end.
 //!
 //! Each time is computed from the poses at one time (`View`), in a frame at rest with the axes that the first shape
@@ -82,8 +82,8 @@ pub struct TurningTouch {
     /// The distance of the shapes at that time, m.
     pub distance: f64,
     /// The greatest distance that counts as a contact, m: 2^-46 of sizes, distance and path together. A greater
-    /// `distance` shows that the search stopped after 2^20 pairs; the shapes are apart until `time`. This takes shapes
-    /// that spin within each other's reach for many thousands of turns.
+    /// `distance` shows that the search stopped after 2^20 pairs; the shapes are apart until `time`. This happens
+    /// only to shapes that spin within each other's reach for many thousands of turns.
     pub near: f64,
     /// The nearest points at that time, of the first shape and of the second, relative to the first centre of mass, m.
     pub points: [DVec3; 2],

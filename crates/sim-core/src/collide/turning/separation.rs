@@ -233,8 +233,8 @@ impl<const L: usize> Placed<L> {
 }
 
 impl<const L: usize> Course<L> {
-    /// The height of the lowest point after time `t`, and the least speed of the points at that height. Each point
-    /// has the second derivative `bend - common`, cut at 0 to be no greater.
+    /// The height of the lowest point after time `t`, and the least speed of the points at that height. The second
+    /// derivative of a point's height is `bend - common`, or 0 if that is positive.
     #[inline]
     fn lowest(&self, t: f64, common: f64) -> (f64, f64) {
         let (mut lowest, mut slope) = (f64::INFINITY, f64::INFINITY);
