@@ -344,7 +344,7 @@ pub(crate) fn reflect(
         let part: Vec<Arms> = closing.iter().map(|&k| contacts[k]).collect();
         let wanted: Vec<f64> = part.iter().map(|c| -c.opening(twists)).collect();
         let mut given = multipliers(&part, yielding, &wanted);
-        // As in `reflect` without arms: in an exact projection the contacts lose as much energy as they give.
+        // As in `reflect` without arms: in an exact projection `given_up` equals `opened`.
         let mut change = vec![Twist::default(); twists.len()];
         push(&part, yielding, &mut change, &given);
         let pairs = || part.iter().zip(&given);
@@ -377,7 +377,7 @@ mod tests {
     use super::*;
     use crate::test_random::Random;
 
-    /// Columns of cubes that stand on one floor, with a contact at each corner.
+    /// Columns of bodies that stand on one floor, with a contact at each corner.
     fn columns(count: usize) -> (Vec<Arms>, Vec<Yielding>) {
         let mut yielding = vec![Yielding::NOTHING];
         let mut contacts = Vec::new();

@@ -95,8 +95,8 @@ pub fn reflect(
         let part: Vec<Joined> = closing.iter().map(|&k| contacts[k]).collect();
         let missing = missing_speeds(&part, velocity);
         let mut given = multipliers(&part, inverse_mass, &missing, Known::default());
-        // In an exact projection the contacts lose as much energy as they give. The ratio compensates for rounding,
-        // so that energy is conserved even if the equations are solved badly.
+        // In an exact projection `given_up` equals `opened`. The ratio compensates for rounding, so that energy is
+        // conserved even if the equations are solved badly.
         let mut change = vec![DVec3::ZERO; velocity.len()];
         push(&part, inverse_mass, &mut change, &given);
         let pairs = || part.iter().zip(&given);
