@@ -141,9 +141,9 @@ impl View<'_> {
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         if halvings > 0
-            && let Some(quarter) = self.where_bent((i, j), part, probe)?
+            && let Some(later) = self.where_bent((i, j), part, probe)?
         {
-            return self.find_in_halves((i, j), (part, &quarter), (halvings - 1, reach), probe);
+            return self.find_in_halves((i, j), (part.from, &later), (halvings - 1, reach), probe);
         }
         let length = part.length;
         let [first, second] = [(0, i), (1, j)].map(|(k, body)| self.parabola_of((k, body), part));
@@ -178,9 +178,9 @@ impl View<'_> {
         };
         // Where they touch they start again from where the method has them then: it has to be the same place.
         if halvings > -TO_TOUCH
-            && let Some(quarter) = self.where_bent((i, j), part, probe)?
+            && let Some(later) = self.where_bent((i, j), part, probe)?
         {
-            return self.find_in_halves((i, j), (part, &quarter), (halvings - 1, reach), probe);
+            return self.find_in_halves((i, j), (part.from, &later), (halvings - 1, reach), probe);
         }
         let at = touch.time;
         let place = first.0 + at * (first.1 + 0.5 * at * first.2);
@@ -203,18 +203,15 @@ impl View<'_> {
         Ok(Some(Event { kind, ..event }))
     }
 
-    /// The same on the halves of a part, of which the first one has its middle at a quarter.
+    /// The same on the halves of a part, by its start and both bodies after a quarter, a half and all of it.
     fn find_in_halves(
         &self,
         bodies: (usize, usize),
-        (part, quarter): (&Part<'_>, &Knot),
+        (from, [quarter, half, to]): (&Knot, &[Knot; 3]),
         depth: (i32, f64),
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
-        let Some([half, to]) = part.later else {
-            return Ok(None);
-        };
-        let first = Part::over([part.from, quarter, half]);
+        let first = Part::over([from, quarter, half]);
         let found = self.find_on_part(bodies, &first, depth, probe)?;
         if found.is_some() {
             return Ok(found);
@@ -224,14 +221,14 @@ impl View<'_> {
         self.find_on_part(bodies, &second, depth, probe)
     }
 
-    /// Both bodies after a quarter of a part, where one of them is off the parabola or the flight that leads over it by
-    /// more than rounding.
+    /// Both bodies after a quarter of a part, a half and all of it, if one of them is off the parabola or the flight
+    /// through its other three places by more than rounding after the quarter.
     fn where_bent(
         &self,
         (i, j): (usize, usize),
         part: &Part<'_>,
         probe: &mut Probe,
-    ) -> Result<Option<Knot>, (usize, Cause)> {
+    ) -> Result<Option<[Knot; 3]>, (usize, Cause)> {
         let (from, Some([half, to])) = (part.from, part.later) else {
             return Ok(None);
         };
@@ -245,7 +242,7 @@ impl View<'_> {
             let off = x + t * (v + 0.5 * t * a) - quarter.poses[k].position;
             let farthest = x.abs().max(to.poses[k].position.abs()).max_element();
             if off.abs().max_element() > 4.0 * f64::EPSILON * farthest {
-                return Ok(Some(quarter));
+                return Ok(Some([quarter, *half, *to]));
             }
             let Some(there) = quarter.poses[k].turned else {
                 continue;
@@ -254,7 +251,7 @@ impl View<'_> {
             let flight = self.flight_on((k, body), part, &mut made)?;
             let off = flight.map(|flight| there.rotation.inverse() * flight.rotation_at(t));
             if off.is_some_and(|off| off.xyz().abs().max_element() > 4.0 * f64::EPSILON) {
-                return Ok(Some(quarter));
+                return Ok(Some([quarter, *half, *to]));
             }
         }
         Ok(None)
