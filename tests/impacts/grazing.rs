@@ -1,8 +1,11 @@
-//! A body that just touches a floor of several, beside the case of grazing.
+//! A body that just touches a floor of several, beside the case of grazing; and trajectories that dip into another
+//! body and out again within a step.
 
-use kit::bodies::mesh_body;
-use kit::meshes::cube;
-use sim_core::{Body, BodyKind, DVec3};
+use kit::bodies::{body, mesh_body};
+use kit::meshes::{cube, mesh};
+use kit::random::Random;
+use kit::worlds::{GRAVITY, add_gravity, precise, world_of};
+use sim_core::{Body, BodyKind, DVec3, Force, Method, Settings, Shape, Vec3};
 
 use crate::worlds::{DT, run, world};
 
@@ -22,5 +25,94 @@ fn joints_of_a_floor_stop_nothing() {
         let mut world = world(DT, &bodies);
         assert!(run(&mut world, 200).is_empty(), "height {height}");
         assert_eq!(world.velocity(4), velocity);
+    }
+}
+
+/// A tip that points down, at the origin.
+fn tip() -> Shape {
+    let vertices = vec![
+        Vec3::ZERO,
+        Vec3::new(1.0, 1.0, 0.0),
+        Vec3::new(-1.0, 1.0, 1.0),
+        Vec3::new(-1.0, 1.0, -1.0),
+    ];
+    let triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+    Shape::Mesh(mesh(vertices, triangles))
+}
+
+/// What is thrown up touches a tip for some milliseconds about its highest place, a micrometre deep or less, in a step
+/// of a tenth of a second. Each impact is found, at its time.
+#[test]
+fn what_dips_into_a_tip_within_a_step_hits_it() {
+    let mut random = Random::splitmix(7);
+    let forms = [Shape::Mesh(cube(0.5)), Shape::Sphere { radius: 0.5 }];
+    for case in 0..200_u32 {
+        let form = &forms[case as usize % 2];
+        let depth = 10_f64.powf(random.from(-10.0, -4.0));
+        // When it is highest, from the start of the only step.
+        let (dt, highest) = (0.1, random.from(0.02, 0.08));
+        let sideways = match form {
+            Shape::Sphere { .. } => DVec3::ZERO,
+            _ => DVec3::new(0.3, 0.0, -0.2),
+        };
+        let up = GRAVITY * highest;
+        let below = 0.5 + 0.5 * up * highest - depth;
+        let start = DVec3::new(0.0, -below, 0.0) - highest * sideways;
+        let tip = Body {
+            kind: BodyKind::Static,
+            ..body(&tip(), DVec3::ZERO, DVec3::ZERO)
+        };
+        let thrown = body(form, start, sideways + up * DVec3::Y);
+        for bodies in [[tip.clone(), thrown.clone()], [thrown, tip]] {
+            let mut world = world_of(precise(dt), bodies);
+            add_gravity(&mut world, -GRAVITY * DVec3::Y);
+            let impacts = run(&mut world, 1);
+            let [impact] = &impacts[..] else {
+                panic!("{case}: {} impacts at a depth of {depth:e}", impacts.len());
+            };
+            let time = highest - (2.0 * depth / GRAVITY).sqrt();
+            // Some roundings of the height, and what is left between a sphere and a mesh, move it by this.
+            let rounding = 1e-13 / (2.0 * depth * GRAVITY).sqrt() + 1e-14;
+            let late = impact.time - time;
+            assert!(late.abs() < rounding, "{case}: {late:e} at {depth:e}");
+        }
+    }
+}
+
+/// The same where the force is no constant: a cube on a spring that turns back at the tip.
+#[test]
+fn what_a_spring_swings_into_a_tip_hits_it() {
+    let mut random = Random::splitmix(8);
+    for case in 0..20_u32 {
+        let depth = 10_f64.powf(random.from(-8.0, -4.0));
+        let (dt, highest) = (0.1, random.from(0.03, 0.07));
+        // It swings by 1 m about a place 1.5 m below the tip, at 3 rad/s.
+        let (rate, middle) = (3.0, -1.5 + depth);
+        let phase: f64 = -rate * highest;
+        let start = DVec3::new(0.0, middle + phase.cos(), 0.0);
+        let velocity = DVec3::new(0.0, -rate * phase.sin(), 0.0);
+        let tip = Body {
+            kind: BodyKind::Static,
+            ..body(&tip(), DVec3::ZERO, DVec3::ZERO)
+        };
+        let settings = Settings {
+            method: Method::named("dop853").expect("a method"),
+            ..precise(dt)
+        };
+        let mut world = world_of(settings, [tip, mesh_body(&cube(0.5), start, velocity)]);
+        world
+            .add_force(Force::Anchor {
+                body: 1,
+                point: None,
+                anchor: DVec3::new(0.0, middle, 0.0),
+                stiffness: rate * rate,
+                damping: 0.0,
+                rest_length: 0.0,
+            })
+            .expect("a spring");
+        let impacts = run(&mut world, 1);
+        assert_eq!(impacts.len(), 1, "{case}: at a depth of {depth:e}");
+        let late = impacts[0].time - (highest - (1.0 - depth).acos() / rate);
+        assert!(late.abs() < 1e-9, "{case}: {late:e} at {depth:e}");
     }
 }

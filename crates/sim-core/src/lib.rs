@@ -87,8 +87,9 @@
 //!   the rest of a step or a part of it: a body that slides on its faces moves exactly, a body that tips or spins in
 //!   contact loses energy to second order. A body that touches others too often in a step stands still for the rest
 //!   of it. Turning bodies that are placed in overlap pass through each other until they are apart.
-//! - The impact search follows trajectories that curve under forces along chords. It may miss a graze shallower than a
-//!   thousandth of the smaller body within a step, but never an overlap at its end.
+//! - The impact search follows trajectories that curve under forces along chords, and certificates prove that bodies
+//!   stay apart between them. For a pair that is already in contact it may miss a graze elsewhere on the two bodies
+//!   that is shallower than a thousandth of the smaller one within a step, but never an overlap at the end of the step.
 //! - In a heap whose contacts are solved at once, contacts close ahead of their time by up to a step, there are no
 //!   flights shorter than a step, and friction acts at the start of the step. These errors shrink with the step.
 //! - The discrete modes do not see a body that tunnels through another within one step, and a body that is put back

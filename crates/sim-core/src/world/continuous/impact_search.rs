@@ -1,10 +1,10 @@
 //! When two bodies on their trajectories have their next impact.
 //!
-//! Geometry knows straight motion. A trajectory that bends is cut where its chord would depart from it
-//! by more than [`FLATNESS`] of the smaller body; what is shallower may be missed for the rest of
-//! the step, and only that. Where a chord has an impact, the trajectory is cut closely before and
+//! The exact search knows straight motion only. A trajectory that bends is cut into chords that depart from it
+//! by at most [`FLATNESS`] of the smaller body. Where a chord has an impact, the trajectory is cut closely before and
 //! after it and searched again: the departure falls with the square of the length, so that after a
-//! few rounds it is lost in the rounding, and the impact is one of the trajectory itself.
+//! few rounds it is lost in the rounding, and the impact is one of the trajectory itself. Grazes between chords,
+//! shallower than their departure, are found by certificates ([`PairSearch::find_graze`]).
 //!
 //! No impact is lost between one search and the next, though a sheet has no inside in which it could
 //! be found later. Let `r` be more than all that rounding moves a placed vertex by along the normal of
@@ -90,7 +90,10 @@ impl View<'_> {
             && self.motion().coupled_group(j).is_none();
         match is_parabola && search.is_solid {
             true => search.find_on_parabola(probe),
-            false => search.find_on_chords(probe),
+            false => {
+                let found = search.find_on_chords(probe)?;
+                search.find_graze(found, probe)
+            }
         }
     }
 }
@@ -119,6 +122,43 @@ impl PairSearch<'_> {
         let departure = self.deviation.length() * length * length;
         let time_of = |knot: f64| start + length * (knot / chords);
         self.find_on_run(((0.0, from), (chords, to)), departure, &time_of, probe)
+    }
+
+    /// The first impact, of which chords have found one or none: before it there may be one into which the
+    /// trajectory dips between two ends of chords.
+    ///
+    /// Certificates tell until when bodies are apart for sure. From there on chords are so short at first that they
+    /// do not depart from the trajectory by more than rounding, and then twice as long each: one of them
+    /// ends where the bodies are in each other.
+    fn find_graze(
+        &self,
+        found: Option<Event>,
+        probe: &mut Probe,
+    ) -> Result<Option<Event>, (usize, Cause)> {
+        let until = found.as_ref().map_or(self.end(), |event| event.time);
+        let length = until - self.start();
+        let is_straight = (self.deviation * length * length).cmple(self.resolution);
+        if is_straight.all() || self.is_in_contact {
+            return Ok(found);
+        }
+        let near = self
+            .view
+            .find_certified_impact((self.i, self.j), 1.0, probe)?;
+        let Some(near) = near.filter(|near| near.time < until) else {
+            return Ok(found);
+        };
+        let mut from = (near.time, self.offset_at(near.time, probe)?);
+        let mut length = libm::sqrt(self.resolution.length() / self.deviation.length());
+        while from.0 < until {
+            let time = (from.0 + length).min(until);
+            let to = (time, self.offset_at(time, probe)?);
+            if let Some(event) = self.find_on_chord((from, to), 0, probe)? {
+                return Ok(Some(event));
+            }
+            from = to;
+            length *= 2.0;
+        }
+        Ok(found)
     }
 
     /// The first impact on a run of chords, between two knots by number, from whose straight line the

@@ -66,6 +66,20 @@ impl View<'_> {
         (i, j): (usize, usize),
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
+        // What has lain on each other at the end of the last step does so where this one starts.
+        let is_first = self.paths.version[i] == 0 && self.paths.version[j] == 0;
+        let reach = if is_first { REACH } else { 1.0 };
+        self.find_certified_impact((i, j), reach, probe)
+    }
+
+    /// The same of any two bodies, by certificates: until then they are apart. Those that are no farther apart at the
+    /// start than `reach` times what is a contact lie on each other there.
+    pub(super) fn find_certified_impact(
+        &self,
+        (i, j): (usize, usize),
+        reach: f64,
+        probe: &mut Probe,
+    ) -> Result<Option<Event>, (usize, Cause)> {
         if self.stands(i) && self.stands(j) {
             return Ok(None);
         }
@@ -78,12 +92,12 @@ impl View<'_> {
                 later: None,
                 length: end - start,
             };
-            return self.find_on_part((i, j), &part, 0, probe);
+            return self.find_on_part((i, j), &part, (0, reach), probe);
         }
         let half = self.knot((i, j), 0.5 * (start + end), probe)?;
         let last = self.knot((i, j), end, probe)?;
         let part = Part::over([&first, &half, &last]);
-        self.find_on_part((i, j), &part, MAX_HALVINGS, probe)
+        self.find_on_part((i, j), &part, (MAX_HALVINGS, reach), probe)
     }
 
     /// Both bodies at a time.
@@ -123,13 +137,13 @@ impl View<'_> {
         &self,
         (i, j): (usize, usize),
         part: &Part<'_>,
-        halvings: i32,
+        (halvings, reach): (i32, f64),
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         if halvings > 0
-            && let Some(quarter) = self.where_bent((i, j), part, probe)?
+            && let Some(later) = self.where_bent((i, j), part, probe)?
         {
-            return self.find_in_halves((i, j), (part, &quarter), halvings - 1, probe);
+            return self.find_in_halves((i, j), (part.from, &later), (halvings - 1, reach), probe);
         }
         let length = part.length;
         let [first, second] = [(0, i), (1, j)].map(|(k, body)| self.parabola_of((k, body), part));
@@ -153,9 +167,6 @@ impl View<'_> {
             turning: bodies.turning_of(j, flight),
             ..b
         };
-        // What has lain on each other at the end of the last step does so where this one starts.
-        let is_first = self.paths.version[i] == 0 && self.paths.version[j] == 0;
-        let reach = if is_first { REACH } else { 1.0 };
         let care = Care {
             reach,
             ..Care::TO_GO_ON
@@ -167,9 +178,9 @@ impl View<'_> {
         };
         // Where they touch they start again from where the method has them then: it has to be the same place.
         if halvings > -TO_TOUCH
-            && let Some(quarter) = self.where_bent((i, j), part, probe)?
+            && let Some(later) = self.where_bent((i, j), part, probe)?
         {
-            return self.find_in_halves((i, j), (part, &quarter), halvings - 1, probe);
+            return self.find_in_halves((i, j), (part.from, &later), (halvings - 1, reach), probe);
         }
         let at = touch.time;
         let place = first.0 + at * (first.1 + 0.5 * at * first.2);
@@ -192,35 +203,32 @@ impl View<'_> {
         Ok(Some(Event { kind, ..event }))
     }
 
-    /// The same on the halves of a part, of which the first one has its middle at a quarter.
+    /// The same on the halves of a part, by its start and both bodies after a quarter, a half and all of it.
     fn find_in_halves(
         &self,
         bodies: (usize, usize),
-        (part, quarter): (&Part<'_>, &Knot),
-        halvings: i32,
+        (from, [quarter, half, to]): (&Knot, &[Knot; 3]),
+        depth: (i32, f64),
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
-        let Some([half, to]) = part.later else {
-            return Ok(None);
-        };
-        let first = Part::over([part.from, quarter, half]);
-        let found = self.find_on_part(bodies, &first, halvings, probe)?;
+        let first = Part::over([from, quarter, half]);
+        let found = self.find_on_part(bodies, &first, depth, probe)?;
         if found.is_some() {
             return Ok(found);
         }
         let middle = self.knot(bodies, 0.5 * (half.time + to.time), probe)?;
         let second = Part::over([half, &middle, to]);
-        self.find_on_part(bodies, &second, halvings, probe)
+        self.find_on_part(bodies, &second, depth, probe)
     }
 
-    /// Both bodies after a quarter of a part, where one of them is off the parabola or the flight that leads over it by
-    /// more than rounding.
+    /// Both bodies after a quarter of a part, a half and all of it, if one of them is off the parabola or the flight
+    /// through its other three places by more than rounding after the quarter.
     fn where_bent(
         &self,
         (i, j): (usize, usize),
         part: &Part<'_>,
         probe: &mut Probe,
-    ) -> Result<Option<Knot>, (usize, Cause)> {
+    ) -> Result<Option<[Knot; 3]>, (usize, Cause)> {
         let (from, Some([half, to])) = (part.from, part.later) else {
             return Ok(None);
         };
@@ -234,7 +242,7 @@ impl View<'_> {
             let off = x + t * (v + 0.5 * t * a) - quarter.poses[k].position;
             let farthest = x.abs().max(to.poses[k].position.abs()).max_element();
             if off.abs().max_element() > 4.0 * f64::EPSILON * farthest {
-                return Ok(Some(quarter));
+                return Ok(Some([quarter, *half, *to]));
             }
             let Some(there) = quarter.poses[k].turned else {
                 continue;
@@ -243,7 +251,7 @@ impl View<'_> {
             let flight = self.flight_on((k, body), part, &mut made)?;
             let off = flight.map(|flight| there.rotation.inverse() * flight.rotation_at(t));
             if off.is_some_and(|off| off.xyz().abs().max_element() > 4.0 * f64::EPSILON) {
-                return Ok(Some(quarter));
+                return Ok(Some([quarter, *half, *to]));
             }
         }
         Ok(None)
