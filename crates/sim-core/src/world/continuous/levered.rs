@@ -219,7 +219,7 @@ impl Motion<'_> {
         })
     }
 
-    /// The torque of all forces on a turning body at the start of its trajectory, N m.
+    /// The torque on a turning body of all forces other than contacts, at the start of its trajectory, N m.
     pub(super) fn torque_there(&self, slot: usize, body: usize) -> DVec3 {
         let applied = self.paths.applied_torque[slot];
         let known = match self.is_turning_bent(body) {

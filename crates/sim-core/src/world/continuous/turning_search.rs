@@ -221,8 +221,8 @@ impl View<'_> {
         self.find_on_part(bodies, &second, depth, probe)
     }
 
-    /// Both bodies after a quarter, a half and all of a part, if one of them is not a parabola or flight up to
-    /// rounding: its pose after the quarter differs from the curve through its three other poses.
+    /// Both bodies after a quarter, a half and all of a part, if one of them does not move on a parabola and a flight
+    /// up to rounding: after the quarter its pose is off the curve through its three other poses.
     fn where_bent(
         &self,
         (i, j): (usize, usize),
