@@ -3,8 +3,8 @@
 //!
 //! Bodies in contact keep a small gap ([`Layout::hover_gap`](super::super::layout::Layout::hover_gap)). It is more
 //! than rounding and an iterative solver move them in a step, so that the impact search does not see the surface that
-//! supports them, and sees every other one. The same exact search also measures contacts: a contact exists if it
-//! stops a short motion of the body against the normal, and its gap is the length of that motion.
+//! supports them, and sees every other one. The same exact search also measures contacts. It moves the body a short
+//! way against the normal: a contact exists if this motion is stopped, and its gap is the length of the motion.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -164,7 +164,7 @@ impl View<'_> {
         let near = 8.0 * hover;
         let (gap, normal, point) = match self.surface_below(&constraint, offset, near) {
             // Bodies do not meet. A surface that seems to be above the present position is another one, through which
-            // the body was lifted. Of the surface of this contact only the last measurement is known.
+            // the body was lifted. All that is known of this contact is that the bodies touched.
             Some(below) if below.distance < 0.0 => (0.0, constraint.normal, constraint.point),
             Some(below) => below.along(constraint.normal),
             None if reach <= near => return None,

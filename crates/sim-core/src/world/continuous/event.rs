@@ -53,7 +53,8 @@ pub(super) struct Event {
     pub(super) outcome: Outcome,
     /// The speed with which forces would close the contact in a step, m/s.
     pub(super) load_speed: f64,
-    /// The distance of the bodies at the event, which is a little before the contact, m.
+    /// The distance at which the bodies are taken for in contact when the event is resolved, possibly before its
+    /// time, m.
     pub(super) gap: f64,
 }
 

@@ -156,7 +156,8 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// The angular momentum that a first-order method must still give to a body when its trajectory starts.
+    /// What a first-order method adds to the angular momentum on the trajectory of a body to give its own at the
+    /// start of that trajectory, kg m²/s.
     pub(super) fn kick_left(&self, slot: usize, body: usize) -> DVec3 {
         let left = self.scene.settings.dt - self.paths.since[body];
         let kick = self.paths.kicks[slot];

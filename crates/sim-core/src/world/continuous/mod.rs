@@ -103,7 +103,7 @@ pub(super) struct Continuous {
 }
 
 impl Continuous {
-    /// The data of a world read from a snapshot, without caches.
+    /// The data of a world that continues without caches, because it was read from a snapshot or a body was removed.
     pub(super) fn resumed(placed: bool, knows_near: bool, bundled: Bundled) -> Continuous {
         Continuous {
             placed,

@@ -11,8 +11,9 @@
 //! There are two more cases for bodies with a restitution less than one. They come to rest if their remaining speed
 //! moves them by no more than a rounding in a step. They also come to rest if they are caught among others, so that
 //! impacts follow each other faster and faster though nothing presses these two together (inelastic collapse;
-//! McNamara, Young 1994, "Inelastic collapse in two dimensions"). Then their speed is a small part of the speed at
-//! which this began, or of what forces give to each of them if they lie on something.
+//! McNamara, Young 1994, "Inelastic collapse in two dimensions"). This requires that their remaining speed is a small
+//! part of the speed at which the impacts began, or of the speed that forces give to each of them if they lie on
+//! something.
 
 use glam::DVec3;
 

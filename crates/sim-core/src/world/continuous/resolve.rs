@@ -91,7 +91,7 @@ impl EventLoop<'_> {
         Ok(())
     }
 
-    /// Adds to impacts that come to rest the later ones that soon follow at their islands: no farther away than the
+    /// Adds to impacts that come to rest the later ones that soon follow in their islands: no farther away than the
     /// height of the shortest flight. If a body comes to rest again and again in a step, all later impacts of its
     /// island are added. In a heap nearly all impacts are of this kind, and each resolved alone would move all other
     /// bodies.

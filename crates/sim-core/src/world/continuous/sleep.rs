@@ -35,7 +35,7 @@ impl View<'_> {
         self.asleep.get(body).is_some_and(|&asleep| asleep)
     }
 
-    /// Whether two bodies are both asleep or stand still as immovable bodies.
+    /// Whether each of two bodies is asleep, or immovable and at rest.
     pub(super) fn sleep_together(&self, i: usize, j: usize) -> bool {
         let rests = |body: usize| {
             self.is_asleep(body)

@@ -45,7 +45,7 @@ pub(in crate::world) struct Trajectories {
     /// The motion of each body at the start of its trajectory, and the time of that start, s from the step's start.
     pub(super) start: State,
     pub(super) since: Vec<f64>,
-    /// The motion at the end of the step, or at the horizon; undefined outside of a step.
+    /// The motion at the end of the step, or at the horizon; not valid outside of a step.
     pub(in crate::world) end: State,
     pub(in crate::world) horizons: Horizons,
     /// How often the trajectory of each body has changed in this step. Events of older versions are void.

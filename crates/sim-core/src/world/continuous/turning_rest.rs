@@ -400,8 +400,8 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// Moves bodies, and the bodies in their way with them. If one of them has no room, no body is moved, and that
-    /// body is returned.
+    /// Moves bodies, and the bodies in their way with them. If one of the given bodies has no room, no body is moved,
+    /// and that body is returned.
     fn move_by(
         &mut self,
         ways: impl Iterator<Item = (usize, DVec3)>,

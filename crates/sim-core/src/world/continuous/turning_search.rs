@@ -192,7 +192,8 @@ impl View<'_> {
             face: None,
         };
         let TurningTouch { near, distance, .. } = touch;
-        // A contact at the very end of the step belongs to the start of the next one.
+        // A contact at the very end of the step would be one at the start of the next step. So its time is just
+        // before the end.
         let time = (part.from.time + at).min(self.scene.settings.dt.next_down());
         let event = Event::impact(time, (i, j), contact, near, &self.paths.version);
         // If the search has stopped early, it continues from there.

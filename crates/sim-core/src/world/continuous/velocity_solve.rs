@@ -17,8 +17,8 @@ use crate::impulse::{Known, greatest, project_with};
 const UNSOLVED: f64 = 1e-6;
 
 impl ContactSolver<'_> {
-    /// Gives the bodies of an island velocities with which no contact closes faster than its target allows, and finds
-    /// the contacts that open.
+    /// Gives the bodies of an island velocities with which no contact closes faster than its target allows. In a heap
+    /// no contact that forces press together opens for less than the shortest flight.
     pub(super) fn solve_velocities(
         &mut self,
         island: &Island,
