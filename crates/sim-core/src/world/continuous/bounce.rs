@@ -16,8 +16,8 @@ use crate::{
 };
 
 impl EventLoop<'_> {
-    /// Lets the contacts of some bodies bounce that an impulse has made closing, and then the contacts of the bodies
-    /// that these push.
+    /// Lets the contacts of some bodies bounce that close after an impulse, and then the contacts of the bodies that
+    /// these push.
     pub(super) fn bounce_contacts(
         &mut self,
         seeds: &mut Vec<usize>,

@@ -53,7 +53,7 @@ pub(super) struct Event {
     pub(super) outcome: Outcome,
     /// The speed with which forces would close the contact in a step, m/s.
     pub(super) load_speed: f64,
-    /// The distance at which the bodies are taken for in contact when the event is resolved, possibly before its
+    /// The distance at which the bodies are taken to be in contact when the event is resolved, possibly before its
     /// time, m.
     pub(super) gap: f64,
 }

@@ -125,8 +125,8 @@ impl PairSearch<'_> {
         self.find_on_run(((0.0, from), (chords, to)), departure, &time_of, probe)
     }
 
-    /// The first impact, if the search on chords has found `found`. Before that, the trajectory may touch the other
-    /// body between two ends of chords.
+    /// The first impact; `found` is the one that the search on chords has found, if any. Before it, the trajectory
+    /// may dip into the other body between two ends of chords.
     ///
     /// Certificates give a time until which the bodies are proven apart. From there on, the first chord is so short
     /// that it does not depart from the trajectory by more than rounding, and each further one is twice as long. One

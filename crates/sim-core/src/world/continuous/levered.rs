@@ -18,8 +18,8 @@ use super::{
 };
 use crate::rotation::{Flight, FlightError, chart};
 
-/// The greatest number of corrections of a flight until it leads to the given rotation. Each reduces the error by a
-/// factor of about the angle of the step.
+/// The greatest number of corrections of a flight until it leads to the given rotation. Each multiplies the error by
+/// about the angle of the step, rad.
 const CORRECTIONS: u32 = 60;
 
 /// The constant torque that changes one angular momentum into another in a time, N m.

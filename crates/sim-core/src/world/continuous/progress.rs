@@ -88,7 +88,7 @@ impl Progress {
         self.changes += 1;
     }
 
-    /// Counts the resolved events without an impulse.
+    /// Counts the resolved events that are not bounces.
     pub(super) fn note_changes(&mut self, group: &[Event]) {
         let is_change = |event: &&Event| event.outcome == Outcome::Rest;
         self.changes += group.iter().filter(is_change).count() as u64;

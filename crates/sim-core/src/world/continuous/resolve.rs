@@ -282,7 +282,7 @@ impl ContactSolver<'_> {
         Ok(())
     }
 
-    /// Bundles an island if one of its bodies is bundled, and returns whether it is so.
+    /// Bundles an island if one of its bodies is bundled. Returns whether the island is bundled.
     pub(super) fn spread_bundle(&mut self, island: &Island) -> bool {
         let is_bundled = island
             .bodies

@@ -119,7 +119,7 @@ fn a_failed_step_reports_nothing() {
     let bodies = [
         body(ball(0.5), v(-1.0, 0.0, 0.0), v(9.0, 0.0, 0.0)),
         body(ball(0.5), v(0.1, 0.0, 0.0), DVec3::ZERO),
-        // Hits the light ball, which then has nearly twice this speed, beyond the range.
+        // Hits the light ball, which leaves at nearly twice the speed of this one, beyond the range.
         Body {
             mass: 1e6,
             ..body(ball(0.5), v(50.0, 0.0, 0.0), v(6e99, 0.0, 0.0))

@@ -416,8 +416,8 @@ impl Pressing<'_> {
         (wanted, is_found)
     }
 
-    /// The greatest distance that a gap lacks at the examined times, m, extrapolated to the end; negative if the gap
-    /// is never too small.
+    /// The greatest distance that a gap lacks at the examined times, m, scaled to the end of the duration; negative
+    /// if the gap is never too small.
     fn missing(&self, k: usize, course: &Course) -> f64 {
         let (from, room) = (self.touching[k].gap.min(self.room[k]), self.room[k]);
         let at_first = -0.5 * self.length * self.length * self.growth(k, course);
