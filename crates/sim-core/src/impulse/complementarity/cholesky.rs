@@ -1,40 +1,40 @@
-//! The Cholesky factor `L` of a sparse symmetric matrix `L Lᵀ` of 3 × 3 blocks, one row of blocks a body.
+//! The Cholesky factor `L` of a sparse symmetric matrix `L Lᵀ` of 3 × 3 blocks, with one row of blocks for each body.
 //!
-//! Rows are eliminated in the order of least degree (Tinney, Walker 1967, "Direct solutions of sparse
-//! network equations by optimally ordered triangular factorization", scheme 2), so that `L` has little
-//! fill-in. Each column is computed from those to its left (George, Liu 1981,
-//! "Computer solution of large sparse positive definite systems", sec. 5).
+//! Rows are eliminated in the order of least degree (Tinney, Walker 1967, "Direct solutions of sparse network
+//! equations by optimally ordered triangular factorization", scheme 2), so that `L` has little fill-in. Each column
+//! is computed from those to its left (George, Liu 1981, "Computer solution of large sparse positive definite
+//! systems", sec. 5).
 
 use alloc::{vec, vec::Vec};
 use glam::{DMat3, DVec3};
 
-/// No place in a list.
+/// No position in a list.
 const NONE: u32 = u32::MAX;
 
-/// Where the factor may be other than zero.
+/// The blocks of the factor that may be other than zero.
 #[derive(Clone, Debug)]
 pub(super) struct Pattern {
     /// The place of each row in the order of elimination.
     pub(super) place: Vec<u32>,
-    /// Where the blocks below the diagonal of each column begin, by places, and where the last end.
+    /// The index of the first block below the diagonal of each column, by place, and the end of the last column.
     begin: Vec<usize>,
     /// The row of each block, by place, ascending in each column.
     rows: Vec<u32>,
 }
 
-/// The factor. Rows and columns are those of places.
+/// The factor. Rows and columns are in the order of elimination.
 pub(super) struct Cholesky<'a> {
     pattern: &'a Pattern,
     blocks: Vec<DMat3>,
-    /// Of the diagonal blocks of `L`.
+    /// The inverses of the diagonal blocks of `L`.
     inverse: Vec<DMat3>,
     memory: Memory,
 }
 
-/// What factoring needs beside the factor, by column.
+/// Memory for the factorization, by column.
 struct Memory {
-    /// The columns whose next block lies in a row, as lists: of each row the first, of each column the
-    /// next in its list, and of each column that block.
+    /// Linked lists of the columns whose next block is in a row: the first column for each row, the next column in
+    /// the list for each column, and the index of that block for each column.
     first: Vec<u32>,
     next: Vec<u32>,
     at: Vec<usize>,
@@ -42,10 +42,10 @@ struct Memory {
 }
 
 impl Pattern {
-    /// Of matrices of so many rows of blocks that are zero but on the diagonal and where two rows are
-    /// tied.
+    /// The pattern of matrices with `count` rows of blocks, whose blocks are zero except on the diagonal and between
+    /// two tied rows.
     pub(super) fn of_graph(count: usize, ties: impl Iterator<Item = (usize, usize)>) -> Pattern {
-        // By row, a bit for each row that it is tied to and that has no place yet.
+        // By row, one bit for each row that is tied to it and has no place yet.
         let words = count.div_ceil(64);
         let mut near = vec![0_u64; count * words];
         for (i, j) in ties {
@@ -57,7 +57,7 @@ impl Pattern {
         let mut degree: Vec<u32> = (0..count).map(|row| size(&near[of_row(row)])).collect();
         let (mut place, mut own) = (vec![NONE; count], vec![0; words]);
         let (mut begin, mut rows) = (vec![0], Vec::new());
-        // Those that have no place, in order.
+        // The rows without a place, in order.
         let mut left: Vec<u32> = (0..count as u32).collect();
         for step in 0..count {
             let least = (0..left.len()).min_by_key(|&at| degree[left[at] as usize]);
@@ -67,7 +67,7 @@ impl Pattern {
             let row = left.remove(least) as usize;
             place[row] = step as u32;
             own.copy_from_slice(&near[of_row(row)]);
-            // Whatever is tied to it is tied together from now on.
+            // From now on, all rows tied to this row are tied to each other.
             for other in bits(&own) {
                 let set = &mut near[of_row(other)];
                 for (word, own) in set.iter_mut().zip(&own) {
@@ -89,7 +89,7 @@ impl Pattern {
         Pattern { place, begin, rows }
     }
 
-    /// The block of two places that are tied.
+    /// The index of the block between two tied places.
     pub(super) fn between(&self, i: usize, j: usize) -> usize {
         let (column, row) = (i.min(j), i.max(j) as u32);
         let first = self.begin[column];
@@ -114,7 +114,7 @@ impl Cholesky<'_> {
         }
     }
 
-    /// Begins with a matrix that is a multiple of one in each row.
+    /// Begins with a matrix whose diagonal blocks are multiples of the identity.
     pub(super) fn begin(&mut self, diagonal: &[f64]) {
         self.blocks.fill(DMat3::ZERO);
         for (block, &value) in self.inverse.iter_mut().zip(diagonal) {
@@ -127,12 +127,12 @@ impl Cholesky<'_> {
         self.inverse[row] += *block;
     }
 
-    /// Takes a symmetric block away [between](Pattern::between) two rows.
+    /// Subtracts a symmetric block [between](Pattern::between) two rows.
     pub(super) fn take_between(&mut self, at: usize, block: &DMat3) {
         self.blocks[at] -= *block;
     }
 
-    /// Factors what has been added, which has to be positive.
+    /// Factors the matrix, which must be positive definite.
     pub(super) fn factor(&mut self) {
         let Cholesky {
             pattern: Pattern { begin, rows, .. },
@@ -146,7 +146,7 @@ impl Cholesky<'_> {
                     sums,
                 },
         } = self;
-        // Puts a column into the list of the row in which its next block lies.
+        // Adds a column to the list of the row that has its next block.
         let pass_on = |column: usize, place: usize, first: &mut [u32], next: &mut [u32]| {
             if place < begin[column + 1] {
                 let row = rows[place] as usize;
@@ -186,7 +186,7 @@ impl Cholesky<'_> {
         }
     }
 
-    /// Solves for a right-hand side, in its place.
+    /// Solves for a right-hand side, in place.
     pub(super) fn solve(&self, values: &mut [DVec3]) {
         let Pattern { begin, rows, .. } = self.pattern;
         for (column, inverse) in self.inverse.iter().enumerate() {
@@ -217,7 +217,7 @@ fn transposed_times(matrix: &DMat3, v: DVec3) -> DVec3 {
     )
 }
 
-/// The places of the bits of a set, ascending.
+/// The indices of the bits of a set, ascending.
 fn bits(set: &[u64]) -> impl Iterator<Item = usize> {
     set.iter().enumerate().flat_map(|(word, &bits)| {
         let mut left = bits;
@@ -229,10 +229,10 @@ fn bits(set: &[u64]) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The inverse of the lower triangle `l` with `l lᵀ` a positive matrix.
+/// The inverse of the lower triangle `l` with `l lᵀ` equal to a positive definite matrix.
 fn inverse_of_root(matrix: DMat3) -> DMat3 {
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
-    // What rounding leaves of nothing would be no number.
+    // Rounding may leave a value of zero or less, whose root would be no valid divisor.
     let root = |value: f64| libm::sqrt(value.max(f64::MIN_POSITIVE));
     let a = 1.0 / root(x.x);
     let (b, c) = (x.y * a, x.z * a);

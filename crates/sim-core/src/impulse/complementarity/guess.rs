@@ -1,19 +1,18 @@
-//! Which contacts push, found from a guess.
+//! The contacts that push, found from a guess.
 
 use super::{FEW, Few, Matrix, ROUNDING, sum};
 
-/// Guesses at which contacts push; a few are enough, by far.
+/// The greatest number of guesses which contacts push; a few are by far enough.
 const GUESSES: usize = 40;
 
-/// Part of the largest speed that is missing where equations have no solution: parallel contacts of the
-/// same bodies that want different speeds cannot all push.
+/// The residual, as a fraction of the largest speed, above which the equations have no solution: parallel contacts of
+/// the same bodies that want different speeds cannot all push.
 const UNSOLVED: f64 = 1e-9;
 
 impl Matrix {
-    /// Contacts are taken to push or not to push by guess, the equations of those that push solved,
-    /// and the guess mended where one would pull or one that does not push closes (Júdice, Pires
-    /// 1994, "A block principal pivoting algorithm for large-scale strictly monotone linear
-    /// complementarity problems").
+    /// Guesses which contacts push, and solves the equations of these. It then corrects the guess: a contact that
+    /// would pull stops pushing, and one that does not push but closes starts to push (Júdice, Pires 1994, "A block
+    /// principal pivoting algorithm for large-scale strictly monotone linear complementarity problems").
     pub(super) fn guess(&self, wanted: &Few, held: &[bool]) -> Option<Few> {
         let count = self.count;
         let is_held = |k: usize| held.get(k) == Some(&true);
@@ -43,7 +42,7 @@ impl Matrix {
                 }
                 return Some(pushed);
             }
-            // All at once is fast; one at a time, from the last on, does not go in circles.
+            // To correct all contacts at once is fast. To correct one at a time, from the last on, does not cycle.
             let mended = match guess < GUESSES / 2 {
                 true => wrong,
                 false => 1 << u32::ilog2(wrong),
@@ -55,8 +54,8 @@ impl Matrix {
         None
     }
 
-    /// The impulses of those that push by conjugate gradients (Hestenes, Stiefel 1952), which know no
-    /// order among contacts, and where there are many solutions find the one that shares best.
+    /// The impulses of the pushing contacts, by conjugate gradients (Hestenes, Stiefel 1952). The method does not
+    /// depend on the order of contacts, and if there are many solutions, it finds the one that shares the load best.
     fn solve(&self, wanted: &Few, pushes: &[bool; FEW]) -> Few {
         let only = |mut values: Few| {
             for (value, &pushes) in values.iter_mut().zip(pushes) {
@@ -71,7 +70,7 @@ impl Matrix {
         let mut best = (f64::INFINITY, given);
         let scale = wanted.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
         let enough = (f64::EPSILON * scale) * (f64::EPSILON * scale);
-        // Rounding leaves a part of the last bits in each run, so that one more is worth it.
+        // Each run leaves a part of the last bits to rounding, so that further runs help.
         for _ in 0..3 {
             let mut residual = only(self.missing(wanted, &given));
             let mut size = dot(&residual, &residual);

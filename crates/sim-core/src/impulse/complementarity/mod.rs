@@ -10,14 +10,14 @@ use alloc::vec::Vec;
 
 use super::{Joined, Known};
 
-/// Up to so many contacts are solved in sums that know no order.
+/// The greatest number of contacts that are solved with sums that do not depend on the order of contacts.
 pub(super) const FEW: usize = 8;
 
-/// Part of the largest speed that is lost in solving.
+/// The error of the solution, as a fraction of the largest speed.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The least impulses after which no contact closes as far as it is wanted to open, and those that are held
-/// open just as far: none negative but of contacts that are held.
+/// The least impulses after which each contact opens at least as fast as wanted, and held contacts exactly so. Only
+/// held contacts may have negative impulses.
 pub(super) fn multipliers(
     contacts: &[Joined],
     inverse_mass: &[f64],
@@ -33,12 +33,12 @@ pub(super) fn multipliers(
 /// A number for each of a few contacts.
 type Few = [f64; FEW];
 
-/// The matrix `N M⁻¹ Nᵀ` of a few contacts; rows and columns scaled, so that heavy bodies count like light
-/// ones.
+/// The Delassus operator `N M⁻¹ Nᵀ` of a few contacts. Rows and columns are scaled, so that heavy bodies count like
+/// light ones.
 struct Matrix {
     count: usize,
     rows: [Few; FEW],
-    /// Of each row and column, powers of two.
+    /// The scale of each row and column, a power of two.
     scale: Few,
 }
 
@@ -75,7 +75,7 @@ impl Matrix {
         Some(pairs.map(|(given, scale)| given * scale).collect())
     }
 
-    /// What is left of the wanted change after some impulses.
+    /// The residual of the wanted change after some impulses.
     fn missing(&self, wanted: &Few, given: &Few) -> Few {
         let mut missing = [0.0; FEW];
         for (k, row) in self.rows[..self.count].iter().enumerate() {
@@ -86,8 +86,8 @@ impl Matrix {
     }
 }
 
-/// A sum that does not depend on the order of its terms, and that only changes its sign with theirs:
-/// positive and negative terms apart, each from the least on.
+/// A sum that does not depend on the order of its terms, and that only changes its sign if the terms change theirs.
+/// Positive and negative terms are added separately, each from the least on.
 pub(super) fn sum(terms: impl Iterator<Item = f64>) -> f64 {
     let (mut few, mut count, mut many) = ([0.0_f64; 16], 0, Vec::new());
     for term in terms.filter(|&term| term != 0.0) {

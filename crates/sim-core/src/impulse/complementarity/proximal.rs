@@ -1,18 +1,18 @@
 //! The lambdas of many contacts: which contacts push, and how much.
 //!
-//! The multipliers `λ` of contacts that are to open by `w` minimise `½ λᵀ A λ - λᵀ w`, none of them
-//! negative except those of contacts that are held. The Delassus operator `A = N M⁻¹ Nᵀ` may be singular, because
-//! contacts may share a load in many ways. The proximal point method (Rockafellar 1976, "Augmented Lagrangians and
-//! applications of the proximal point algorithm in convex programming") goes to the minimum by steps that
-//! each add `½ (λ' - λ)ᵀ R⁻¹ (λ' - λ)`. With large `R` few steps are needed, and each is a minimum of
+//! The multipliers `λ` of contacts that are to open by `w` minimise `½ λᵀ A λ - λᵀ w`, with none of them negative
+//! except those of held contacts. The Delassus operator `A = N M⁻¹ Nᵀ` may be singular, because contacts may share a
+//! load in many ways. The proximal point method (Rockafellar 1976, "Augmented Lagrangians and applications of the
+//! proximal point algorithm in convex programming") reaches the minimum in steps that each add
+//! `½ (λ' - λ)ᵀ R⁻¹ (λ' - λ)`. With large `R` few steps are needed, and each is a minimum of
 //!
 //! ```text
-//! ½ dᵀ M d + Σ ½ p² / ρ,    p = λ + ρ (w - N d),  or nothing where that pulls
+//! ½ dᵀ M d + Σ ½ p² / ρ,    p = λ + ρ (w - N d),  or 0 if that would pull
 //! ```
 //!
-//! over changes of velocity `d`. This function has one minimum, no constraints, and quadratic pieces: Newton's
-//! method finds the minimum (Li, Sun, Toh 2018, "A highly efficient semismooth Newton augmented Lagrangian method"),
-//! with the matrix `M + Σ ρ n nᵀ` over contacts that push, 3 × 3 a body. The height of a heap does not make it
+//! over changes of velocity `d`. This function has one minimum, no constraints, and quadratic pieces: Newton's method
+//! finds the minimum (Li, Sun, Toh 2018, "A highly efficient semismooth Newton augmented Lagrangian method"), with
+//! the matrix `M + Σ ρ n nᵀ` over contacts that push, 3 × 3 for each body. The height of a heap does not make it
 //! slower, nor do masses up to about 1 : 10^6.
 
 use alloc::{vec, vec::Vec};
@@ -24,43 +24,45 @@ use super::{
 };
 use crate::impulse::{Joined, Known, Prepared};
 
-/// `R` by the heavier of the bodies of a contact: large, but not so large that rounding in the factor undoes
-/// what a step gains; and by what it grows where a step gains little, and how often. None changes the answer.
+/// The first is `R` for the mass of the heavier body of a contact: large, but not so large that rounding in the
+/// factor undoes the gain of a step. `R` grows by the second if a step gains little, at most as often as the third
+/// says. None of them changes the solution.
 const STIFFNESS: f64 = (1_u32 << 24) as f64;
 const STIFFER: f64 = 64.0;
 const MOST_STIFFER: u32 = 3;
 
-/// Steps of the proximal point method at most. A few are enough where bodies have room; where they have not,
-/// what is left closes the least.
+/// The greatest number of steps of the proximal point method. A few are enough if bodies have room. If they have
+/// none, the iteration approaches the impulses with the least closing.
 const STEPS: usize = 32;
 
-/// Sweeps before the first step, contact by contact, there and back. They find most of who pushes.
+/// The number of sweeps before the first step, contact by contact, forward and back. They find most of the contacts
+/// that push.
 const SWEEPS: usize = 2;
 
-/// Steps of Newton's method in each, at most; and how many are taken whole at first, which mostly finds the
-/// least at once, before the least along each is looked for, which always finds it.
+/// The greatest number of Newton steps in each proximal step, and how many of them are taken with their full length.
+/// Full steps mostly find the minimum at once. The later steps use a line search, which always finds it.
 const NEWTON_STEPS: usize = 48;
 const FULL_STEPS: usize = 10;
 
-/// Looks for the least along a line, at most.
+/// The greatest number of evaluations in a line search.
 const LOOKS: usize = 16;
 
-/// Lengths of a step beyond which nothing is looked for.
+/// The greatest length in a line search, in lengths of the step.
 const FARTHEST: f64 = 1024.0;
 
-/// A contact between two places in the order of elimination; what nothing moves is in the last place.
+/// A contact between two places in the order of elimination. All immovable bodies are in the last place.
 #[derive(Clone, Debug)]
 struct Link {
     bodies: (usize, usize),
     normal: DVec3,
-    /// The block between the two in the factor; none where one of them is not moved.
+    /// The index of the block between the two in the factor; `None` if one of them is immovable.
     block: Option<usize>,
-    /// 1 / (1/m1 + 1/m2), kg, or nothing where neither is moved.
+    /// `1 / (1/m1 + 1/m2)`, kg, or zero if neither is movable.
     mass: f64,
 }
 
 impl Link {
-    /// Speed at which the contact opens, m/s.
+    /// The opening speed of the contact, m/s.
     fn opening(&self, velocity: &[DVec3]) -> f64 {
         (velocity[self.bodies.1] - velocity[self.bodies.0]).dot(self.normal)
     }
@@ -70,24 +72,23 @@ impl Link {
 #[derive(Clone, Debug)]
 pub(in crate::impulse) struct Network {
     links: Vec<Link>,
-    /// By place, kg and 1/kg; the last place has neither.
+    /// By place, kg and 1/kg; both are zero in the last place.
     mass: Vec<f64>,
     inverse_mass: Vec<f64>,
     pattern: Pattern,
 }
 
-/// A network and what is wanted of it, as one problem.
+/// A network and the wanted opening speeds, as one problem.
 struct Problem<'a> {
     network: &'a Network,
     held: &'a [bool],
-    /// How much contacts are to open, m/s.
+    /// The wanted opening speeds of contacts, m/s.
     wanted: &'a [f64],
     /// By contact, kg.
     stiffness: Vec<f64>,
 }
 
-/// The multipliers: the least ones after which no contact closes as far as it is wanted to open, and those
-/// that are held open just as far.
+/// The least multipliers after which each contact opens at least as fast as wanted, and held contacts exactly so.
 pub(super) fn multipliers(
     contacts: &[Joined],
     inverse_mass: &[f64],
@@ -124,7 +125,7 @@ pub(super) fn multipliers(
             best.1.copy_from_slice(&given);
         }
         if is_slow {
-            // Rounding is all that is left, or there is no room.
+            // Only rounding is left, or bodies have no room.
             if stiffer == MOST_STIFFER {
                 break;
             }
@@ -176,7 +177,7 @@ impl Network {
         }
     }
 
-    /// What impulses change velocities by, m/s.
+    /// Computes the changes of velocities by impulses, m/s.
     fn change(&self, given: &[f64], change: &mut [DVec3]) {
         change.fill(DVec3::ZERO);
         for (link, &given) in self.links.iter().zip(given) {
@@ -189,7 +190,7 @@ impl Network {
 
 impl<'a> Problem<'a> {
     fn of(network: &'a Network, wanted: &'a [f64], held: &'a [bool]) -> Problem<'a> {
-        // By the heavier of two bodies: light ones pass on what heavy ones weigh.
+        // The heavier body counts, because light bodies pass on the load of heavy ones.
         let mass = &network.mass;
         let stiffness = |link: &Link| STIFFNESS * mass[link.bodies.0].max(mass[link.bodies.1]);
         Problem {
@@ -204,7 +205,7 @@ impl<'a> Problem<'a> {
         self.held.get(k) == Some(&true)
     }
 
-    /// A multiplier, or none where a contact does not pull.
+    /// A multiplier, or zero if it is negative and the contact is not held.
     fn allowed(&self, k: usize, given: f64) -> f64 {
         match self.is_held(k) {
             true => given,
@@ -212,7 +213,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Brings impulses nearer to the answer, contact by contact, there and back (Gauss, Seidel).
+    /// Improves impulses contact by contact, forward and back (Gauss-Seidel).
     fn sweep(&self, given: &mut [f64]) {
         let Network {
             links,
@@ -235,7 +236,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// How far from the answer some impulses are after which so much is missing, m/s.
+    /// The greatest residual of the impulses `given`, m/s. `missing` are the opening speeds that contacts lack after
+    /// these impulses.
     fn worst(&self, given: &[f64], missing: &[f64]) -> f64 {
         let of = |k: usize| match given[k] > 0.0 || self.is_held(k) {
             true => missing[k].abs(),
@@ -245,17 +247,17 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Newton's method, and its memory.
+/// Newton's method, with its memory.
 struct Newton<'a> {
     factor: Cholesky<'a>,
-    /// Which contacts push in the factor, if something has been factored, and which push now.
+    /// Which contacts push in the last factorization, if there is one, and which push now.
     factored: Option<Vec<bool>>,
     pushes: Vec<bool>,
-    /// The change of velocity so far in a step, and the next part of it, by places.
+    /// The change of velocity so far in a step, and the next Newton step, by place.
     change: Vec<DVec3>,
     way: Vec<DVec3>,
-    /// What contacts are to open further where the step starts, what they have opened since then, and
-    /// open along the way, m/s.
+    /// The opening speeds that contacts lack at the start of the step, those gained since then, and those gained
+    /// along the next Newton step, m/s.
     missing: Vec<f64>,
     opened: Vec<f64>,
     opens: Vec<f64>,
@@ -276,12 +278,12 @@ impl Newton<'_> {
         }
     }
 
-    /// Forgets what has been factored.
+    /// Discards the factorization.
     fn forget(&mut self) {
         self.factored = None;
     }
 
-    /// Looks what is missing after some impulses.
+    /// Computes the residuals after some impulses.
     fn look(&mut self, problem: &Problem, given: &[f64]) {
         problem.network.change(given, &mut self.change);
         let links = problem.network.links.iter().zip(problem.wanted);
@@ -290,18 +292,18 @@ impl Newton<'_> {
         }
     }
 
-    /// What a contact gives more, N s, once it has opened by so much.
+    /// The further impulse of a contact, N s, after it has opened by `opened`, m/s.
     fn more(&self, problem: &Problem, k: usize, opened: f64) -> f64 {
         problem.stiffness[k] * (self.missing[k] - opened)
     }
 
-    /// Takes a step of the proximal point method from impulses that have been looked at, and tells whether
-    /// it has come to its end.
+    /// Takes a step of the proximal point method from impulses whose residuals are computed. Returns whether Newton's
+    /// method has converged.
     fn step(&mut self, problem: &Problem, given: &mut [f64]) -> bool {
         let count = given.len();
         self.change.fill(DVec3::ZERO);
         self.opened.fill(0.0);
-        // At first those that push now, and those that close.
+        // At first the contacts that push now, and those that close.
         for (k, pushes) in self.pushes.iter_mut().enumerate() {
             *pushes = problem.is_held(k) || given[k] > 0.0 || self.missing[k] > 0.0;
         }
@@ -345,9 +347,9 @@ impl Newton<'_> {
         is_found
     }
 
-    /// The step of Newton's method for those that push, and what contacts open by along it.
+    /// Computes the Newton step for the pushing contacts, and the opening speeds that contacts gain along it.
     fn find_way(&mut self, problem: &Problem, given: &[f64]) {
-        // The gradient with its sign changed.
+        // The negative gradient.
         let bodies = self.change.iter().zip(&problem.network.mass);
         for (way, (&change, &mass)) in self.way.iter_mut().zip(bodies) {
             *way = -mass * change;
@@ -370,8 +372,8 @@ impl Newton<'_> {
         }
     }
 
-    /// How far along the way the least is: where the slope, which rises from piece to piece, is
-    /// nothing.
+    /// The length along the Newton step at which the function is least: there its slope, which increases from piece
+    /// to piece, is zero.
     fn least_along(&self, problem: &Problem, given: &[f64]) -> f64 {
         let (mut inertia, mut linear) = (0.0, 0.0);
         let bodies = self.change.iter().zip(&self.way);
@@ -394,7 +396,7 @@ impl Newton<'_> {
         let steep = at_low.abs();
         let enough = 0.1 * steep;
         while at_high < 0.0 {
-            // Where nothing bounds it, rounding is all that is left.
+            // If there is no bound, only rounding is left.
             if -at_high <= enough || high >= FARTHEST {
                 return high;
             }
@@ -482,7 +484,7 @@ mod tests {
                 let weight: f64 = (k + 1..41).map(mass).sum();
                 let error = (given[k] / weight - 1.0).abs();
                 assert!(error < 1e-11, "{ratio} {k}: {} for {weight}", given[k]);
-                // What goes into the lightest body cancels but for rounding.
+                // The impulses on the lightest body cancel up to rounding.
                 let rounding = f64::EPSILON * given[0] / ratio.min(1.0);
                 let missing = missing[k].abs();
                 assert!(missing <= 4.0 * rounding, "{ratio} {k}: {missing:e}");
@@ -507,7 +509,7 @@ mod tests {
 
     #[test]
     fn what_has_no_room_closes_little_and_comes_to_an_end() {
-        // Ten bodies in a row between walls of which one comes nearer.
+        // Ten bodies in a row between two walls, one of which approaches.
         let contacts: Vec<Joined> = (0..11).map(|k| upwards((k, k + 1))).collect();
         let inverse_mass: Vec<f64> = (0..12).map(|k| f64::from(k % 11 != 0)).collect();
         let mut wanted = vec![0.0; 11];

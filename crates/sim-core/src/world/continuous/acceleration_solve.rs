@@ -1,5 +1,5 @@
-//! The accelerations of an island: the nearest to those by forces alone (Gauss' principle) with which no contact
-//! that has its target is accelerated against its normal by more than its surface recedes.
+//! The accelerations of an island: the nearest to those by forces alone (Gauss' principle) with which no contact that
+//! has reached its target is accelerated against its normal by more than its surface recedes.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -13,18 +13,18 @@ use super::{
 };
 use crate::impulse::{Joined, Known, apply, greatest, project_with};
 
-/// An island whose bodies are slower than this part of what forces give them in a step, and that has
-/// nothing to accelerate it, is at rest.
+/// An island is at rest if its bodies are slower than this fraction of the speed that forces give them in a step, and
+/// if nothing accelerates it.
 const AT_REST: f64 = 1e-6;
 
-/// Part of the accelerations of an island that may be left over where it has none.
+/// Fraction of the accelerations by forces that may remain in an island that counts as not accelerated.
 const UNBALANCED: f64 = 1e-9;
 
-/// The same where friction holds with all that it has: what rounding makes of it.
+/// The same fraction if friction holds with its greatest force: the effect of rounding.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 impl ContactSolver<'_> {
-    /// Gives the bodies of an island accelerations with which no contact that is not open closes.
+    /// Gives the bodies of an island accelerations with which no contact that is kept closes.
     pub(super) fn solve_accelerations(
         &mut self,
         island: &Island,
@@ -43,8 +43,8 @@ impl ContactSolver<'_> {
             self.note_forces(island, places, solution, time);
             return;
         }
-        // Where events come thick, surfaces count as flat for the rest of the step: nothing meets, and what
-        // opens closes in the next one.
+        // In a heap, surfaces count as flat for the rest of the step: nothing meets, and contacts that open close
+        // again in the next step.
         if !solution.is_bundled && self.follow_surfaces(island, places, solution, time) {
             self.view().constrain(island, places, solution);
         }
@@ -57,8 +57,8 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// Looks where the surfaces of contacts turn or end, along the motion that they allow, and tells
-    /// whether that changes what they allow.
+    /// Searches where the surfaces of contacts turn or end along the motion that the contacts allow. Returns whether
+    /// this changes the allowed accelerations.
     pub(super) fn follow_surfaces(
         &mut self,
         island: &Island,
@@ -87,7 +87,7 @@ impl ContactSolver<'_> {
                 start.velocity[j] - start.velocity[i] + stagger * pushed,
                 pushed,
             );
-            // What would press them together without this contact.
+            // The acceleration that would press the bodies together without this contact.
             let load = solution.force[k] * places.yielding(k);
             if load <= 0.0 {
                 continue;
@@ -114,8 +114,8 @@ impl ContactSolver<'_> {
         turns
     }
 
-    /// Notes by what speed each contact would close in a step if it were not there, its friction, and when
-    /// it stops sliding.
+    /// Stores for each contact the speed with which forces would close it in a step, its friction, and the time at
+    /// which it stops sliding.
     pub(super) fn note_forces(
         &mut self,
         island: &Island,
@@ -136,7 +136,7 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// Brings an island to rest that hardly moves and that nothing accelerates, and tells whether it has.
+    /// Brings an island to rest that hardly moves and that nothing accelerates. Returns whether it has done so.
     pub(super) fn balance(
         &mut self,
         island: &Island,
@@ -148,8 +148,8 @@ impl ContactSolver<'_> {
     ) -> bool {
         let push = greatest(free);
         let is_still = |v: DVec3| v.length() <= AT_REST * push * self.scene.settings.dt;
-        // What friction hardly fails to hold is accelerated by little: no more than what rounds in sums of all that
-        // bears on a body.
+        // If friction almost holds a body, the body may have only a small acceleration: no more than the rounding of
+        // the sum of all forces on it.
         let borne = (0..force.len()).map(|k| force[k] * places.yielding(k));
         let unbalanced = match (0..force.len()).any(|k| friction.slides(k, force[k])) {
             true => ROUNDING * borne.fold(push, f64::max),
@@ -187,8 +187,8 @@ impl ContactSolver<'_> {
 }
 
 impl View<'_> {
-    /// The accelerations nearest to free ones with which no contact that is not open closes more than
-    /// its surface recedes, and the force of each contact; and whether they have been found.
+    /// Computes the accelerations nearest to those by forces alone with which no kept contact closes by more than its
+    /// surface recedes, and the force of each contact. Returns whether they have been found.
     pub(super) fn constrain(
         &self,
         island: &Island,
@@ -202,7 +202,7 @@ impl View<'_> {
         true
     }
 
-    /// The same where friction does what it does.
+    /// The same with given friction forces.
     pub(super) fn press(&self, island: &Island, places: &Places, solution: &mut Solution) {
         let Solution {
             open,
@@ -220,7 +220,7 @@ impl View<'_> {
         let joined: Vec<Joined> = kept.iter().map(|&k| places.joined[k]).collect();
         let missing = |&k: &usize| -recession[k] - places.joined[k].opening(&free);
         let missing: Vec<f64> = kept.iter().map(missing).collect();
-        // What they did before is near.
+        // The last forces are a good start.
         let before = |&k: &usize| {
             let load =
                 self.contacts.all()[island.constraints[k]].load_speed / self.scene.settings.dt;

@@ -1,4 +1,4 @@
-//! Bodies that part after an impact: two of them, or all that impacts of one instant tie together.
+//! Bodies that separate after an impact: two of them, or all that simultaneous impacts connect.
 
 use alloc::{vec, vec::Vec};
 use glam::DVec3;
@@ -16,8 +16,8 @@ use crate::{
 };
 
 impl EventLoop<'_> {
-    /// Lets those contacts of some bodies bounce that an impulse has closed, and then those of whom they
-    /// have met.
+    /// Lets the contacts of some bodies bounce that close after an impulse, and then the contacts of the bodies that
+    /// these push.
     pub(super) fn bounce_contacts(
         &mut self,
         seeds: &mut Vec<usize>,
@@ -52,8 +52,8 @@ impl EventLoop<'_> {
             group.retain_mut(|event| {
                 self.view().classify(event);
                 let (i, j) = event.bodies;
-                // What gives back a part goes to and fro in a row without end, and comes to rest; so does, at
-                // once, what lies in a heap.
+                // In a row of bodies, impacts with restitution less than one would go to and fro without end, so that
+                // the contact comes to rest after many rounds; in a heap, at once.
                 let is_lossy = self.solver.scene.bodies.pair_restitution(i, j) < 1.0;
                 let is_bundled = self.view().is_bundled(i) || self.view().is_bundled(j);
                 let ends = is_lossy && (is_bundled || round > MANY_BOUNCES);
@@ -75,7 +75,7 @@ impl EventLoop<'_> {
         Ok(())
     }
 
-    /// Lets bodies bounce: those of one impact, or all that impacts of one instant tie together.
+    /// Lets bodies bounce: those of one impact, or all that simultaneous impacts connect.
     pub(super) fn bounce_all_of<'a>(
         &mut self,
         events: impl Iterator<Item = &'a Event> + Clone,

@@ -1,4 +1,4 @@
-//! Which pairs come near each other on their trajectories.
+//! The search for pairs that come near each other on their trajectories.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -10,23 +10,24 @@ use crate::{
     collide::{Broad, Front, Swept},
 };
 
-/// What is kept of who is near whom.
+/// The neighbours of bodies, kept for the step and for later ones.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Neighbours {
     pub(super) broad: Broad,
-    /// Whether that knows what is near bodies where they are: they have not been placed since.
+    /// Whether `broad` knows the neighbours of the bodies at their positions, because no body was placed since it was
+    /// filled.
     pub(super) knows_near: bool,
     /// Pairs that have come near in this step.
     pub(super) candidate_pairs: Vec<(usize, usize)>,
-    /// Room for the bodies near one.
+    /// Memory for the neighbours of a body.
     pub(super) partners: Vec<usize>,
 }
 
-/// Pairs that are listed before they are sorted, and named once each.
+/// The number of pairs that may be listed before the list is sorted and duplicates are removed.
 const MAX_LISTED: usize = 1 << 16;
 
 impl Neighbours {
-    /// Names each pair once where very many are listed.
+    /// Removes duplicates if very many pairs are listed.
     pub(super) fn shorten(&mut self) {
         if self.candidate_pairs.len() > MAX_LISTED {
             self.candidate_pairs.sort_unstable();
@@ -36,7 +37,7 @@ impl Neighbours {
 }
 
 impl View<'_> {
-    /// A box around a body all along its trajectory.
+    /// A box around a body along its whole trajectory.
     fn swept(&self, body: usize) -> Swept {
         // Two calls, so that the common one keeps the extent in registers.
         match self.scene.bodies.turners.is_empty() {
@@ -57,8 +58,9 @@ impl View<'_> {
             farthest,
             ..
         } = extent;
-        // More than is lost in rounding, here and where vertices are placed, and than a search goes beyond
-        // the end of the step; and as far as bodies may be moved where others that meet are parted.
+        // The margin is more than rounding, here and in the placing of vertices, and more than a search goes beyond
+        // the end of the step. It also covers the displacement of bodies when other overlapping bodies are moved
+        // apart.
         let bend = self.motion().chord_deviation(body);
         let size = (from.abs() + to.abs() + 4.0 * bend + 2.0 * farthest).max_element();
         let reach = bend + 8192.0 * f64::EPSILON * size;
@@ -69,7 +71,7 @@ impl View<'_> {
         }
     }
 
-    /// The farthest that the plane of a body comes on its trajectory, if it is a half-space.
+    /// The farthest position of the plane of a body along its trajectory, if the body is a half-space.
     fn front(&self, wall: usize) -> Option<Front> {
         let (from, to) = (&self.paths.start.position, &self.paths.end.position);
         let mut front = self.scene.bodies.swept_front(wall, from[wall], to[wall])?;
@@ -80,7 +82,7 @@ impl View<'_> {
 }
 
 impl ContactSolver<'_> {
-    /// Whether it is known what is near bodies where they are. A copy of a world has to find it out again.
+    /// Whether the neighbours of bodies at their positions are known. A copy of a world computes them again.
     pub(super) fn knows_near(&mut self) -> bool {
         if self.near.knows_near && self.near.broad.is_empty() {
             let mut broad = mem::take(&mut self.near.broad);
@@ -121,7 +123,7 @@ impl EventLoop<'_> {
         }
     }
 
-    /// Takes what a body sweeps on its new trajectory in the place of what it swept.
+    /// Replaces the swept box of a body by that of its new trajectory.
     pub(super) fn update_swept(&mut self, body: usize) {
         if let Some(front) = self.view().front(body) {
             self.solver.near.broad.replace_front(front);
@@ -131,7 +133,7 @@ impl EventLoop<'_> {
         }
     }
 
-    /// Finds the next impacts of a body whose trajectory is new. Of two such, the pair is asked once.
+    /// Finds the next impacts of a body whose trajectory is new. A pair of two such bodies is searched once.
     pub(super) fn find_impacts_of(
         &mut self,
         body: usize,

@@ -1,9 +1,10 @@
-//! How contacts go on: their gaps where a step starts, and where what slides leaves what it slides on.
+//! How contacts change: their gaps at the start of a step, and the times at which a sliding body leaves the surface
+//! below it.
 //!
-//! Bodies in contact hover a little above each other ([`Layout::hover_gap`](super::super::layout::Layout::hover_gap)), farther than rounding and
-//! an iterative solver move them in a step, so that the search for impacts does not see the surface
-//! they lie on and sees every other one. All is asked of the same exact search: a contact is there
-//! where a short motion against its normal is stopped, and its gap is the length of that motion.
+//! Bodies in contact keep a small gap ([`Layout::hover_gap`](super::super::layout::Layout::hover_gap)). It is more
+//! than rounding and an iterative solver move them in a step, so that the impact search does not see the surface that
+//! supports them, and sees every other one. The same exact search also measures contacts. It moves the body a short
+//! way against the normal: a contact exists if this motion is stopped, and its gap is the length of the motion.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -15,36 +16,36 @@ use crate::{
     collide::{first_contact, snap},
 };
 
-/// Part of that gap at which a contact begins.
+/// Fraction of that gap at which a contact begins.
 pub(super) const LEAST_GAP: f64 = 1.0 / 8.0;
 
-/// Features of a plane that are followed in a step; what slides farther is asked again there.
+/// The number of features of a plane that are followed in a step. A body that slides farther is examined again there.
 const MAX_FEATURES: usize = 4096;
 
-/// What is asked of a surface again and again.
+/// The surface below a body.
 #[derive(Clone, Copy)]
 pub(super) struct Surface {
-    /// How far below, m.
+    /// The distance below the body, m.
     pub(super) distance: f64,
     pub(super) normal: DVec3,
     pub(super) touched: Touched,
-    /// Where it was touched, from the first body, m.
+    /// The contact point, relative to the first body, m.
     pub(super) point: DVec3,
 }
 
 impl Surface {
-    /// The gap to the plane that is met there along a normal, m, that plane's normal and the point.
+    /// The gap along a normal to the plane of this surface, m, the normal of that plane, and the contact point.
     fn along(&self, normal: DVec3) -> (f64, DVec3, DVec3) {
         let gap = self.distance * self.normal.dot(normal);
         (gap, self.normal, self.point)
     }
 }
 
-/// What of two bodies touches.
+/// The features of two bodies that touch.
 #[derive(Clone, Copy)]
 pub(super) enum Touched {
     Feature(Feature),
-    /// A sphere a triangle of the mesh of a body.
+    /// A sphere touches a triangle of the mesh of `body`.
     Face {
         body: usize,
         face: u32,
@@ -52,11 +53,11 @@ pub(super) enum Touched {
     Nothing,
 }
 
-/// What is below a body that moves over another one.
+/// The surface below a body that moves over another one.
 enum Below {
-    /// The same plane.
+    /// The same plane as before.
     Flat(Surface),
-    /// What rises above the plane.
+    /// A surface that rises above the plane.
     Risen,
     /// Another plane, or nothing.
     Other,
@@ -73,21 +74,21 @@ fn roots(place: f64, speed: f64, push: f64) -> [Option<f64>; 2] {
     [finite(half / push), finite(place / half)]
 }
 
-/// How a surface goes on below what slides over it.
+/// How a surface continues below a sliding body.
 pub(super) enum Course {
     /// It keeps its normal.
     Flat,
     /// It falls away by this acceleration, m/s².
     Receding(f64),
-    /// It is left behind, or begins to turn, at this time after the start, s.
+    /// The body leaves it, or it begins to turn, at this time after the start, s.
     EndsAfter(f64),
-    /// It is left behind now.
+    /// The body leaves it now.
     Ended,
 }
 
 impl View<'_> {
-    /// The height of a flight that is too short to be one, m, and its speed, m/s, under an
-    /// acceleration, m/s²: up for half of the time, and down for the other.
+    /// The height, m, and the initial speed, m/s, of the longest flight that is too short to count as one, under an
+    /// acceleration, m/s². The body rises for half of its time and falls for the other half.
     pub(super) fn shortest_hop(
         &self,
         (i, j): (usize, usize),
@@ -103,8 +104,8 @@ impl View<'_> {
         }
     }
 
-    /// What is within reach of the second body of a pair against a normal, from an offset on. Other
-    /// contacts of the pair are lifted off first, as they would stop it too.
+    /// The surface within reach of the second body of a pair, against a normal and from an offset. The motion first
+    /// leaves the other contacts of the pair, because they would stop it too.
     pub(super) fn surface_below(
         &self,
         constraint: &ContactConstraint,
@@ -140,8 +141,8 @@ impl View<'_> {
         })
     }
 
-    /// A contact as it is where the trajectories of its bodies start, if it still is one, with so much of
-    /// the step left, s.
+    /// A contact measured at the starts of the trajectories of its bodies, or `None` if it no longer exists. `left`
+    /// is the rest of the step, s.
     pub(super) fn measured(
         &self,
         constraint: ContactConstraint,
@@ -154,16 +155,16 @@ impl View<'_> {
         let start = &self.paths.start;
         let closing = (start.velocity[i] - start.velocity[j]).dot(constraint.normal);
         let reach = match is_bundled {
-            // As far as it may come in this step.
+            // The distance that the contact may close in this step.
             true => 4.0 * height + left * closing.max(0.0),
             false => height,
         };
         let offset = start.position[j] - start.position[i];
-        // Most are as near as contacts are kept, and the farther one looks, the more else is in the way.
+        // Most bodies are as near as the gap of contacts. A longer motion finds more obstacles.
         let near = 8.0 * hover;
         let (gap, normal, point) = match self.surface_below(&constraint, offset, near) {
-            // Bodies do not meet. What seems to be above where they are is another surface, through which
-            // they have been lifted, and nothing is known of this one but that they touched.
+            // Bodies do not meet. A surface that seems to be above the present position is another one, through which
+            // the body was lifted. All that is known of this contact is that the bodies touched.
             Some(below) if below.distance < 0.0 => (0.0, constraint.normal, constraint.point),
             Some(below) => below.along(constraint.normal),
             None if reach <= near => return None,
@@ -189,8 +190,9 @@ impl View<'_> {
         })
     }
 
-    /// Speed along its normal with which a gap becomes the one of contacts, m/s: a wider one within a
-    /// time, a narrower one within some steps if forces close it, none where it is about that.
+    /// The speed along the normal with which a gap becomes that of bodies in contact, m/s. A wider gap closes within
+    /// `time`; a narrower one opens within some steps if forces close it. The speed is zero for a gap of about the
+    /// right size.
     pub(super) fn speed_to_hover(&self, gap: f64, hover: f64, time: f64, load_speed: f64) -> f64 {
         if gap > 4.0 * hover {
             -(gap - hover) / time
@@ -201,8 +203,9 @@ impl View<'_> {
         }
     }
 
-    /// How the surface of a contact goes on below a body that moves over it from an offset on with a
-    /// velocity and an acceleration, for a time, from the start of the step or not, while a load presses it down.
+    /// How the surface of a contact continues below a body that moves over it from an offset with a velocity and an
+    /// acceleration. `length` is the duration of the motion, s. `is_at_start` says whether it begins at the start of
+    /// the step. `load` is the acceleration that presses the body down, m/s².
     pub(super) fn course_below(
         &self,
         constraint: &ContactConstraint,
@@ -228,14 +231,14 @@ impl View<'_> {
             _ => 0.0,
         };
         let radius = radius(i) + radius(j);
-        // What rounding turns a normal by.
+        // By how much rounding changes a normal.
         let turn = match radius > 0.0 {
             true => 1e-12 + 16.0 * self.layout().position_resolution(i, j) / radius,
             false => 1e-12,
         };
-        // A surface that rises is an impact to come.
+        // A surface that rises becomes an impact.
         let has_risen = |time: f64| self.scene.bodies.meet_built(i, j, offset + moved(time));
-        // The feature that touches at a time, or why there is none.
+        // The surface below at a time, or the reason why there is none.
         let below = |time: f64| {
             let surface = self.surface_below(constraint, offset + moved(time), near);
             match surface {
@@ -248,15 +251,16 @@ impl View<'_> {
         if !matches!(below(length), Below::Other) {
             return Course::Flat;
         }
-        // What turns all the time is seen to have turned after this.
+        // After this time a normal that turns steadily has turned visibly.
         let soon = (4.0 * turn * radius / way).clamp(1e-5, 0.0625) * length;
-        // What is round has to turn by more than rounding; what goes on after an event is not asked at once.
+        // The normal at a round body must turn by more than rounding. After an event, the surface is not examined
+        // immediately.
         let next = if radius > 0.0 { soon } else { 1e-6 * soon };
         let first = if is_at_start { next } else { soon };
         let (mut time, mut now) = (first, below(first));
         for _ in 0..MAX_FEATURES {
             let Below::Flat(surface) = now else { break };
-            // Where what touches leaves what it touches, another feature may go on in the plane.
+            // When the touching features separate, another feature may continue the plane.
             let there = (
                 offset + moved(time),
                 velocity + time * acceleration,
@@ -290,7 +294,8 @@ impl View<'_> {
             } else if has_risen(time) {
                 recession = 0.0;
             }
-            // What falls away faster than the load follows is left behind, though it may come back.
+            // The body leaves a surface that recedes faster than the load can follow, though the surface may come
+            // back.
             if recession >= load {
                 return Course::Ended;
             }
@@ -298,8 +303,8 @@ impl View<'_> {
         Course::Receding(recession)
     }
 
-    /// When the second of two bodies, which moves in the plane of their contact from an offset on with a
-    /// velocity and an acceleration, leaves the feature that they touch with, s.
+    /// The time at which the second body leaves the features that touch, s. It moves in the plane of the contact from
+    /// an offset with a velocity and an acceleration.
     fn leaves_after(
         &self,
         constraint: &ContactConstraint,
@@ -307,7 +312,8 @@ impl View<'_> {
         (offset, velocity, acceleration): (DVec3, DVec3, DVec3),
     ) -> Option<f64> {
         let ((i, j), normal) = (constraint.bodies, constraint.normal);
-        // Lines that bound the feature, as a direction across and how far the offset is along it.
+        // The lines that bound the feature, each as a direction across it and the position of the offset along this
+        // direction.
         let mut lines: [(DVec3, f64); 4] = [(DVec3::ZERO, 0.0); 4];
         let corner = |body: usize, vertex: u32| {
             self.scene
@@ -323,7 +329,8 @@ impl View<'_> {
             let ends = self.scene.bodies.mesh(body)?.edges()[edge as usize];
             Some((corner(body, ends[0])?, corner(body, ends[1])?))
         };
-        // Corners come before the offset, so that rounding is the same whichever of the bodies is the first.
+        // The corners are subtracted before the offset is added, so that rounding does not depend on which of the
+        // bodies is the first.
         let mut bound = |k: usize, along: DVec3, place: DVec3| {
             let across = along.cross(normal);
             lines[k] = (across, across.dot(place));
@@ -351,7 +358,7 @@ impl View<'_> {
                 bound(3, b - a, (d - a) + offset);
             }
             Touched::Face { body, face: of } => {
-                // The middle of a sphere over a face, as seen from the mesh.
+                // The centre of a sphere over a face, in the frame of the mesh.
                 let (triangle, sign) = (face(body, of)?, if body == i { 1.0 } else { -1.0 });
                 for k in 0..3 {
                     let along = triangle[(k + 1) % 3] - triangle[k];
@@ -371,7 +378,7 @@ impl View<'_> {
         lines.iter().filter_map(first_root).min_by(f64::total_cmp)
     }
 
-    /// The greater of what forces alone do to two bodies all along their trajectories, m/s².
+    /// The greater of the accelerations by forces alone of two bodies along their trajectories, m/s².
     pub(super) fn greatest_push(&self, i: usize, j: usize) -> f64 {
         let push = &self.paths.applied_acceleration;
         push[i].length().max(push[j].length())
@@ -379,8 +386,7 @@ impl View<'_> {
 }
 
 impl ContactSolver<'_> {
-    /// Looks at the contacts that the last step has left: their gaps and normals now. Those that have
-    /// opened are no more, nor are those that close so fast that they bounce.
+    /// Measures the gaps and normals of the contacts left from the last step. Contacts that have opened are removed.
     pub(super) fn measure_contacts(&mut self) -> Result<(), (usize, Cause)> {
         let mut gone = Vec::new();
         for index in self.view().contacts_in_order() {
@@ -396,7 +402,7 @@ impl ContactSolver<'_> {
                 continue;
             }
             match self.view().measured(constraint, self.scene.settings.dt) {
-                // What has turned to the normal of another contact of the pair is that one.
+                // A contact that has turned to the normal of another contact of the pair is the same as that one.
                 Some(measured) if self.contacts.is_known(&measured, (index, &gone)) => {
                     gone.push(index);
                 }

@@ -1,4 +1,4 @@
-//! Which bodies are in touch, and along which normals: the state of contacts, kept from step to step.
+//! The contact constraints, which are kept from step to step.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use super::super::bodies::Bodies;
 
-/// A plane that keeps two bodies apart: the second one may not move against the normal faster than
-/// the target, nor be accelerated against it by more than the surface recedes.
+/// A plane that keeps two bodies apart. The second body may not move against the normal faster than the target
+/// allows, nor be accelerated against it by more than the surface recedes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::world) struct ContactConstraint {
@@ -15,36 +15,35 @@ pub(in crate::world) struct ContactConstraint {
     pub(in crate::world) bodies: (usize, usize),
     /// Unit normal, from the first body to the second.
     pub(in crate::world) normal: DVec3,
-    /// How far apart the bodies are, where it was last looked at, m.
+    /// The distance of the bodies at the last measurement, m.
     pub(in crate::world) gap: f64,
-    /// Least speed along the normal for the rest of the step, m/s; negative where a gap may close.
+    /// The least speed along the normal for the rest of the step, m/s; negative if the gap may close.
     pub(super) target: f64,
-    /// Whether its normal turns below what slides over it.
+    /// Whether the normal turns below a sliding body.
     pub(super) is_turning: bool,
-    /// Speed at which forces would close it in a step, m/s.
+    /// The speed with which forces would close the contact in a step, m/s.
     pub(in crate::world) load_speed: f64,
-    /// When in the step its surface ends or begins to turn, s from the step's start; infinite where
-    /// it does not.
+    /// The time at which the surface ends or begins to turn, s from the step's start; infinite if it does neither.
     #[cfg_attr(feature = "serde", serde(with = "crate::serde_number"))]
     pub(super) ends_at: f64,
-    /// Where it was touched, from the first body, m.
+    /// The contact point, relative to the first body, m.
     pub(in crate::world) point: DVec3,
-    /// Impulse on the second body along the normal in its last solution, N s.
+    /// The impulse on the second body along the normal in the last solution, N s.
     pub(in crate::world) impulse: f64,
-    /// Friction on the second body in its last solution, N.
+    /// The friction force on the second body in the last solution, N.
     pub(in crate::world) friction: DVec3,
-    /// Whether friction has held it in its last solution, or sliding has just ended; so it is at first.
+    /// Whether friction held the contact in the last solution, or sliding has just ended. True for a new contact.
     pub(super) sticks: bool,
-    /// Whether the bodies overlap: they are kept from moving farther into each other, and nothing
+    /// Whether the bodies overlap. Then the constraint keeps them from moving farther into each other, and nothing
     /// else is known of their surfaces.
     pub(in crate::world) is_overlap: bool,
-    /// Whether it is one of those that let such bodies move as one in this step.
+    /// Whether the constraint is one of those with which overlapping bodies move as one in this step.
     pub(super) is_hold: bool,
 }
 
 impl ContactConstraint {
-    /// A contact that has not been solved: bodies, the lower one first, a unit normal from it to the other one,
-    /// a gap, m, and where it was touched, from the first body, m.
+    /// A contact that has not been solved: its bodies, the lower one first; the unit normal from the first to the
+    /// second; the gap, m; and the contact point, relative to the first body, m.
     pub(super) fn new(
         bodies: (usize, usize),
         normal: DVec3,
@@ -71,7 +70,7 @@ impl ContactConstraint {
 
 #[cfg(feature = "serde")]
 impl ContactConstraint {
-    /// Whether all of its numbers are numbers within the range of a world.
+    /// Whether all of its numbers are finite and within the range of a world. `ends_at` may be infinite.
     pub(in crate::world) fn is_sound(&self) -> bool {
         let vectors = [self.normal, self.point, self.friction];
         let numbers = [self.gap, self.target, self.load_speed, self.impulse];
@@ -82,17 +81,18 @@ impl ContactConstraint {
     }
 }
 
-/// Cosine of the angle to which the normals of two contacts of the same bodies are one: 0.8 degrees.
+/// Two contacts of the same bodies are the same one if the cosine of the angle between their normals is at least
+/// this: 0.8 degrees.
 const SAME_NORMAL: f64 = 0.9999;
 
-/// The constraints, and which of them each movable body has.
+/// The contact constraints, and the constraints of each movable body.
 #[derive(Clone, Debug, Default)]
 pub(in crate::world) struct ContactSet {
     all: Vec<ContactConstraint>,
-    /// By body, indices of `all`; empty for bodies that nothing moves.
+    /// By body, indices of `all`; empty for immovable bodies.
     of_body: Vec<Vec<u32>>,
-    /// By body, whether its contacts are solved once a step, with their gaps; and whether they are to be
-    /// in the next one. Empty where none are.
+    /// By body, whether its contacts are solved once a step, with their gaps, in this step and in the next one. Both
+    /// are empty if no body is bundled.
     bundled: Vec<bool>,
     bundled_next: Vec<bool>,
 }
@@ -128,7 +128,7 @@ impl ContactSet {
         constraints.filter(move |known| known.bodies == pair)
     }
 
-    /// Those that keep the same bodies apart along the same normal as another one.
+    /// The constraints that keep the same bodies apart along the same normal as another one.
     fn like<'a>(&'a self, other: &'a ContactConstraint) -> impl Iterator<Item = usize> + 'a {
         let (i, j) = other.bodies;
         let few = if self.of_body(i).is_empty() { j } else { i };
@@ -139,8 +139,7 @@ impl ContactSet {
         })
     }
 
-    /// Whether another constraint than that of an index, and than some that are gone, keeps the same bodies
-    /// apart along the same normal.
+    /// Whether a constraint other than `index` and those in `gone` keeps the same bodies apart along the same normal.
     pub(super) fn is_known(
         &self,
         new: &ContactConstraint,
@@ -150,7 +149,7 @@ impl ContactSet {
         self.like(new).any(|other| is_other(&other))
     }
 
-    /// Adds a constraint, in the place of one of the same bodies along the same normal.
+    /// Adds a constraint. It replaces a constraint of the same bodies along the same normal.
     pub(in crate::world) fn insert(&mut self, new: ContactConstraint, bodies: &Bodies) {
         let (i, j) = new.bodies;
         let known = self.like(&new).next();
@@ -185,7 +184,7 @@ impl ContactSet {
         }
     }
 
-    /// Takes out a body that has no constraint; those after it move up.
+    /// Removes a body without constraints; the bodies after it move up.
     pub(in crate::world) fn remove_body(&mut self, body: usize) {
         for constraint in &mut self.all {
             let (i, j) = &mut constraint.bodies;
@@ -224,7 +223,7 @@ impl ContactSet {
     /// Removes constraints, given by their indices, and returns them in that order.
     pub(super) fn remove_all(&mut self, mut indices: Vec<usize>) -> Vec<ContactConstraint> {
         let removed = indices.iter().map(|&index| self.all[index]).collect();
-        // From the last on, as the last one takes the index of one that goes.
+        // From the highest index down, because `remove` moves the last constraint to the index of the removed one.
         indices.sort_unstable_by(|a, b| b.cmp(a));
         for index in indices {
             self.remove(index);
@@ -245,15 +244,15 @@ impl ContactSet {
         set(&mut self.bundled, bodies);
     }
 
-    /// Lets bodies that are bundled be so in the next step.
+    /// Keeps bodies that are bundled in this step bundled in the next one.
     pub(super) fn keep_bundled(&mut self, bodies: &[usize]) {
         set(&mut self.bundled_next, bodies);
     }
 
-    /// Goes on to the next step.
+    /// Prepares the set for the next step.
     pub(super) fn end_step(&mut self) {
         for (body, next) in self.bundled_next.iter_mut().enumerate() {
-            // Fewer bodies are known here where none of the others was bundled.
+            // The list of this step is shorter if no later body was bundled.
             *next &= self.bundled.get(body).is_some_and(|&bundled| bundled);
         }
         mem::swap(&mut self.bundled, &mut self.bundled_next);
@@ -267,8 +266,8 @@ impl ContactSet {
         (&self.of_body, bundled.collect())
     }
 
-    /// A set of constraints that are in these places, each in those of its movable bodies; `None` if they are
-    /// not.
+    /// A set of constraints from snapshot data: `of_body` must list each constraint at its movable bodies. Returns
+    /// `None` if it does not.
     #[cfg(feature = "serde")]
     pub(in crate::world) fn in_places(
         all: Vec<ContactConstraint>,
@@ -301,7 +300,7 @@ impl ContactSet {
         self.of_body.iter_mut().for_each(Vec::clear);
     }
 
-    /// Takes the constraints of another set, keeping its own memory.
+    /// Copies the constraints of another set, but keeps its own memory.
     pub(super) fn copy_from(&mut self, other: &ContactSet) {
         self.all.clone_from(&other.all);
         self.of_body.clone_from(&other.of_body);

@@ -1,13 +1,13 @@
-//! Bodies without room between two that close on each other.
+//! Bodies without room between two immovable bodies that close on each other.
 //!
-//! Elastic bodies have finitely many impacts with each other and with what stands still (Burago,
-//! Ferleger, Kononenko 1998, "Uniform estimates on the number of collisions in semi-dispersing
-//! billiards", Ann. of Math. 147, p. 695), be they millions. Immovable ones that come together are
-//! another matter: `n` impacts with them leave about `1/n` of the room, and there is no last one.
+//! Elastic bodies have finitely many impacts with each other and with bodies that stand still, though there may be
+//! millions (Burago, Ferleger, Kononenko 1998, "Uniform estimates on the number of collisions in semi-dispersing
+//! billiards", Ann. of Math. 147, p. 695). This does not hold for immovable bodies that approach each other: `n`
+//! impacts with them leave about `1/n` of the room, and there is no last one.
 //!
-//! What counts is how often a body goes from one to the other. In a row between them each body meets
-//! one of them at most: so bodies that meet change places in this, as equal ones in a row change their
-//! velocities, and what has been at the one comes to the other from hand to hand.
+//! So this module counts how often a body goes from one immovable body to another. In a row of bodies between them,
+//! each body meets at most one of them. Therefore bodies that meet exchange the last immovable bodies stored for
+//! them, as equal bodies in a row exchange their velocities, and the count also works along the row.
 
 use alloc::vec::Vec;
 
@@ -17,17 +17,17 @@ use super::{
     view::View,
 };
 
-/// Ways of one body in a step from one immovable body to another that moves against it, after which it
-/// has no room: to a ball they leave some 1e-5 of what it had.
+/// The number of times in a step that a body may go from one immovable body to another that moves against it, before
+/// it counts as having no room. A ball then has about 1e-5 of its former room.
 const MAX_KINEMATIC_IMPACTS: u32 = 1 << 16;
 
-/// What immovable bodies have done in a step.
+/// The impacts with immovable bodies in a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CrushDetector {
-    /// Of each body the last immovable one it has been at, and the last before it of another velocity;
-    /// empty until one has.
+    /// By body, the last immovable body that it met, and the last one before with another velocity; empty until a
+    /// body has met one.
     walls: Vec<[Option<usize>; 2]>,
-    /// Impacts of each body with one after another one of another velocity.
+    /// By body, the number of impacts with an immovable body after another one of another velocity.
     impacts: Vec<u32>,
 }
 
@@ -38,7 +38,7 @@ impl CrushDetector {
         self.impacts.clear();
     }
 
-    /// Immovable bodies that move against each other and that a body has been at.
+    /// The two immovable bodies that move relative to each other and that a body has met.
     pub(super) fn between(&self, body: usize) -> Option<(usize, usize)> {
         let [last, other] = *self.walls.get(body)?;
         let (last, other) = last.zip(other)?;
@@ -47,7 +47,7 @@ impl CrushDetector {
 }
 
 impl View<'_> {
-    /// Notes impacts with immovable bodies, and stops where they would go on for ever.
+    /// Counts impacts with immovable bodies, and returns an error if they would go on for ever.
     pub(super) fn watch(
         &self,
         group: &[Event],

@@ -1,4 +1,4 @@
-//! What happens on the way of a step, and waits for its time.
+//! The events of a step, which wait for their times.
 
 use alloc::{collections::BinaryHeap, vec::Vec};
 use core::cmp::Ordering;
@@ -11,27 +11,27 @@ use crate::collide::Contact;
 #[derive(Clone, Debug, Default)]
 pub(super) struct EventQueue {
     pub(super) waiting: BinaryHeap<Event>,
-    /// How many have been resolved.
+    /// The number of resolved events.
     pub(super) resolved: u64,
-    /// What has been spent on searches.
+    /// The work of the searches.
     pub(super) work: Work,
-    /// What happens at one instant.
+    /// The events of one time.
     pub(super) group: Vec<Event>,
     pub(super) crush: CrushDetector,
     pub(super) progress: Progress,
 }
 
-/// What happens.
+/// The kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum EventKind {
     Impact,
     /// The surface of a contact ends, or begins to turn.
     ContactEnd,
-    /// A trajectory is known no farther.
+    /// A trajectory is not known beyond this time.
     Horizon,
 }
 
-/// What becomes of an impact.
+/// The outcome of an impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Outcome {
     Bounce,
@@ -39,7 +39,7 @@ pub(super) enum Outcome {
     Rest,
 }
 
-/// An event to come.
+/// An event in the future.
 #[derive(Clone, Debug)]
 pub(super) struct Event {
     /// From the start of the step, s.
@@ -47,18 +47,19 @@ pub(super) struct Event {
     pub(super) bodies: (usize, usize),
     pub(super) versions: (u32, u32),
     pub(super) kind: EventKind,
-    /// Its point is in the world.
+    /// The contact; its point is in world coordinates.
     pub(super) contact: Contact,
-    /// What becomes of it, once its time has come.
+    /// The outcome, valid once the event is resolved.
     pub(super) outcome: Outcome,
-    /// Speed at which forces would close it in a step, m/s.
+    /// The speed with which forces would close the contact in a step, m/s.
     pub(super) load_speed: f64,
-    /// How far the bodies are apart where it is taken for a contact before its time, m.
+    /// The distance at which the bodies are taken to be in contact when the event is resolved, possibly before its
+    /// time, m.
     pub(super) gap: f64,
 }
 
 impl Event {
-    /// An impact of two bodies at a time, that are a gap apart then, on trajectories with these versions.
+    /// An impact of two bodies at a time, at which they are `gap` apart, on trajectories with these versions.
     pub(super) fn impact(
         time: f64,
         bodies: (usize, usize),
@@ -88,7 +89,7 @@ impl Event {
 }
 
 impl Ord for Event {
-    /// The earliest is the greatest; at the same time the one of the lowest bodies.
+    /// The earliest event is the greatest; at the same time, the one with the lowest bodies.
     fn cmp(&self, other: &Event) -> Ordering {
         let time = other.time.total_cmp(&self.time);
         time.then(other.bodies.cmp(&self.bodies))

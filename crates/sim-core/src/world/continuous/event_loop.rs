@@ -1,4 +1,4 @@
-//! From one event to the next, until none is left in the step.
+//! The loop over the events of a step, until none is left.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -13,7 +13,7 @@ use super::{
     work::Work,
 };
 
-/// Pairs for a thread at least: less is faster done than handed over.
+/// The least number of pairs for a thread. Fewer pairs are searched faster than they are handed over.
 #[cfg(feature = "rayon")]
 const PAIRS_A_TASK: usize = 32;
 
@@ -22,7 +22,7 @@ pub(super) struct EventLoop<'a> {
     pub(super) solver: ContactSolver<'a>,
     pub(super) queue: &'a mut EventQueue,
     pub(super) record: &'a mut Record,
-    /// Bodies whose trajectories are new.
+    /// The bodies whose trajectories are new.
     pub(super) restarted: &'a mut Vec<usize>,
 }
 
@@ -32,7 +32,7 @@ impl EventLoop<'_> {
         self.solver.view()
     }
 
-    /// Notes an impact, in the record and as progress.
+    /// Adds an impact to the record and to the progress.
     pub(super) fn note_impact(&mut self, impact: Impact) {
         let mass = &self.solver.scene.bodies.mass;
         let masses = (mass[impact.bodies.0], mass[impact.bodies.1]);
@@ -42,7 +42,7 @@ impl EventLoop<'_> {
         self.record.note(impact);
     }
 
-    /// Solves the islands of contacts that the last step has left.
+    /// Measures the contacts left from the last step and solves their islands.
     pub(super) fn keep_contacts(&mut self, is_placed: bool) -> Result<(), (usize, Cause)> {
         self.queue.waiting.clear();
         self.queue.resolved = 0;
@@ -76,7 +76,7 @@ impl EventLoop<'_> {
         self.count_work(first)
     }
 
-    /// Counts what has been asked beside the searches since this was last done.
+    /// Counts the work done outside of the searches since the last call.
     pub(super) fn count_work(&mut self, pair: (usize, usize)) -> Result<(), (usize, Cause)> {
         self.queue
             .work
@@ -113,8 +113,7 @@ impl EventLoop<'_> {
         found
     }
 
-    /// The same on many threads. What is found depends on the pair alone, and the queue puts it in
-    /// order.
+    /// The same on many threads. The result for a pair depends on the pair alone, and the queue sorts the events.
     #[cfg(feature = "rayon")]
     fn find_impacts_of_candidates(&mut self) -> Result<(), (usize, Cause)> {
         use rayon::prelude::*;
@@ -152,7 +151,7 @@ impl EventLoop<'_> {
         let mut group = mem::take(&mut self.queue.group);
         while let Some(first) = self.next_event(f64::INFINITY) {
             let (time, pair) = (first.time, first.bodies);
-            // The same instant, but for rounding.
+            // The same time, up to rounding.
             let until = time + 4.0 * f64::EPSILON * time;
             group.clear();
             group.push(first);
@@ -171,7 +170,7 @@ impl EventLoop<'_> {
         Ok(())
     }
 
-    /// Notes impacts with immovable bodies, and stops where they would go on for ever.
+    /// Counts impacts with immovable bodies, and returns an error if they would go on for ever.
     pub(super) fn watch_crush(&mut self, group: &[Event]) -> Result<(), (usize, Cause)> {
         let mut crush = mem::take(&mut self.queue.crush);
         let watched = self.view().watch(group, &mut crush);
@@ -179,7 +178,7 @@ impl EventLoop<'_> {
         watched
     }
 
-    /// The next event no later than a time, of bodies that are still on the trajectories that led to it.
+    /// The next event no later than `until` whose bodies are still on the trajectories that led to it.
     fn next_event(&mut self, until: f64) -> Option<Event> {
         while let Some(event) = self.queue.waiting.peek() {
             if event.time > until {
@@ -193,8 +192,8 @@ impl EventLoop<'_> {
         None
     }
 
-    /// Lets go of contacts that close so fast that they bounce, for the search to find. Bodies in overlap,
-    /// which it does not look at, bounce at once.
+    /// Removes contacts that close so fast that they bounce; the impact search then finds them as impacts. Bodies in
+    /// overlap bounce at once, because the search ignores them.
     pub(super) fn release_bouncing(&mut self) {
         for index in (0..self.solver.contacts.all().len()).rev() {
             let constraint = self.solver.contacts.all()[index];
@@ -213,7 +212,7 @@ impl EventLoop<'_> {
         }
     }
 
-    /// Queues the events at which contacts of some bodies end.
+    /// Queues the ends of contacts of some bodies.
     pub(super) fn queue_contact_ends(&mut self, bodies: &[usize]) {
         let mut events = mem::take(&mut self.queue.waiting);
         for &body in bodies {

@@ -1,16 +1,15 @@
 //! Coulomb friction at the contacts of an island.
 //!
-//! The force across a contact's normal is at most its coefficient times the force along it; where bodies
-//! slide it is just that, against their sliding, and where they do not it is what keeps them from it, if
-//! that is not more. Normal forces and friction are found in turns, each for the other's last answer
-//! (Kaufman, Sueda, James, Pai 2008, "Staggered projections for frictional contact in multibody systems",
-//! sec. 4), until neither changes: at once where all normals of a body are parallel.
+//! The force across a contact's normal is at most the friction coefficient times the force along it. If the bodies
+//! slide, it has this size and is opposite to their sliding. If they do not slide, it is the force that keeps them
+//! from sliding, if that is no greater. Normal forces and friction are computed alternately, each with the last
+//! result of the other (Kaufman, Sueda, James, Pai 2008, "Staggered projections for frictional contact in multibody
+//! systems", sec. 4), until neither changes: immediately if all normals of a body are parallel.
 //!
-//! The direction of sliding is taken in the middle of the motion, which makes it right to second order.
-//! Sliding that ends within the step ends the contact's force there (an event), and what has come to rest
-//! is held. In a heap, whose contacts are solved once a step, friction stops sliding where the step starts,
-//! by as much as it can in the step, and what is left of it holds. Neither adds energy, wherever the
-//! step is cut.
+//! The direction of sliding is taken in the middle of the motion, which makes it correct to second order. If sliding
+//! ends within the step, the friction force ends then (an event), and the contact is held afterwards. In a heap,
+//! whose contacts are solved once a step, friction first stops sliding at the start of the step, by as much as it can
+//! in the step. The rest of the friction then holds. Neither adds energy, at whatever time the step is cut.
 
 use alloc::{vec, vec::Vec};
 use glam::DVec3;
@@ -23,12 +22,12 @@ use super::{
 };
 use crate::impulse::{ALL_SWEEPS, Joined, Known, drag, greatest, limit, project_with};
 
-/// Contacts for which an answer far away is sought as well.
+/// The greatest number of contacts for which a solution far from the starting point is searched too.
 const FEW: usize = 4;
 
-/// Turns of normal forces and friction at most, and sweeps of friction in each: for few contacts; for more,
-/// which are a heap where that does not do; and in a heap, where each step goes on from the answer of the
-/// last one.
+/// The greatest number of turns of normal forces and friction, and of sweeps of friction in each turn: for few
+/// contacts; for more, which are solved as a heap if this does not suffice; and in a heap, in which each step
+/// continues from the solution of the last one.
 fn effort(contacts: usize, is_bundled: bool) -> (usize, usize) {
     match is_bundled {
         true => (3, 32),
@@ -37,24 +36,24 @@ fn effort(contacts: usize, is_bundled: bool) -> (usize, usize) {
     }
 }
 
-/// Part of the greatest friction from which on a contact does not hold.
+/// Fraction of the greatest friction above which a contact counts as sliding.
 const NEARLY_ALL: f64 = 1.0 - 1e-12;
 
-/// What friction does to an island, by its contacts; empty where all are smooth.
+/// The friction of an island, by its contacts; empty if all are frictionless.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Friction {
     coefficient: Vec<f64>,
-    /// Velocity of the second body against the first across the normal, m/s; zero where they stick.
+    /// The velocity of the second body relative to the first, across the normal, m/s; zero if they stick.
     sliding: Vec<DVec3>,
-    /// On the second body, N.
+    /// The friction force on the second body, N.
     pub(super) force: Vec<DVec3>,
-    /// When sliding ends, s from the start of the trajectories; infinite where it does not.
+    /// The time at which sliding ends, s from the start of the trajectories; infinite if it does not end.
     pub(super) ends_after: Vec<f64>,
-    /// How much of the step is left, s.
+    /// The rest of the step, s.
     left: f64,
-    /// How long before the trajectory's velocity the one is that the method keeps, s.
+    /// The velocity stagger, s: the method keeps the velocity that the trajectory has this long before.
     stagger: f64,
-    /// In a heap the part of each contact's friction that has gone into stopping, N; else nothing.
+    /// In a heap, the part of each contact's friction that was used to stop sliding, N; otherwise empty.
     spent: Vec<f64>,
 }
 
@@ -63,7 +62,7 @@ impl Friction {
         self.coefficient.is_empty()
     }
 
-    /// Whether a contact that is pressed with a force slides, or is about to.
+    /// Whether a contact under the normal force `force` slides, or is about to.
     pub(super) fn slides(&self, k: usize, force: f64) -> bool {
         let Some(&coefficient) = self.coefficient.get(k) else {
             return false;
@@ -76,28 +75,28 @@ impl Friction {
         self.spent.get(k).copied().unwrap_or(0.0)
     }
 
-    /// The greatest friction of a contact that is pressed with a force, N.
+    /// The greatest friction of a contact under a normal force, N.
     fn most(&self, k: usize, pressed: f64) -> f64 {
         (limit(self.coefficient[k], pressed) - self.spent(k)).max(0.0)
     }
 
-    /// What acceleration against a contact's sliding, m/s², friction makes up for as far as it can: one that
-    /// brings it to rest in the middle of its sliding, so that friction that cannot is against the
-    /// motion's middle. Of a contact that yields to forces by an inverse mass, with a greatest friction, whose
-    /// bodies are accelerated against each other.
+    /// The acceleration against a contact's sliding that friction should reach as far as it can, m/s². It brings the
+    /// contact to rest in the middle of its sliding, so that friction that cannot do so is opposite to the velocity
+    /// in the middle of the motion. `yielding` is the sum of the inverse masses of the bodies, `most` the greatest
+    /// friction, and `acceleration` the relative acceleration of the bodies.
     fn wanted(&self, k: usize, yielding: f64, most: f64, acceleration: DVec3) -> DVec3 {
         let sliding = self.sliding[k];
         let Some(direction) = sliding.try_normalize() else {
             return DVec3::ZERO;
         };
-        // By all friction that there is, against the sliding at the start.
+        // With the greatest friction, against the sliding at the start.
         let without = acceleration - yielding * self.force[k];
         let slowing = most * yielding - direction.dot(without);
         let stop = match slowing > 0.0 {
             true => sliding.length() / slowing - self.stagger,
             false => f64::INFINITY,
         };
-        // What a method of first order has already turned round.
+        // A first-order method has already reversed the sliding.
         if stop <= 0.0 {
             return sliding / self.left;
         }
@@ -105,7 +104,7 @@ impl Friction {
         sliding / middle.max(f64::EPSILON * self.left)
     }
 
-    /// When a contact stops sliding, s.
+    /// The time after which a contact stops sliding, s.
     fn stops_after(&self, k: usize, acceleration: DVec3) -> f64 {
         let against = -self.force[k].normalize_or_zero();
         let sliding = self.sliding[k] + self.stagger * acceleration;
@@ -118,7 +117,7 @@ impl Friction {
 }
 
 impl View<'_> {
-    /// The coefficients of the contacts of an island; none where all are smooth.
+    /// The friction coefficients of the contacts of an island; `None` if all are frictionless.
     fn coefficients(&self, island: &Island) -> Option<Vec<f64>> {
         let all = self.contacts.all();
         let of = |&index: &usize| {
@@ -132,19 +131,18 @@ impl View<'_> {
             .then_some(coefficients)
     }
 
-    /// Whether a contact that has stuck still does: it slides by no more in a step than a small part of its
-    /// gap.
+    /// Whether a sticking contact still sticks: it slides in a step by no more than a small part of its gap.
     fn sticks(&self, contact: &ContactConstraint, sliding: DVec3) -> bool {
         let (i, j) = contact.bodies;
         contact.sticks
             && sliding.length() <= 0.0625 * self.layout().hover_gap(i, j) / self.scene.settings.dt
     }
 
-    /// Lets the impulses of an island's contacts (`given`, N s) rub, and contacts press that close by it:
-    /// speeds below `rounding` are none. Contacts that hardly slide and that forces press are brought to a
-    /// stand; in a heap all that forces press, by what those can give in what is `left` of the step (s).
-    /// Returns how much of this each has taken, N s; nothing if what is no heap takes more sweeps than there
-    /// are.
+    /// Applies friction to the impulses of an island's contacts (`given`, N s), and stops the contacts that close
+    /// because of it; speeds below `rounding` count as zero. Contacts that hardly slide and that forces press
+    /// together are brought to rest. In a heap this holds for all contacts that forces press together, up to the
+    /// friction of these forces in the rest of the step (`left`, s). Returns how much of this each contact has used,
+    /// N s; `None` if an island that is no heap would need too many sweeps.
     pub(super) fn rub(
         &self,
         island: &Island,
@@ -222,7 +220,7 @@ impl View<'_> {
         Some(beyond.collect())
     }
 
-    /// What is known of an island's friction before its forces are.
+    /// The data of an island's friction before its forces are computed.
     pub(super) fn friction_of(
         &self,
         island: &Island,
@@ -262,8 +260,8 @@ impl View<'_> {
         }
     }
 
-    /// The forces along the normals of an island's contacts and across them, and the accelerations that
-    /// they leave. Tells whether these are the answer, and not only near it.
+    /// Computes the forces along the normals of an island's contacts and across them, and the resulting
+    /// accelerations. Returns whether these are the solution and not only near it.
     pub(super) fn press_and_drag(
         &self,
         island: &Island,

@@ -1,8 +1,8 @@
-//! What goes on bearing a body where what it slides on ends.
+//! Contacts with the next body if the surface below a sliding body ends.
 //!
-//! Tiles are bodies that end where others begin. A body that slides from one to the next lies on both for
-//! a while and is in contact with the first one only: it hovers over the second one at the same gap.
-//! Where the one contact ends the other one begins, so that nothing falls by that gap.
+//! Tiles are bodies that end where others begin. A body that slides from one tile to the next is above both for a
+//! while, but in contact with the first one only. Above the second one it has the same gap. When the first contact
+//! ends, the second one begins, so that the body does not fall by that gap.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -13,17 +13,18 @@ use super::{
     contact_motion::Surface, contact_set::ContactConstraint, solver::ContactSolver, view::View,
 };
 
-/// What normals of level surfaces may be off by.
+/// The greatest difference of the normals of level surfaces.
 const LEVEL: f64 = 1e-9;
 
-/// How far ahead is looked for a surface, in gaps of bodies in contact.
+/// How far ahead a surface is searched, in gaps of bodies in contact.
 const AHEAD: f64 = 16.0;
 
-/// How often a body is handed over in a step at most, about, as contacts may end as they begin.
+/// The greatest number of handovers of a body in a step, approximately, because contacts may end as soon as they
+/// begin.
 const MOST_HANDED: u32 = 8;
 
 impl ContactSolver<'_> {
-    /// Hands over what some contacts that end have borne, and tells whether anything goes on bearing it.
+    /// Hands over bodies whose contacts end. Returns whether another body now supports any of them.
     pub(super) fn hand_over_all(
         &mut self,
         ended: &[ContactConstraint],
@@ -35,10 +36,10 @@ impl ContactSolver<'_> {
         Ok(self.contacts.all().len() > before)
     }
 
-    /// Finds the contacts of the bodies of one that ends, whose trajectories start there, with others that
-    /// are level with it.
+    /// When a contact ends, finds contacts of its bodies with other bodies that are level with it. The trajectories
+    /// of its bodies start at this time.
     pub(super) fn hand_over(&mut self, ended: &ContactConstraint) -> Result<(), (usize, Cause)> {
-        // Where bodies have just been placed all contacts are new.
+        // If bodies were just placed, all contacts are new.
         if ended.is_overlap || !self.knows_near() {
             return Ok(());
         }
@@ -54,7 +55,7 @@ impl ContactSolver<'_> {
             broad.each_partner(body, |other| partners.push(other));
             for &other in &partners {
                 let bodies = (body.min(other), body.max(other));
-                // Up from what bears it.
+                // Away from the supporting body.
                 let up = match (body == j) == (body == bodies.1) {
                     true => 1.0,
                     false => -1.0,
@@ -93,8 +94,8 @@ impl ContactSolver<'_> {
 }
 
 impl View<'_> {
-    /// A contact along a normal, if two bodies, of which the second one is at an offset and has a velocity from
-    /// the first, are no farther apart than those in contact and have none like it.
+    /// A contact like `level` along its normal, if two bodies are no farther apart than bodies in contact and have no
+    /// such contact yet. `offset` and `velocity` are those of the second body relative to the first.
     fn level_with(
         &self,
         level: &ContactConstraint,
@@ -107,9 +108,9 @@ impl View<'_> {
             return None;
         }
         let hover = self.layout().hover_gap(i, j);
-        // Where a vertex is above one, the surface ahead is.
+        // If a vertex is exactly above a vertex, the surface a little ahead is found instead.
         let ahead = AHEAD * hover * velocity.normalize_or_zero();
-        // What lies on the other side of a body is found as if it were in it.
+        // A surface on the other side of a body is found as if the two were in overlap, without a positive distance.
         let is_level = |surface: &Surface| {
             surface.distance > 0.0 && (surface.normal - level.normal).length() <= LEVEL
         };

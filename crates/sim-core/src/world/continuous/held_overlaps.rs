@@ -1,11 +1,10 @@
 //! Overlaps get no deeper.
 //!
-//! Bodies in overlap are kept from closing along their shortest way out, as bodies in contact are along
-//! a normal. That is all there is to it in flat surfaces; but across that way they may slide to where
-//! they are deeper in each other, and what begins to part may fall back within a step, where nobody
-//! looks for an impact of the two. A step in which an overlap gets deeper than it was where the bodies
-//! were placed is taken again, with the two *held*: they move as one. That takes energy, as an impact
-//! without restitution does, and gives none.
+//! Bodies in overlap are kept from closing along their shortest way out, as bodies in contact are along a normal.
+//! This is sufficient if their surfaces are flat. Otherwise they may slide across that way to a place where the
+//! overlap is deeper, or begin to separate and fall back within a step, in which no impact of the two is searched. If
+//! an overlap gets deeper in a step than it was where the bodies were placed, the step is taken again with the two
+//! *held*: they move as one body. Like an impact without restitution, this takes energy and gives none.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -19,11 +18,11 @@ use super::{
     view::View,
 };
 
-/// Gaps of bodies in contact by which an overlap may get deeper: more than rounding and an iterative
-/// solver move what is held.
+/// How much deeper an overlap may get, in gaps of bodies in contact. It is more than rounding and an iterative solver
+/// move held bodies.
 const SLACK: f64 = 16.0;
 
-/// What a step starts from, to be taken again.
+/// The state at the start of a step, so that the step can be taken again.
 struct Start {
     current: State,
     contacts: ContactSet,
@@ -32,7 +31,7 @@ struct Start {
 }
 
 impl World {
-    /// Does what is in a step, again where an overlap would get deeper.
+    /// Resolves the collisions of a step, again if an overlap would get deeper.
     pub(super) fn collide_without_deepening(&mut self) -> Result<(), (usize, Cause)> {
         if self.overlaps.pairs.is_empty() {
             return self.collide_once();
@@ -62,7 +61,7 @@ impl World {
         self.continuous.wake_all();
     }
 
-    /// Notes the pairs to be held that have got deeper, and tells whether there are new ones.
+    /// Adds the pairs that have got deeper to the held ones, and returns whether there are new ones.
     fn hold_deepened(&mut self) -> bool {
         let layout = self.layout();
         let deepened = |&&(i, j): &&(usize, usize)| {
@@ -94,14 +93,14 @@ impl World {
 }
 
 impl View<'_> {
-    /// Whether two bodies in overlap move as one in this step.
+    /// Whether two bodies in overlap move as one body in this step.
     pub(super) fn is_held(&self, i: usize, j: usize) -> bool {
         self.held.binary_search(&(i, j)).is_ok()
     }
 }
 
 impl Layout<'_> {
-    /// What keeps two bodies in overlap from closing along a normal.
+    /// The constraint that keeps two bodies in overlap from closing along a normal.
     pub(super) fn overlap_contact(
         &self,
         (i, j): (usize, usize),
@@ -116,8 +115,8 @@ impl Layout<'_> {
 }
 
 impl ContactSolver<'_> {
-    /// Keeps bodies in overlap from closing, also where they have begun to part and forces have turned
-    /// them back.
+    /// Keeps bodies in overlap from closing, also if they have begun to separate and forces have reversed their
+    /// motion.
     pub(super) fn keep_overlap_contacts(&mut self) {
         for place in 0..self.scene.overlaps.pairs.len() {
             let (i, j) = self.scene.overlaps.pairs[place];
@@ -134,7 +133,7 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// Keeps bodies that are held from moving against each other in any way.
+    /// Keeps held bodies from moving relative to each other.
     pub(super) fn hold_still(&mut self) {
         for place in 0..self.held.len() {
             let (i, j) = self.held[place];

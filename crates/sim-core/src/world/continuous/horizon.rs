@@ -1,18 +1,18 @@
-//! How far a method is asked for the motion of bodies before it is known what they meet.
+//! How far a method computes the motion of bodies before their impacts are known.
 //!
-//! Forces between bodies, and towards a centre, may grow without bound where no body ever comes,
-//! because it meets another one first. A method that was asked for the whole step would go through
-//! there, and fail, or lead anywhere. So it is asked up to a *horizon* only:
+//! Forces between bodies, and towards a centre, may grow without bound at places that no body ever reaches, because
+//! it meets another one first. A method that computed the whole step would pass through these places, and fail or
+//! give a wrong motion. So it computes the motion up to a *horizon* only:
 //!
-//! - A method with error control tells each step that it takes within `dt`, and stops after the first
-//!   on whose chord two bodies come together. Each of these steps holds the tolerance, so that it
-//!   does not go past what lies within a body.
-//! - Where a method finds no motion for the whole step, it is asked for a part of it, halved between
-//!   parts on which nothing is met and parts for which there is no motion, until something is met on
-//!   one. If nothing is, the step fails as it did.
+//! - A method with error control reports each step that it takes within `dt`, and stops after the first one on whose
+//!   chord two bodies meet. Each of these steps keeps the tolerance, so that it does not go past a place within a
+//!   body.
+//! - If another method finds no motion for the whole step, it computes a part of the step. The length is found by
+//!   bisection between parts on which nothing is met and parts for which there is no motion, until something is met
+//!   on one. If nothing is, the step fails with its first error.
 //!
-//! Impacts are sought up to the horizon. There the trajectory starts again, from the motion after the
-//! impacts that there were, and has a new horizon.
+//! Impacts are searched up to the horizon. There the trajectory starts again from the motion after these impacts, and
+//! has a new horizon.
 
 use alloc::vec::Vec;
 use core::{mem, ops::Range};
@@ -37,11 +37,11 @@ use crate::{
     integrate::Scratch,
 };
 
-/// Halvings of a step in search of a part for which there is a motion, and on which something is met.
+/// The number of bisections of a step in search of a part for which there is a motion, and on which something is met.
 const HALVINGS: u32 = 52;
 
 impl Motion<'_> {
-    /// Until when the trajectory of a body is known, s from the step's start.
+    /// The time until which the trajectory of a body is known, s from the step's start.
     #[inline]
     pub(super) fn horizon(&self, body: usize) -> f64 {
         let known = self.paths.horizons.known.get(body).copied();
@@ -50,8 +50,8 @@ impl Motion<'_> {
 }
 
 impl View<'_> {
-    /// Whether forces on one of two bodies may grow without bound, under a method that follows them however short
-    /// the time is in which they change.
+    /// Whether forces on one of two bodies may grow without bound, and the method has error control, so that it
+    /// follows the forces however short the time is in which they change.
     pub(super) fn are_steep(&self, i: usize, j: usize) -> bool {
         if !self.scene.settings.method.adaptive {
             return false;
@@ -62,20 +62,20 @@ impl View<'_> {
     }
 }
 
-/// Until when each trajectory is known, s from the step's start.
+/// The times until which trajectories are known, s from the step's start.
 #[derive(Clone, Debug, Default)]
 pub(in crate::world) struct Horizons {
-    /// By body; empty where all are known to the step's end.
+    /// By body; empty if all are known to the step's end.
     known: Vec<f64>,
 }
 
 impl Horizons {
-    /// Lets every trajectory go to the end of the step.
+    /// Sets all horizons to the end of the step.
     pub(in crate::world) fn clear(&mut self) {
         self.known.clear();
     }
 
-    /// Notes how far the trajectories of some bodies are known, if not to the end of the step.
+    /// Stores the horizon of some bodies; `None` is the end of the step.
     pub(in crate::world) fn set(
         &mut self,
         bodies: Range<usize>,
@@ -92,8 +92,8 @@ impl Horizons {
 }
 
 impl Scene<'_> {
-    /// Steps a block as far as contact lets the method be asked, and says how far that is, s from the
-    /// step's start, if it is not to the block's end.
+    /// Steps a block as far as contacts let the method be evaluated. Returns that time, s from the step's start, if
+    /// it is before the block's end.
     pub(in crate::world) fn step_to_horizon(
         &self,
         contacts: &ContactSet,
@@ -127,7 +127,7 @@ impl Scene<'_> {
         let Err(failure) = done else {
             return Ok(None);
         };
-        // What takes steps of its own has seen that nothing is met on them.
+        // A method with error control has seen that nothing is met on its steps.
         if self.settings.method.adaptive {
             return Err(failure);
         }
@@ -159,8 +159,8 @@ impl Scene<'_> {
         Err(failure)
     }
 
-    /// Whether forces on these bodies may grow without bound where contact keeps them from going. A method of first
-    /// order makes one parabola of the whole step.
+    /// Whether forces on these bodies may grow without bound at places that contacts keep them from. A first-order
+    /// method makes one parabola of the whole step and has no horizon.
     fn has_horizon(&self, block: &Block<'_>) -> bool {
         self.settings.collision == crate::Collision::Continuous
             && self.settings.method.order > 1
@@ -168,7 +168,7 @@ impl Scene<'_> {
             && self.are_forces_steep(&block.bodies, block.is_coupled)
     }
 
-    /// Whether forces on some bodies, which couple them or not, may grow without bound.
+    /// Whether forces on some bodies may grow without bound. `is_coupled` says whether forces couple the bodies.
     fn are_forces_steep(&self, bodies: &Range<usize>, is_coupled: bool) -> bool {
         self.forces.list.iter().any(|force| match force {
             Force::Attraction { body, .. } | Force::Body { body, .. } => {
@@ -187,8 +187,8 @@ impl Scene<'_> {
         })
     }
 
-    /// Whether some of these bodies come to touch each other, or what stands or moves on whatever comes, on
-    /// the chords of their ways to a time, s from the step's start.
+    /// Whether some of these bodies touch each other, or an immovable body, on the chords of their ways to a time, s
+    /// from the step's start.
     fn meets_on_way(
         &self,
         contacts: &ContactSet,
@@ -227,7 +227,7 @@ impl Scene<'_> {
         false
     }
 
-    /// Whether two bodies come to touch on chords, each from one place to another.
+    /// Whether two bodies touch on chords, each from one position to another.
     fn touch_on_chord(
         &self,
         contacts: &ContactSet,
@@ -244,7 +244,7 @@ impl Scene<'_> {
             Some(Shape::HalfSpace { .. }) => f64::INFINITY,
             _ => self.bodies.extent(body).reach.length(),
         };
-        // Twice, for what is rounded.
+        // Twice the reach, because of rounding.
         if nearest_on_chord(from, motion) > 2.0 * (size(i) + size(j))
             || !self.may_collide(i, j)
             || contacts.of_pair(i, j).next().is_some()
@@ -259,8 +259,8 @@ impl Scene<'_> {
 }
 
 impl EventLoop<'_> {
-    /// Queues the instants at which trajectories of some bodies have to start again, once for those
-    /// that are stepped together.
+    /// Queues the times at which trajectories of some bodies must start again, once for bodies that are stepped
+    /// together.
     pub(super) fn queue_horizons(&mut self, bodies: impl Iterator<Item = usize>) {
         if self.solver.paths.horizons.known.is_empty() {
             return;

@@ -1,24 +1,24 @@
-//! When two bodies on their trajectories have their next impact.
+//! The search for the next impact of two bodies on their trajectories.
 //!
-//! The exact search knows straight motion only. A trajectory that bends is cut into chords that depart from it
-//! by at most [`FLATNESS`] of the smaller body. Where a chord has an impact, the trajectory is cut closely before and
-//! after it and searched again: the departure falls with the square of the length, so that after a
-//! few rounds it is lost in the rounding, and the impact is one of the trajectory itself. Grazes between chords,
-//! shallower than their departure, are found by certificates ([`PairSearch::find_graze`]).
+//! The exact search handles straight motion only. A curved trajectory is cut into chords that depart from it by at
+//! most [`FLATNESS`] of the smaller body. If a chord has an impact, the search cuts the trajectory closely before and
+//! after that impact and searches again. The departure falls with the square of the length, so that after a few
+//! rounds it is less than rounding, and the impact is one of the trajectory itself. Grazes between chords, shallower
+//! than their departure, are found by certificates ([`PairSearch::find_graze`]).
 //!
-//! No impact is lost between one search and the next, though a sheet has no inside in which it could
-//! be found later. Let `r` be more than all that rounding moves a placed vertex by along the normal of
-//! a contact, in two places together ([`PairSearch::rounding`]):
+//! No impact is lost between one search and the next, though a sheet has no inside in which a later search could find
+//! it. Let `r` be more than all that rounding moves a placed vertex along the normal of a contact, at two positions
+//! together ([`PairSearch::rounding`]):
 //!
-//! - An event is put so early that `r` is left between the bodies. Until then, and where they start
-//!   again, each is before the contact, whatever is rounded. So is a pair of which a third body has
-//!   stopped one before its event.
-//! - A search goes on beyond the end of the step. A contact that it meets there with more than `r`
-//!   to go is before the bodies in the next step, where they start anew and round anew; one with
-//!   less belongs to this step.
+//! - An event is put so early that a distance `r` is left between the bodies. Until then, and when their trajectories
+//!   start again, the bodies are before the contact, whatever is rounded. The same holds for a pair of which a third
+//!   body has stopped one before its event.
+//! - A search goes on beyond the end of the step. A contact found there at a distance of more than `r` is ahead of
+//!   the bodies in the next step too, in which they start again with other roundings. A contact at a distance of less
+//!   than `r` belongs to this step.
 //!
-//! What slides past a surface by less than its rounding is the exception: a search goes so far beyond
-//! the end that it takes an angle of less than 1e-3 to a surface for that not to be seen.
+//! The exception is a body that slides past a surface by less than its rounding. The search goes so far beyond the
+//! end that it misses such a surface only at an angle of less than 1e-3.
 
 use glam::DVec3;
 
@@ -26,21 +26,21 @@ use super::super::{layout::RESOLUTION_ULPS, stepping::Cause};
 use super::{event::Event, trajectory::Probe, view::View};
 use crate::collide::{Contact, Form, Parabola, first_contact, first_on_parabola, has_roots, snap};
 
-/// Departure of a chord from its trajectory that is looked past, in largest half extents of the
+/// The departure of a chord from its trajectory that is neglected in the first search, in largest half extents of the
 /// smaller body.
 const FLATNESS: f64 = 1e-3;
-/// Chords in a trajectory at most.
+/// The greatest number of chords in a trajectory.
 const MAX_CHORDS: f64 = 4096.0;
-/// Halvings after which a time is as good as it gets.
+/// The number of halvings after which a time cannot get more exact.
 const MAX_DEPTH: u32 = 64;
 
 /// How far a search goes beyond the end of a step, in roundings.
 const BEYOND: f64 = 1024.0;
 
-/// How far apart bodies may be that touch but for rounding, in resolutions of their positions.
+/// The greatest distance of bodies that touch except for rounding, in resolutions of their positions.
 pub(super) const TOUCHING: f64 = 4.0;
 
-/// An end of chords: its number, the time, s, and the offset there, m.
+/// An end of a chord: its number, the time, s, and the offset then, m.
 type Knot = (f64, (f64, DVec3));
 
 /// The search for the next impact of two bodies.
@@ -49,19 +49,20 @@ struct PairSearch<'a> {
     forms: (Form<'a>, Form<'a>),
     i: usize,
     j: usize,
-    /// Departure of a chord from the trajectory, m, per square of its length, s², by component.
+    /// The departure of a chord from the trajectory, m, divided by the square of the chord's duration, s², by
+    /// component.
     deviation: DVec3,
-    /// What rounding may be, m, by component.
+    /// The rounding of positions, m, by component.
     resolution: DVec3,
-    /// Whether a contact constraint keeps them apart already.
+    /// Whether a contact constraint already keeps the bodies apart.
     is_in_contact: bool,
-    /// Whether both have an inside, in which the exact test sees the other one.
+    /// Whether both shapes have an inside in which the exact test detects the other one.
     is_solid: bool,
 }
 
 impl View<'_> {
-    /// The next impact of two bodies within the step, and where they are just before they touch.
-    /// The trees over their meshes must be there. The probe tells what it has cost.
+    /// The next impact of two bodies within the step, with their positions just before they touch. The trees over
+    /// their meshes must be built. The probe counts the work.
     pub(super) fn find_impact(
         &self,
         i: usize,
@@ -99,20 +100,20 @@ impl View<'_> {
 }
 
 impl PairSearch<'_> {
-    /// The first impact on trajectories of any kind.
+    /// The first impact, on trajectories of any kind.
     fn find_on_chords(&self, probe: &mut Probe) -> Result<Option<Event>, (usize, Cause)> {
         let (start, end) = (self.start(), self.end());
         let bodies = self.view.scene.bodies;
         let size = bodies.extent(self.i).half.min(bodies.extent(self.j).half);
         let length = end - start;
         let from = (start, self.offset_at(start, probe)?);
-        // A point has no extent: its trajectory must do.
+        // A point has no extent, so the length of its trajectory is used instead.
         let size = match size > 0.0 {
             true => size,
             false => (self.offset_at(end, probe)? - from.1).length(),
         };
         let ratio = libm::sqrt(self.deviation.length() / (FLATNESS * size)) * length;
-        // 0/0 where nothing moves.
+        // The ratio is NaN, from 0/0, if nothing moves.
         let chords = if ratio > 1.0 {
             libm::ceil(ratio).min(MAX_CHORDS)
         } else {
@@ -124,12 +125,12 @@ impl PairSearch<'_> {
         self.find_on_run(((0.0, from), (chords, to)), departure, &time_of, probe)
     }
 
-    /// The first impact, of which chords have found one or none: before it there may be one into which the
-    /// trajectory dips between two ends of chords.
+    /// The first impact; `found` is the one that the search on chords has found, if any. Before it, the trajectory
+    /// may dip into the other body between two ends of chords.
     ///
-    /// Certificates tell until when bodies are apart for sure. From there on chords are so short at first that they
-    /// do not depart from the trajectory by more than rounding, and then twice as long each: one of them
-    /// ends where the bodies are in each other.
+    /// Certificates give a time until which the bodies are proven apart. From there on, the first chord is so short
+    /// that it does not depart from the trajectory by more than rounding, and each further one is twice as long. One
+    /// of them ends when the bodies are in overlap.
     fn find_graze(
         &self,
         found: Option<Event>,
@@ -161,11 +162,11 @@ impl PairSearch<'_> {
         Ok(found)
     }
 
-    /// The first impact on a run of chords, between two knots by number, from whose straight line the
-    /// trajectory departs by so much, m.
+    /// The first impact on a run of chords between two knots, from whose straight line the trajectory departs by
+    /// `departure`, m.
     ///
-    /// Where bodies are so far apart on the line that they are not near on the trajectory, no chord is
-    /// looked at. So chords cost the logarithm of their number, and those that are near.
+    /// If the bodies are so far apart on the line that they cannot be near on the trajectory, no chord is searched.
+    /// So the cost is the logarithm of the number of chords, and the chords on which the bodies are near.
     fn find_on_run(
         &self,
         (from, to): (Knot, Knot),
@@ -184,7 +185,8 @@ impl PairSearch<'_> {
         let number = from.0 + libm::floor(0.5 * chords);
         let time = time_of(number);
         let middle = (number, (time, self.offset_at(time, probe)?));
-        // On a parabola a quarter is left; where the method makes another way, what is seen of it.
+        // On a parabola a quarter of the departure remains. For other trajectories, the departure seen at the middle
+        // is used if it is greater.
         let part = (time - from.1.0) / (to.1.0 - from.1.0);
         let seen = (middle.1.1 - (from.1.1 + part * motion)).length();
         let departure = seen.max(0.25 * departure);
@@ -194,7 +196,7 @@ impl PairSearch<'_> {
         }
     }
 
-    /// Whether two bodies come nowhere near each other within a departure, m, of a chord.
+    /// Whether two bodies are nowhere near each other within `departure`, m, of a chord.
     fn is_far_on_chord(&self, from: DVec3, motion: DVec3, departure: f64) -> bool {
         let reach = |body: usize| self.view.scene.bodies.extent(body).reach.length();
         let (first, second) = self.forms;
@@ -206,15 +208,16 @@ impl PairSearch<'_> {
                 reach(self.i) + reach(self.j),
             ),
         };
-        // Twice, for what is rounded, and as far as a search goes beyond the end of the step.
+        // Twice the reach, because of rounding. The last term is how far a search goes beyond the end of the step.
         apart > 2.0 * reach + departure + BEYOND * self.rounding().length()
     }
 
-    /// How much longer than a motion to the end of the step is one that goes on beyond it.
+    /// The factor by which a motion is lengthened that ends at the end of the step, so that the search goes beyond
+    /// it.
     fn stretch(&self, motion: DVec3) -> f64 {
         let way = motion.abs().max_element();
         let beyond = BEYOND * self.rounding().max_element();
-        // Not farther than in a step.
+        // No farther beyond the end than the motion of the step.
         if beyond < way {
             1.0 + beyond / way
         } else {
@@ -222,7 +225,7 @@ impl PairSearch<'_> {
         }
     }
 
-    /// The impact with a contact beyond the end of a chord, if there is only a rounding between.
+    /// The impact with a contact beyond the end of a chord, if only a rounding is left to it.
     fn find_at_end(
         &self,
         (from, to): ((f64, DVec3), (f64, DVec3)),
@@ -241,13 +244,13 @@ impl PairSearch<'_> {
             .map(Some)
     }
 
-    /// The first impact on trajectories that are parabolas, of shapes with closed forms.
+    /// The first impact on parabolas, of shapes with closed forms.
     fn find_on_parabola(&self, probe: &mut Probe) -> Result<Option<Event>, (usize, Cause)> {
         let start = self.start();
         let (x1, v1) = self.view.motion().motion_at(self.i, start, probe)?;
         let (x2, v2) = self.view.motion().motion_at(self.j, start, probe)?;
         let still = 8.0 * f64::EPSILON * (v1.length() + v2.length());
-        // What is in contact has its gap, and need not be brought to touch.
+        // Bodies in contact have a gap and do not count as touching.
         let (first, second) = self.forms;
         let touching = match (self.is_in_contact, first, second) {
             (true, ..) => 0.0,
@@ -273,7 +276,7 @@ impl PairSearch<'_> {
         self.back_off(times, approach, contact, probe).map(Some)
     }
 
-    /// The first impact on a part of the trajectory, given as times and offsets of its ends.
+    /// The first impact on a part of the trajectory. The part is given by the times and offsets of its ends.
     fn find_on_chord(
         &self,
         (from, to): ((f64, DVec3), (f64, DVec3)),
@@ -299,7 +302,7 @@ impl PairSearch<'_> {
         let length = to.0 - from.0;
         let fall = -contact.normal.dot(motion);
         let departure = self.deviation * length * length;
-        // Less than that of what is moved is rounding as well.
+        // A departure of less than the rounding of the motion counts as rounding too.
         let unseen = self.resolution + RESOLUTION_ULPS * f64::EPSILON * motion.abs();
         let is_straight = departure.cmple(unseen).all() || depth == MAX_DEPTH;
         let departure = departure.length();
@@ -312,7 +315,8 @@ impl PairSearch<'_> {
             let approach = (fall / length, self.room(contact.normal));
             return self.back_off(times, approach, contact, probe).map(Some);
         }
-        // Within this of the chord's impact lies the trajectory's, unless it slips past.
+        // The impact of the trajectory is within `about` of the impact of the chord, unless the bodies slip past each
+        // other.
         let time = from.0 + contact.time * length;
         let about = 2.0 * departure * length / fall;
         let (mut before, mut after) = (time - about, time + about);
@@ -336,8 +340,8 @@ impl PairSearch<'_> {
         Ok(None)
     }
 
-    /// The last time before a contact, but for rounding, at which there is room between two bodies: not
-    /// before a start, and from a time on at which they touch and close at a speed.
+    /// The last time before a contact, up to rounding, at which there is `room` between two bodies. It is not before
+    /// `start`. The bodies touch at the time `touching` and close at the speed `closing`.
     fn back_off(
         &self,
         (start, touching): (f64, f64),
@@ -346,14 +350,14 @@ impl PairSearch<'_> {
         probe: &mut Probe,
     ) -> Result<Event, (usize, Cause)> {
         let (i, j) = (self.i, self.j);
-        // By their speed, or where there is hardly any by the trajectory's bend.
+        // By the closing speed or, if that is almost zero, by the curvature of the trajectory.
         let back = (room / closing).min(libm::sqrt(
             room / (4.0 * along(self.deviation, contact.normal)),
         ));
         let mut back = back.max(f64::MIN_POSITIVE);
         let bodies = self.view.scene.bodies;
         if bodies.extent(i).half.max(bodies.extent(j).half) == 0.0 {
-            // Points that have passed each other by a rounding of the time do not meet.
+            // Points that have passed each other by a rounding of the time are not in overlap.
             back = back.max(RESOLUTION_ULPS * f64::EPSILON * touching);
         }
         let (last, mut time) = (self.end().next_down(), touching);
@@ -374,9 +378,9 @@ impl PairSearch<'_> {
         Ok(Event::impact(time, (i, j), contact, room, version))
     }
 
-    /// How far from a contact bodies are kept at their impact, m.
+    /// The distance at which bodies are kept from each other at their impact, m.
     fn room(&self, normal: DVec3) -> f64 {
-        // Bodies that nothing presses together part at once, and need no room to stay in.
+        // Bodies that nothing presses together separate at once, and need less room.
         let resolution = along(self.resolution, normal);
         let least = match self.is_pressed() {
             true => resolution,
@@ -388,14 +392,14 @@ impl PairSearch<'_> {
         }
     }
 
-    /// More than rounding moves a placed vertex of a pair against the other body by, in two places
+    /// A bound on how far rounding moves a placed vertex of a pair relative to the other body, at two positions
     /// together, by component, m.
     ///
-    /// With `u = 2^-53`, positions of up to `x`, motions of up to `d` since the start of a trajectory
-    /// and vertices of up to `s`, each body has errors of `u (x + 4 d)` where its position is summed
-    /// up, the pair of `u (x + x)` in its offset, of `u (x + x + s)` in the vertex, and of
-    /// `u (3 d + 3 d)` in the chord, the time and the part of it. The second place is the one in
-    /// which the search has placed the vertices, without errors of motion.
+    /// With `u = 2^-53`, positions of up to `x`, motions of up to `d` since the start of a trajectory and vertices of
+    /// up to `s`, each body has an error of `u (x + 4 d)` in the sum of its position. The pair has errors of
+    /// `u (x + x)` in its offset, of `u (x + x + s)` in the vertex, and of `u (3 d + 3 d)` in the chord, the time and
+    /// the part of it. The second position is the one at which the search has placed the vertices, without errors of
+    /// motion.
     fn rounding(&self) -> DVec3 {
         let of = |body: usize| {
             let paths = self.view.paths;
@@ -412,7 +416,7 @@ impl PairSearch<'_> {
         Ok(self.view.motion().motion_at(self.j, time, probe)?.0 - first)
     }
 
-    /// Whether forces may change the speed at which two bodies come together.
+    /// Whether forces may change the speed at which two bodies close.
     fn is_pressed(&self) -> bool {
         let (i, j) = (self.i, self.j);
         let push = &self.view.paths.acceleration;
@@ -425,7 +429,7 @@ impl PairSearch<'_> {
         self.view.paths.since[self.i].max(self.view.paths.since[self.j])
     }
 
-    /// Until when the trajectories of both are known, s from the step's start.
+    /// The time until which both trajectories are known, s from the step's start.
     fn end(&self) -> f64 {
         self.view
             .motion()
@@ -433,7 +437,7 @@ impl PairSearch<'_> {
             .min(self.view.motion().horizon(self.j))
     }
 
-    /// Whether two bodies at the start of their common trajectory do not part along a normal.
+    /// Whether two bodies do not separate along a normal at the start of their common trajectory.
     fn is_closing(&self, normal: DVec3, probe: &mut Probe) -> bool {
         let start = self.start();
         let mut velocity = |body| {
@@ -449,7 +453,7 @@ impl PairSearch<'_> {
     }
 }
 
-/// How near the origin a chord comes.
+/// The distance of a chord from the origin.
 pub(super) fn nearest_on_chord(from: DVec3, motion: DVec3) -> f64 {
     let way = motion.length_squared();
     let part = match way > 0.0 {
@@ -459,7 +463,7 @@ pub(super) fn nearest_on_chord(from: DVec3, motion: DVec3) -> f64 {
     (from + part * motion).length()
 }
 
-/// The most that components of some sizes are together along a normal.
+/// The greatest length along a normal of a vector whose components are bounded by `sizes`.
 fn along(sizes: DVec3, normal: DVec3) -> f64 {
     normal.abs().dot(sizes)
 }

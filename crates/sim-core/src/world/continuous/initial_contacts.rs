@@ -1,11 +1,11 @@
-//! Who touches whom where bodies have been placed.
+//! The first contacts of bodies that have just been placed.
 //!
-//! Bodies that are placed face to face meet as far as exact arithmetic is concerned, or miss each other
-//! by a rounding. Both are contacts. Those that meet are moved apart by the least that does it, in
-//! the norm of their masses, all at once: each pair has a place apart from each other nearby, the
-//! exact search from there to where the pair would be gives a plane, and displacements are solved
-//! for with all planes that have been found, until nobody meets. What cannot be parted by as much
-//! as the f32 of vertices is rounded is an overlap, and is held as it is.
+//! Bodies that are placed face to face overlap in exact arithmetic, or miss each other by a rounding. Both are
+//! contacts. Overlapping bodies are moved apart by the least sufficient displacements, in the norm of their masses,
+//! all at once. For each pair there is a position nearby at which it is apart. The exact search from that position to
+//! the present one gives a plane. The displacements are computed with all planes found so far, until no bodies meet.
+//! An overlap that cannot be removed by as much as the f32 rounding of vertices stays an overlap, and is held as it
+//! is.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -18,18 +18,18 @@ use crate::{
     impulse::project,
 };
 
-/// Rounds in which planes are added; each round adds one for each pair that still meets.
+/// The greatest number of rounds in which planes are added; each round adds one for each pair that still meets.
 const MAX_ROUNDS: usize = 64;
 
-/// Directions that are tried at most to part a pair.
+/// The greatest number of directions tried to move a pair apart.
 const MAX_DIRECTIONS: usize = 12;
 
-/// Two bodies that meet where they have been placed.
+/// Two bodies that overlap where they were placed.
 pub(in crate::world) struct Meeting {
     bodies: (usize, usize),
     /// An offset of the second from the first at which they are apart.
     apart: DVec3,
-    /// How far they may be moved against each other, m.
+    /// The greatest relative displacement of the two bodies, m.
     reach: f64,
 }
 
@@ -42,7 +42,7 @@ pub(in crate::world) struct Plane {
 }
 
 impl World {
-    /// Moves those apart that meet by no more than a rounding since they were placed.
+    /// Moves bodies apart that have overlapped by no more than a rounding since they were placed.
     pub(super) fn separate_placed(&mut self) {
         if !self.continuous.placed || self.overlaps.pairs.is_empty() {
             return;
@@ -73,11 +73,11 @@ impl World {
         self.note_depths();
     }
 
-    /// Notes how deep bodies are in each other that have been placed so, and keeps them from closing.
+    /// Stores the depths of bodies placed in overlap, and keeps these bodies from closing.
     fn note_depths(&mut self) {
         let mut last: Option<((usize, usize), Penetration)> = None;
         for (i, j) in self.overlaps.pairs.clone() {
-            // How deep what turns is in another body is not known.
+            // The depth of a turning body in another one is not known.
             if self.bodies.pair_tumbles(i, j) || self.overlaps.depth_at_start((i, j)).is_some() {
                 continue;
             }
@@ -96,7 +96,7 @@ impl World {
 }
 
 impl Layout<'_> {
-    /// Where a pair is apart that meets at an offset, if there is such a place within a rounding.
+    /// An offset at which a pair is apart that meets at `offset`, if there is one within a rounding.
     pub(in crate::world) fn place_apart(
         &self,
         bodies: (usize, usize),
@@ -107,13 +107,14 @@ impl Layout<'_> {
         self.bodies.need_bvh(j);
         let forms = self.bodies.forms(i, j)?;
         let farthest = self.flush(i, j);
-        // A sum of three directions is the longest way that is tried.
+        // A sum of three directions is the longest displacement that is tried.
         if self.is_surely_deeper(bodies, offset, 3.0 * farthest) {
             return None;
         }
         let is_apart = |to: DVec3| !self.bodies.meet_built(i, j, offset + to);
         let mut directions: Vec<DVec3> = Vec::new();
-        // Those of planes with the one body on one side and the other one on the other side first.
+        // Directions sorted by how deep the bodies are in each other along them: normals of planes that separate the
+        // bodies come first.
         let depth = |normal: DVec3| {
             let (first, second) = (reach(forms.0, -normal).0, reach(forms.1, normal).0);
             first + second - normal.dot(offset)
@@ -126,7 +127,7 @@ impl Layout<'_> {
             .map(|(_, normal)| normal)
             .take(MAX_DIRECTIONS);
         for normal in surfaces.chain([self.apart_along(i, j)]) {
-            // Each counts once in the sums below.
+            // Each direction counts once in the sums below.
             if !directions.contains(&normal) {
                 directions.push(normal);
             }
@@ -163,8 +164,8 @@ impl Layout<'_> {
             .find_map(found)
     }
 
-    /// Places at which pairs that meet do not, nor any that they come to meet, and the planes that keep
-    /// them apart; `None` where there are none nearby.
+    /// Positions at which the pairs that meet are apart, and the pairs that they would come to meet, with the planes
+    /// that keep them apart; `None` if there are none nearby.
     pub(in crate::world) fn parted(
         &self,
         meeting: &mut Vec<Meeting>,
@@ -173,7 +174,7 @@ impl Layout<'_> {
         let mut place = at.to_vec();
         let mut planes: Vec<Plane> = Vec::new();
         for round in 0..MAX_ROUNDS {
-            // Nobody has been moved before the first round; after it bodies may have come to others.
+            // No body is moved before the first round. After it, bodies may have come near others.
             let near = match round {
                 0 => Vec::new(),
                 _ => self.bodies.near_pairs(&place, |body| {
@@ -208,7 +209,8 @@ impl Layout<'_> {
                 }
                 is_new = true;
                 let forms = self.bodies.forms(i, j)?;
-                // Beyond where they meet, as times are rounded where shapes have closed forms.
+                // The motion goes on beyond the present position, because times are rounded for shapes with closed
+                // forms.
                 let motion = 2.0 * (offset - pair.apart);
                 let contact = first_contact(forms.0, forms.1, snap(pair.apart), snap(motion))?;
                 let touching = pair.apart + contact.time * motion;
@@ -255,7 +257,7 @@ impl Layout<'_> {
 }
 
 impl ContactSolver<'_> {
-    /// Finds the contacts of bodies that touch without meeting since they were placed.
+    /// Finds the contacts of bodies that were placed touching, without overlap.
     pub(super) fn find_initial_contacts(&mut self) {
         let at = self.paths.start.position.clone();
         let pairs = self
@@ -272,7 +274,7 @@ impl ContactSolver<'_> {
             let Some((first, second)) = self.scene.bodies.forms(i, j) else {
                 continue;
             };
-            // Where rounding is larger than a body, nothing is known of what it touches.
+            // If rounding is larger than a body, its contacts are unknown.
             let size = self
                 .scene
                 .bodies
@@ -307,8 +309,8 @@ impl ContactSolver<'_> {
     }
 }
 
-/// Directions from the first of two shapes along which contacts are looked for: with less than 55 degrees
-/// to any normal.
+/// Directions from the first of two shapes along which contacts are searched. Any normal has an angle of less than 55
+/// degrees to one of them.
 fn directions_between(first: Form<'_>, second: Form<'_>, offset: DVec3) -> Vec<DVec3> {
     match (first, second) {
         (Form::HalfSpace(normal), _) => alloc::vec![normal],

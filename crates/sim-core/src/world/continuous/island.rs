@@ -1,4 +1,4 @@
-//! Islands: what contacts tie together through bodies that may move.
+//! Islands: sets of movable bodies connected by contacts.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -12,18 +12,18 @@ use super::super::{
 use super::view::View;
 use crate::impulse::{Joined, Prepared};
 
-/// Bodies and constraints that contacts tie together.
+/// The bodies of an island and their constraints.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Island {
-    /// The bodies that may move.
+    /// The movable bodies.
     pub(super) bodies: Vec<usize>,
     /// Indices of the constraints.
     pub(super) constraints: Vec<usize>,
-    /// All bodies of the constraints.
+    /// The order of all bodies of the constraints.
     order: InOrder,
 }
 
-/// Who has been visited in a search for islands.
+/// The bodies visited in a search for islands.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Visited {
     round: u32,
@@ -31,7 +31,7 @@ pub(super) struct Visited {
 }
 
 impl Visited {
-    /// Begins with nobody visited.
+    /// Begins a search with no body visited.
     pub(super) fn begin(&mut self, bodies: usize) {
         self.body.resize(bodies, 0);
         self.round = self.round.wrapping_add(1);
@@ -46,7 +46,7 @@ impl Visited {
         self.body[body] == self.round
     }
 
-    /// Visits a body, and tells whether it is new.
+    /// Visits a body, and returns whether it was not visited before.
     pub(super) fn visit(&mut self, body: usize) -> bool {
         mem::replace(&mut self.body[body], self.round) != self.round
     }
@@ -60,7 +60,7 @@ impl View<'_> {
         Some(island)
     }
 
-    /// The same in no order.
+    /// The same, not sorted.
     pub(super) fn island_around(&self, seed: usize, visited: &mut Visited) -> Option<Island> {
         if !self.scene.bodies.is_movable(seed) || !visited.visit(seed) {
             return None;
@@ -76,7 +76,7 @@ impl View<'_> {
             for &index in self.contacts.of_body(body) {
                 let (i, j) = self.contacts.all()[index as usize].bodies;
                 let other = i + j - body;
-                // Of two that may move, the lower one names it.
+                // Of two movable bodies, the lower one adds the constraint.
                 if !self.scene.bodies.is_movable(other) || body < other {
                     island.constraints.push(index as usize);
                 }
@@ -88,7 +88,7 @@ impl View<'_> {
         Some(island)
     }
 
-    /// Puts an island into an order that is not that of the places of bodies: sums over it round.
+    /// Sorts an island in an order that does not depend on the indices of bodies, because sums over it round.
     fn sort(&self, island: &mut Island) {
         let all = self.contacts.all();
         let Island {
@@ -112,7 +112,7 @@ impl View<'_> {
     }
 }
 
-/// The bodies of some constraints, once each, in order, and the constraints between their places.
+/// The bodies of some constraints, each once and in order, and the constraints between their places in this list.
 pub(in crate::world) struct Places {
     pub(super) bodies: Vec<usize>,
     pub(super) joined: Vec<Joined>,
@@ -158,7 +158,7 @@ impl Places {
         }
     }
 
-    /// What an impulse on a contact opens it by, 1/kg.
+    /// The opening speed for an impulse of 1 N s on a contact, 1/kg.
     pub(super) fn yielding(&self, k: usize) -> f64 {
         let (i, j) = self.joined[k].bodies;
         self.inverse_mass[i] + self.inverse_mass[j]
@@ -168,7 +168,7 @@ impl Places {
         self.bodies.iter().map(|&body| of(body)).collect()
     }
 
-    /// Writes the values of bodies that may move.
+    /// Writes the values of movable bodies.
     pub(super) fn put(&self, values: &[DVec3], to: &mut [DVec3], inverse_mass: &[f64]) {
         for ((&body, &value), &inverse) in self.bodies.iter().zip(values).zip(inverse_mass) {
             if inverse > 0.0 {

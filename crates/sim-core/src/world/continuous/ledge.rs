@@ -1,10 +1,10 @@
-//! Ledges that are rounding: tiles that are level but for the last bit of their vertices.
+//! Ledges that are only rounding: tiles that are level except for the last bit of their vertices.
 //!
-//! Vertices are f32, so that the tops of two bodies that are meant to be level differ by some parts in
-//! 10^7. What slides from the lower one to the higher one would stop there. Where a body that slides is
-//! stopped by what is no higher than that, and would lie on it, it is lifted there, with all that lies
-//! on it. That is a ramp of no length: it takes what the weight has gained, and a body without so much
-//! stops after all.
+//! Vertices are f32, so that the tops of two bodies that are meant to be level differ by some parts in 10^7. A body
+//! that slides from the lower one to the higher one would stop there. If a sliding body is stopped by a ledge no
+//! higher than that rounding, and would lie on it, it is lifted onto it with all bodies that lie on it. This acts as
+//! a ramp of no length. The lift costs the energy that the weight gains, and a body without so much kinetic energy is
+//! stopped after all.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -20,32 +20,32 @@ use super::{
 };
 use crate::collide::{first_contact, meet, snap};
 
-/// What the normals of surfaces that are level but for the rounding of their vertices may be off by.
+/// The greatest difference of the normals of surfaces that are level except for the rounding of their vertices.
 const LEVEL: f64 = 1e-6;
 
-/// Lifts that are tried, each twice as high as the one before.
+/// The number of lifts that are tried, each twice as high as the one before.
 const LIFTS: i32 = 8;
 
-/// How often a body is lifted in a step at most; what comes after that stops it.
+/// The greatest number of times that a body is lifted in a step; the next ledge stops it.
 const MOST_CLIMBS: u32 = 16;
 
-/// What a ledge is to what slides.
+/// A body that slides onto a ledge.
 struct Slide {
     body: usize,
     ledge: usize,
     /// The contact that it slides on.
     constraint: ContactConstraint,
-    /// Up from what it slides on.
+    /// The direction away from the surface below.
     up: DVec3,
-    /// Its motion over the ledge, m/s.
+    /// Its velocity along the ledge, m/s.
     along: DVec3,
     /// The highest ledge that rounding explains, m.
     most: f64,
 }
 
 impl EventLoop<'_> {
-    /// Lifts what slides onto a ledge of rounding, where it would have an impact with it, and tells
-    /// whether it has.
+    /// Lifts a sliding body onto a ledge of rounding, if the event is an impact with such a ledge. Returns whether it
+    /// has.
     pub(super) fn climb(
         &mut self,
         event: &Event,
@@ -69,7 +69,7 @@ impl EventLoop<'_> {
         Ok(false)
     }
 
-    /// Lifts a body onto a ledge, if it is as high as rounding at most, and tells whether it has.
+    /// Lifts a body onto a ledge, if the ledge is no higher than rounding. Returns whether it has.
     fn lift(
         &mut self,
         slide: &Slide,
@@ -94,7 +94,7 @@ impl EventLoop<'_> {
         let sign = if slide.body == pair.1 { 1.0 } else { -1.0 };
         let start = &self.solver.paths.start;
         let offset = start.position[pair.1] - start.position[pair.0];
-        // As far as until what is round is over it.
+        // Far enough that a round body is over the ledge.
         let size = self.solver.scene.bodies.extent(slide.body).half;
         let far = 4.0 * libm::sqrt(most * size) + 4.0 * most + 64.0 * hover;
         let is_free = |lift: f64| {
@@ -110,7 +110,7 @@ impl EventLoop<'_> {
         else {
             return Ok(false);
         };
-        // Onto it by a little, and down to it.
+        // A little onto the ledge, and down to it.
         let onto = 4.0 * hover * forward;
         let level = ContactConstraint {
             bodies: pair,
@@ -128,15 +128,15 @@ impl EventLoop<'_> {
             let lift = lift - surface.distance + hover;
             return self.raise(slide, lift, lift * up + onto, time, restarted);
         }
-        // What is round, or pointed, is not over it yet.
+        // A round or pointed body is not over the ledge yet.
         match level_at(far * forward) {
             Some(_) => self.raise(slide, lift, lift * up, time, restarted),
             None => Ok(false),
         }
     }
 
-    /// Displaces a body and all that contacts tie to it, unless they would meet others, and lets what
-    /// that takes slow it down.
+    /// Displaces a body and its whole island, unless they would meet other bodies, and slows the body down by the
+    /// energy that this takes.
     fn raise(
         &mut self,
         slide: &Slide,
@@ -211,8 +211,8 @@ impl EventLoop<'_> {
 }
 
 impl View<'_> {
-    /// How a body slides on one of its contacts onto what it has an impact with, if that rises from the
-    /// surface by no more than rounding where they touch.
+    /// How a body slides on one of its contacts onto the body with which it has an impact, if that rises from the
+    /// surface by no more than rounding at their contact point.
     fn slide_onto(&self, event: &Event, body: usize, ledge: usize, index: usize) -> Option<Slide> {
         let constraint = self.contacts.all()[index];
         let (i, j) = constraint.bodies;
@@ -235,7 +235,7 @@ impl View<'_> {
         let of = |body: usize, point: DVec3| (point - start.position[body]).dot(up).abs();
         let point = event.contact.point;
         let most = f64::from(f32::EPSILON) * (of(floor, touched) + of(ledge, point));
-        // What it meets below the surface is no ledge of it.
+        // An impact below the surface is not one with a ledge.
         if (point - touched).dot(up).abs() > most {
             return None;
         }
@@ -250,8 +250,8 @@ impl View<'_> {
         })
     }
 
-    /// Whether a body on a way of two parts from an offset meets another one: a point, or a sheet, has to be
-    /// seen on the way.
+    /// Whether a body meets another one on a path of two parts from an offset. The path is searched, and not only its
+    /// end, because points and sheets would be missed there.
     fn is_stopped(&self, body: usize, other: usize, from: DVec3, parts: [DVec3; 2]) -> bool {
         let Some((other, body)) = self.scene.bodies.forms(other, body) else {
             return false;

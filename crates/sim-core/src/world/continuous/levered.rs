@@ -1,11 +1,12 @@
-//! How bodies turn on which forces act at points, within a step.
+//! The rotation within a step of bodies on which forces act at points.
 //!
-//! As their places, methods of an order above the first are asked for it: the state at any time is that after a
-//! step of just that length.
+//! Methods of second and higher order compute it like positions: the state at any time is the state after a step of
+//! exactly that length.
 //!
-//! A method of the first order is not, as its steps in two parts are not the whole. It turns a body from one end of
-//! the step to the other, and the trajectory is the torque-free flight that does so. What its angular momentum
-//! differs by from that of the method at the end is added there, a *kick*: the twin of the velocity stagger of places.
+//! A first-order method does not, because two partial steps differ from one whole step. It turns a body from the
+//! start of the step to the end, and the trajectory is the torque-free flight between these rotations. The difference
+//! of its angular momentum from that of the method is added at the end, as a *kick*. This is the counterpart of the
+//! velocity stagger of positions.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -17,10 +18,11 @@ use super::{
 };
 use crate::rotation::{Flight, FlightError, chart};
 
-/// Corrections of a flight until it leads to how a body is turned. Each leaves about the angle of the step of the error.
+/// The greatest number of corrections of a flight until it leads to the given rotation. Each multiplies the error by
+/// about the angle of the step, rad.
 const CORRECTIONS: u32 = 60;
 
-/// The torque that makes one angular momentum of another in a time, N m.
+/// The constant torque that changes one angular momentum into another in a time, N m.
 pub(super) fn mean_torque(from: Turned, to: Turned, length: f64) -> DVec3 {
     match length > 0.0 {
         true => (to.momentum - from.momentum) / length,
@@ -28,7 +30,7 @@ pub(super) fn mean_torque(from: Turned, to: Turned, length: f64) -> DVec3 {
     }
 }
 
-/// Where a body is, m, how fast, m/s, and if its method tells that, how it is turned.
+/// The position, m, and velocity, m/s, of a body, and its rotation if the method computes it.
 #[derive(Clone, Copy)]
 pub(super) struct Pose {
     pub(super) position: DVec3,
@@ -46,7 +48,7 @@ impl Scene<'_> {
 }
 
 impl Trajectories {
-    /// Begins the trajectory of a body that turns by levers.
+    /// Begins the rotation of a body that levers turn.
     pub(super) fn begin_levered(
         &mut self,
         scene: &Scene<'_>,
@@ -66,7 +68,7 @@ impl Trajectories {
     }
 }
 
-/// The flight from one rotation over another one, in the middle of a time, to a third.
+/// The flight from one rotation to a third, through a second one in the middle of the time.
 pub(super) fn flight_over(
     moments: DVec3,
     [start, half, end]: [Turned; 3],
@@ -98,8 +100,8 @@ pub(super) fn flight_over(
     Ok(best)
 }
 
-/// The angular momentum with which a body, left to itself, gets from one rotation to another in a time: about that
-/// which it has at the end.
+/// The angular momentum with which a free body gets from one rotation to another in a time. It is searched near the
+/// one that the body has at the end.
 fn momentum_between(
     moments: DVec3,
     start: Turned,
@@ -127,9 +129,9 @@ fn momentum_between(
 }
 
 impl ContactSolver<'_> {
-    /// Lets the forces on a body that contacts begin to press, and on all that forces couple it to, be constant for the
-    /// rest of the step, as they are where their trajectories start: the forces on what is in contact are, and what one
-    /// gains the other one has to lose.
+    /// Makes the forces constant for the rest of the step on a body that contacts begin to press, and on all bodies
+    /// coupled to it by forces. They are those at the starts of the trajectories. The forces on bodies in contact are
+    /// constant, and what one body gains the other one must lose.
     pub(super) fn freeze(&mut self, body: usize) {
         let Some((bodies, true)) = self.view().motion().coupled_group(body) else {
             return;
@@ -154,7 +156,8 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// What a method of first order has still to give to the angular momentum of a body until its trajectory starts.
+    /// What a first-order method adds to the angular momentum on the trajectory of a body to give its own at the
+    /// start of that trajectory, kg m²/s.
     pub(super) fn kick_left(&self, slot: usize, body: usize) -> DVec3 {
         let left = self.scene.settings.dt - self.paths.since[body];
         let kick = self.paths.kicks[slot];
@@ -165,13 +168,13 @@ impl ContactSolver<'_> {
 }
 
 impl Motion<'_> {
-    /// Whether a body is turned by forces that depend on the motion, so that its method knows how.
+    /// Whether forces that depend on the motion turn a body, so that its method computes the rotation.
     pub(super) fn is_turning_bent(&self, body: usize) -> bool {
         self.scene.is_turned_by_levers(body) && self.coupled_group(body).is_some()
     }
 
-    /// Where a body is, and where forces bend that how it is turned, at a time between its trajectory's start and its
-    /// horizon, s from the step's start.
+    /// The position and velocity of a body at a time between its trajectory's start and its horizon, s from the
+    /// step's start; and its rotation, if the method computes it.
     pub(super) fn pose_at(
         &self,
         body: usize,
@@ -184,7 +187,7 @@ impl Motion<'_> {
         let turned = bent.map(|slot| match time {
             _ if time == self.paths.since[body] => self.paths.start.turned[slot],
             _ if time == self.horizon(body) => self.paths.end.turned[slot],
-            // The method has just been asked.
+            // `motion_at` has just stepped the method to this time.
             _ => probe.state.turned[slot],
         });
         Ok(Pose {
@@ -194,7 +197,8 @@ impl Motion<'_> {
         })
     }
 
-    /// The same after another body has been asked for at that time: what forces couple them has been stepped with it.
+    /// The same after the body `asked` was evaluated at that time: bodies coupled to it by forces were stepped with
+    /// it.
     pub(super) fn pose_after(
         &self,
         asked: usize,
@@ -216,8 +220,7 @@ impl Motion<'_> {
         })
     }
 
-    /// The torque of all forces on a body that turns, where its trajectory starts, N m; of contacts as well where they
-    /// press it.
+    /// The torque on a turning body of all forces other than contacts, at the start of its trajectory, N m.
     pub(super) fn torque_there(&self, slot: usize, body: usize) -> DVec3 {
         let applied = self.paths.applied_torque[slot];
         let known = match self.is_turning_bent(body) {

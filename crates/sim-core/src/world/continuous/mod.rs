@@ -1,29 +1,29 @@
-//! Impacts at the time at which they happen, and contacts that last.
+//! The continuous mode: impacts at their times of impact, and contacts that last.
 //!
 //! A step goes through these phases (`World::go_through_phases`):
 //!
-//! 1. [`trajectory`]: each body has a trajectory through the step, as its method makes it, or as far as
-//!    contact lets the method be asked ([`horizon`]).
-//! 2. [`initial_contacts`]: of bodies that have just been placed it is found out who touches.
-//! 3. [`contact_motion`]: the contacts that the last step has left ([`contact_set`]) are measured;
-//!    [`solver`]: the bodies of each [`island`] get the velocities ([`velocity_solve`]) and accelerations
-//!    ([`acceleration_solve`], [`friction`]) with which none of its contacts closes.
-//! 4. [`candidates`]: pairs whose swept boxes meet; [`impact_search`]: for each of them the next impact is
-//!    found and waits in a queue ([`event`]), and so does the end of each contact that is left behind.
-//! 5. [`event_loop`]: the earliest event is taken, with all of its instant ([`resolve`]); [`outcome`]: bodies
-//!    part ([`bounce`]), or stay in contact and their island is solved; new trajectories start, and their
-//!    events are found. [`hand_over`] and [`ledge`]: what slides goes on from one body to the next.
-//!    [`progress`], [`crush`] and [`work`] stop a step that would have no end.
-//! 6. [`position_correction`]: an exact test makes sure that no two bodies meet.
+//! 1. [`trajectory`]: each body has a trajectory through the step, as its method computes it, or as far as contacts
+//!    let the method be evaluated ([`horizon`]).
+//! 2. [`initial_contacts`]: finds the contacts of bodies that have just been placed.
+//! 3. [`contact_motion`]: measures the contacts left from the last step ([`contact_set`]). [`solver`]: gives the
+//!    bodies of each [`island`] the velocities ([`velocity_solve`]) and accelerations ([`acceleration_solve`],
+//!    [`friction`]) with which none of its contacts closes.
+//! 4. [`candidates`]: finds the pairs whose swept boxes meet. [`impact_search`]: finds the next impact of each of
+//!    these pairs, which waits in a queue ([`event`]). The end of each contact that a body leaves waits there too.
+//! 5. [`event_loop`]: takes the earliest event with all simultaneous ones ([`resolve`]). [`outcome`]: the bodies
+//!    separate ([`bounce`]), or stay in contact and their island is solved. New trajectories start, and their events
+//!    are searched. [`hand_over`] and [`ledge`]: a sliding body moves on from one body to the next. [`progress`],
+//!    [`crush`] and [`work`] stop a step that would not end.
+//! 6. [`position_correction`]: an exact test ensures that no two bodies meet.
 //!
-//! [`turning_search`], [`turning_response`], [`turning_rest`]: the same for bodies that turn, which are in no island:
-//! they bounce with their lever arms, or stay in contact for the rest of the step, by constant forces.
+//! [`turning_search`], [`turning_response`], [`turning_rest`]: the same for turning bodies, which are in no island.
+//! They bounce with their lever arms, or stay in contact for the rest of the step under constant forces.
 //!
-//! [`held_overlaps`]: where bodies that were placed in overlap would get deeper, all of it is done again
-//! with the two held.
+//! [`held_overlaps`]: if bodies that were placed in overlap would get deeper, the whole step is taken again with the
+//! two held.
 //!
-//! A step costs a box test for each pair that comes near, a search for each whose swept boxes meet, and
-//! two searches or so for each event.
+//! A step costs a box test for each pair that comes near, a search for each pair whose swept boxes meet, and about
+//! two searches for each event.
 
 mod acceleration_solve;
 mod bounce;
@@ -78,32 +78,32 @@ use tallies::Tallies;
 use trajectory::Trajectories;
 use turning_rest::TurningRest;
 
-/// What a step with continuous collision needs beside the state; empty while there is none.
+/// The data of the continuous mode beside the state; empty if the mode was never used.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Continuous {
     pub(super) paths: Trajectories,
     tallies: Tallies,
-    /// Bodies that are at rest, to which nothing happens until something comes.
+    /// By body, whether it is asleep: at rest until another body comes.
     asleep: Vec<bool>,
     near: Neighbours,
     queue: EventQueue,
     visited: Visited,
-    /// Room for the bodies whose trajectories are new.
+    /// Memory for the bodies whose trajectories start again.
     restarted: Vec<usize>,
-    /// Whether bodies have been placed since it was found out who touches.
+    /// Whether bodies were placed since contacts were last searched for placed bodies.
     pub(super) placed: bool,
     /// The contacts before the step.
     contacts_before: ContactSet,
-    /// Pairs in overlap that move as one in this step.
+    /// Pairs in overlap that move as one body in this step.
     held: Vec<(usize, usize)>,
     /// Turning bodies in contact in this step.
     turning: TurningRest,
-    /// What bundling has changed in the step.
+    /// The effects of bundling in the step.
     pub(super) bundled: Bundled,
 }
 
 impl Continuous {
-    /// One that keeps nothing yet to save time.
+    /// The data of a world that continues without caches, because it was read from a snapshot or a body was removed.
     pub(super) fn resumed(placed: bool, knows_near: bool, bundled: Bundled) -> Continuous {
         Continuous {
             placed,
@@ -116,18 +116,19 @@ impl Continuous {
         }
     }
 
-    /// Whether it is known what is near bodies where they are: they have not been placed since.
+    /// Whether the neighbours of the bodies at their positions are known, because no body was placed since they were
+    /// found.
     pub(super) fn knows_near(&self) -> bool {
         self.near.knows_near
     }
 }
 
 impl World {
-    /// Events in one step after which it is given up. One in which bodies have no room, so that impacts
-    /// follow each other in no time, is given up after some thousands.
+    /// The greatest number of events in one step; with more, the step fails. If bodies have no room, so that impacts
+    /// follow each other without time between them, the step fails after some thousands.
     pub const MOST_IMPACTS: u64 = 4_000_000;
 
-    /// Lets bodies have their impacts and contacts on the way from the previous state to the current one.
+    /// Resolves the impacts and contacts of bodies on the way from the previous state to the current one.
     pub(super) fn collide_continuously(&mut self) -> Result<(), (usize, Cause)> {
         let record = self.record.checkpoint();
         self.continuous.contacts_before.copy_from(&self.contacts);
@@ -146,7 +147,7 @@ impl World {
                 self.previous.position = position;
                 self.overlaps.pairs = overlapping;
             }
-            // Who fell asleep in the step has not.
+            // Bodies that fell asleep in the failed step are awake again.
             self.continuous.wake_all();
             return Err(failed);
         }
@@ -157,7 +158,7 @@ impl World {
         Ok(())
     }
 
-    /// Goes through the phases once, with the current state as the ends of trajectories.
+    /// Goes through the phases once; the current state gives the ends of trajectories.
     fn collide_once(&mut self) -> Result<(), (usize, Cause)> {
         mem::swap(&mut self.current, &mut self.continuous.paths.end);
         let done = self.go_through_phases();

@@ -1,19 +1,19 @@
-//! Whether bodies part after an impact, or stay in contact.
+//! Whether bodies separate after an impact, or stay in contact.
 //!
-//! They part with their restitution. Where forces press them together and they would be back
-//! within a small part of a step, they stay in contact instead: from then on a constraint keeps
-//! them apart ([`super::contact_set`]), for the rest of the step and in the next ones, until they
-//! move apart. So a ball comes to rest after finitely many bounces.
+//! They separate with their restitution. If forces press them together and they would be back within a small part of
+//! a step, they stay in contact instead. From then on a constraint keeps them apart ([`super::contact_set`]), for the
+//! rest of the step and in the next ones, until they separate. So a ball comes to rest after finitely many bounces.
 //!
-//! Where forces may grow without bound, a step is no measure of how soon: bodies that touch in passing are
-//! turned out of each other's way long before its end. There they stay in contact only where they would part by
-//! no more than the gap of contacts.
+//! If forces may grow without bound, the length of a step does not show how soon bodies are back: bodies that touch
+//! in passing are out of each other's way long before its end. Such bodies stay in contact only if they would
+//! separate by no more than the gap of contacts.
 //!
-//! Bodies that keep a part of their speed only come to rest as well where what is left moves them by
-//! no more than a rounding in a step; and where they are caught among others, so that impacts follow
-//! each other faster and faster though nothing presses these two together (inelastic collapse;
-//! McNamara, Young 1994, "Inelastic collapse in two dimensions"): by a small part of the speed
-//! at which it began, or of what forces give to each of them if they lie on something.
+//! There are two more cases for bodies with a restitution less than one. They come to rest if their remaining speed
+//! moves them by no more than a rounding in a step. They also come to rest if they are caught among others, so that
+//! impacts follow each other faster and faster though nothing presses these two together (inelastic collapse;
+//! McNamara, Young 1994, "Inelastic collapse in two dimensions"). This requires that their remaining speed is a small
+//! part of the speed at which the impacts began, or of the speed that forces give to each of them if they lie on
+//! something.
 
 use glam::DVec3;
 
@@ -23,38 +23,38 @@ use super::{
     view::View,
 };
 
-/// A flight of less than this part of a step is none.
+/// A flight shorter than this fraction of a step does not count.
 const SHORTEST_FLIGHT: f64 = 1.0 / 16.0;
 
-/// Impacts of a body in a step after which it may be caught among others.
+/// The number of impacts of a body in a step after which it may be caught among others.
 pub(super) const MANY_BOUNCES: u32 = 8;
 
-/// Tops of a hop that are looked at, each where the force on the one before puts it.
+/// The number of estimates of the top of a hop, each from the force at the one before.
 const HOPS: u32 = 16;
 
-/// Part of the greatest speed at which a body has had an impact in a step that is nothing beside it.
+/// Fraction of the greatest closing speed of a body in a step that is negligible beside that speed.
 const SPENT: f64 = 1e-6;
 
-/// How often a body may come to rest in a step, at the time of each, before all that it and what lies
-/// with it would come to rest on in the step is bundled: taken for in contact at once, with its gap.
+/// How often a body may come to rest in a step, each time at its own time, before its island is bundled: all impacts
+/// that would come to rest in the step begin their contacts at once, with their gaps.
 const MANY_RESTS: u32 = 4;
 
 impl View<'_> {
-    /// The speed at which two bodies close at their impact, m/s.
+    /// The closing speed of two bodies at their impact, m/s.
     pub(super) fn closing(&self, event: &Event) -> f64 {
         let (i, j) = event.bodies;
         let velocity = &self.paths.start.velocity;
         (velocity[i] - velocity[j]).dot(event.contact.normal)
     }
 
-    /// Whether two bodies bounce or come to rest, from their motion where their trajectories start.
+    /// Decides whether two bodies bounce or come to rest, from their motion at the starts of their trajectories.
     pub(super) fn classify(&self, event: &mut Event) {
         let closing = self.closing(event);
         self.classify_by(event, closing, self.pressed_on_hop(event, closing));
     }
 
-    /// The acceleration with which forces press two bodies together at their impact, m/s²: as their
-    /// contacts with others let them, or as if there were none, since one of those may end here.
+    /// The acceleration with which forces press two bodies together at their impact, m/s²: the greater of the values
+    /// with and without their contacts with others, because one of those may end here.
     pub(super) fn pressed(&self, event: &Event) -> f64 {
         let ((i, j), normal) = (event.bodies, event.contact.normal);
         let there = self.motion().acceleration_there(i) - self.motion().acceleration_there(j);
@@ -63,10 +63,9 @@ impl View<'_> {
         there.dot(normal).max(alone.dot(normal))
     }
 
-    /// The acceleration with which forces press two bodies together that close at a speed, m/s²: as at
-    /// their impact, or as at the top of the hop that follows where it is so much less there that they
-    /// are not back soon. Where forces fall off with distance a hop goes farther than it seems from
-    /// where it begins.
+    /// The acceleration with which forces press two bodies together that close at a speed, m/s². It is that at their
+    /// impact, or that at the top of the following hop if it is so much less there that they are not back soon. If
+    /// forces decrease with distance, a hop goes farther than the force at its start suggests.
     pub(super) fn pressed_on_hop(&self, event: &Event, closing: f64) -> f64 {
         let pressed = self.pressed(event);
         let ((i, j), normal) = (event.bodies, event.contact.normal);
@@ -101,7 +100,7 @@ impl View<'_> {
             }
             least = there;
         }
-        // What is at rest is pressed by what there is.
+        // For bodies at rest, the force at the impact counts.
         pressed
     }
 
@@ -113,8 +112,8 @@ impl View<'_> {
         };
     }
 
-    /// Whether two bodies that close at a speed, while forces close them by another one in a step, part
-    /// again.
+    /// Whether two bodies separate again that close at the speed `closing`, while forces close them by `load_speed`
+    /// in a step.
     pub(super) fn bounces(
         &self,
         ((i, j), normal): ((usize, usize), DVec3),
@@ -126,12 +125,12 @@ impl View<'_> {
         }
         let restitution = self.scene.bodies.pair_restitution(i, j);
         let lasting = restitution * (closing - self.unfelt(load_speed)).max(0.0);
-        // Back after the time 2 v / a.
+        // The bodies are back after the time 2 v / a.
         let is_bundled = self.is_bundled(i) || self.is_bundled(j);
         let flight = self.shortest_flight(is_bundled);
         let is_steep = self.are_steep(i, j);
         let is_short = |speed: f64, push: f64| {
-            // As high as 0.5 v² / a.
+            // The height of the hop is 0.5 v² / a.
             let is_high = || {
                 let hover = self.layout().hover_gap(i, j);
                 0.5 * speed * speed * self.scene.settings.dt > hover * push
@@ -142,7 +141,7 @@ impl View<'_> {
             return false;
         }
         let leaving = restitution * closing;
-        // Contacts move bodies by their gap, and no impact has to tell that speed from none.
+        // Contacts move bodies by their gap in a step, so that an impact need not distinguish that speed from zero.
         let is_touching = [i, j]
             .iter()
             .any(|&body| !self.contacts.of_body(body).is_empty());
@@ -164,7 +163,7 @@ impl View<'_> {
         !(restitution < 1.0 && (is_spent() || is_caught()))
     }
 
-    /// The impacts of that one of two bodies that has had more.
+    /// The impacts of the one of two bodies that has had more.
     pub(super) fn bounces_of(&self, i: usize, j: usize) -> Bounces {
         let of = |body: usize| self.tallies.bounces.get(body).copied();
         let (first, second) = (of(i).unwrap_or_default(), of(j).unwrap_or_default());
@@ -174,14 +173,13 @@ impl View<'_> {
         }
     }
 
-    /// Whether a body has come to rest so often in this step, or is in contact with one that has, that
-    /// what follows is bundled; or has been in the last step.
+    /// Whether the contacts of a body are bundled: it has come to rest too often in this step, or it is bundled since
+    /// the last step or by its island.
     pub(super) fn is_bundled(&self, body: usize) -> bool {
         self.rests_of(body) > MANY_RESTS || self.contacts.is_bundled(body)
     }
 
-    /// A flight of less than this part of a step is none; where the step is bundled, one of less than the
-    /// step.
+    /// A flight shorter than this fraction of a step does not count; in a bundled island, the fraction is one.
     pub(super) fn shortest_flight(&self, is_bundled: bool) -> f64 {
         match is_bundled {
             true => 1.0,
@@ -193,8 +191,8 @@ impl View<'_> {
         self.tallies.rests.get(body).copied().unwrap_or(0)
     }
 
-    /// The speed at which bodies close that lie on each other, as forces that close them by a speed in
-    /// a step make it: none, but for the velocity stagger of a method.
+    /// The speed at which bodies at rest on each other close, if forces close them by `load_speed` in a step: zero,
+    /// except for the velocity stagger of a method.
     pub(super) fn unfelt(&self, load_speed: f64) -> f64 {
         load_speed * (self.paths.velocity_stagger / self.scene.settings.dt).abs()
     }

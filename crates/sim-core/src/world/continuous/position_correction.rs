@@ -1,11 +1,11 @@
-//! Bodies that touch by rounding are moved apart by as little.
+//! Bodies that overlap by rounding are moved apart by as little.
 //!
-//! Between steps no two bodies meet. The last bit of a position may still bring two together that
-//! slide along each other, or that have been placed exactly face to face; they are moved apart
-//! along a normal of where they touch, by units in the last place; those that have just been placed, by
-//! as much as the f32 of their vertices is rounded. An overlap is deeper than that and stays one.
+//! Between steps no two bodies meet. The last bit of a position may still bring two bodies into overlap that slide
+//! along each other, or that were placed exactly face to face. They are moved apart along a normal of the touching
+//! surfaces, by units in the last place; bodies that were just placed, by the f32 rounding of their vertices. A
+//! deeper overlap stays an overlap.
 //!
-//! A point that has come to the other side of a closed mesh counts as one that meets it.
+//! A point that has come to the other side of a closed mesh counts as overlapping with it.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -19,15 +19,15 @@ use crate::{
     rotation::spin,
 };
 
-/// Units in the last place, a few parts in 10^12, before it is an overlap.
+/// The greatest correction, in units in the last place: a few parts in 10^12. A deeper overlap is not rounding.
 const MAX_CORRECTION: f64 = 1024.0;
 
-/// Normals of which the lines are looked at in which their faces cross, at most. It bounds cost only.
+/// The greatest number of normals whose faces are crossed with each other. It limits only the cost.
 const MOST_CROSSED: usize = 8;
-/// Rounds in which a body that is moved out of one may get into another.
+/// The number of rounds, because a body that is moved out of one body may get into another.
 const ROUNDS: usize = 8;
 
-/// Beside what a body has been put back to its place at the start of the step.
+/// The reference relative to which a body was put back to its place at the start of the step.
 #[derive(Clone, Copy)]
 enum Frame {
     Still,
@@ -35,7 +35,7 @@ enum Frame {
     Of(usize),
 }
 
-/// Who has been put back, and how.
+/// The bodies that were rolled back, and their frames.
 #[derive(Default)]
 struct Back {
     with: Vec<Option<Frame>>,
@@ -56,7 +56,7 @@ impl Back {
     }
 }
 
-/// Bodies at the end of a step, of which no two may meet.
+/// The position correction at the end of a step, after which no two bodies may meet.
 pub(super) struct Correction<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) end: &'a mut State,
@@ -64,7 +64,8 @@ pub(super) struct Correction<'a> {
     pub(super) record: &'a mut Record,
 }
 
-/// Directions along the lines in which faces cross, by some of their normals: so sheets part whose borders touch.
+/// Directions along the lines in which faces cross, from some of their normals. Along these, sheets separate whose
+/// borders touch.
 fn along_crossings(normals: &[DVec3]) -> Vec<DVec3> {
     let mut along: Vec<DVec3> = Vec::new();
     let some = &normals[..normals.len().min(MOST_CROSSED)];
@@ -81,7 +82,7 @@ fn along_crossings(normals: &[DVec3]) -> Vec<DVec3> {
 }
 
 impl Correction<'_> {
-    /// Makes sure that no two bodies meet that came near in the step.
+    /// Ensures that no two bodies meet that came near each other in the step.
     pub(super) fn separate_meeting(
         &mut self,
         near: &mut Vec<(usize, usize)>,
@@ -109,7 +110,7 @@ impl Correction<'_> {
         }
     }
 
-    /// Moves pairs apart that meet by rounding, one after the other, and tells whether none meets then.
+    /// Moves pairs apart that meet by rounding, one after the other. Returns whether no pair meets afterwards.
     fn part_all(&mut self, near: &[(usize, usize)]) -> bool {
         for _ in 0..ROUNDS {
             let mut met = false;
@@ -129,7 +130,7 @@ impl Correction<'_> {
         false
     }
 
-    /// The same all at once, for bodies among others that leave each other no room.
+    /// The same for all pairs at once, for bodies between others that leave each other no room.
     fn part_together(&mut self, near: &[(usize, usize)]) -> bool {
         let at = self.end.position.clone();
         let mut meeting = Vec::new();
@@ -152,7 +153,7 @@ impl Correction<'_> {
         true
     }
 
-    /// Rolls back what meets by more than rounding.
+    /// Rolls back the bodies that meet by more than rounding.
     fn roll_back_meeting(&mut self, near: &[(usize, usize)]) -> Result<(), (usize, Cause)> {
         let mut back = Back::default();
         for round in 0..=ROUNDS {
@@ -179,8 +180,8 @@ impl Correction<'_> {
             && (self.scene.bodies.meet_in(self.end, i, j) || self.has_changed_sides(i, j))
     }
 
-    /// Whether a sphere that is no larger than what rounding hides has gone through the surface of a closed mesh.
-    /// Larger ones would have to meet it on the way.
+    /// Whether a sphere no larger than rounding has gone through the surface of a closed mesh. A larger sphere would
+    /// have met it on the way.
     fn has_changed_sides(&self, i: usize, j: usize) -> bool {
         let bodies = self.scene.bodies;
         let (mesh, sphere, radius) = match (bodies.shape(i), bodies.shape(j)) {
@@ -200,8 +201,7 @@ impl Correction<'_> {
             && locate(tree, before) != locate(tree, after)
     }
 
-    /// Moves two bodies apart by the least that does it, but for a factor of two, if that is no more
-    /// than a length.
+    /// Moves two bodies apart by the least sufficient length, up to a factor of two, if this is no more than `most`.
     fn part(&mut self, i: usize, j: usize, most: f64) -> bool {
         let before = (self.end.position[i], self.end.position[j]);
         let forms = self.scene.bodies.forms(i, j);
@@ -214,7 +214,7 @@ impl Correction<'_> {
             .layout()
             .position_resolution(i, j)
             .max(f64::MIN_POSITIVE);
-        // Back to where they came from: a sheet has two sides.
+        // Only directions back to where the bodies came from, because a sheet has two sides.
         let came = (self.scene.before.position[j] - self.scene.before.position[i]) - offset;
         normals.retain(|normal| normal.dot(came) >= -8.0 * resolution);
         let mut by = 0.5 * resolution;
@@ -231,9 +231,9 @@ impl Correction<'_> {
         false
     }
 
-    /// What rounding does not explain is answered as in the discrete mode: an impulse is exchanged,
-    /// and bodies go back to where the step began, where nothing met, no faster than they were there; so
-    /// does all that they meet there. Immovable ones go on, and take what they meet along.
+    /// Resolves an overlap that rounding does not explain as the discrete mode does. The bodies exchange an impulse
+    /// and go back to the start of the step, where none met, and are no faster than they were there. All bodies that
+    /// they meet there do the same. Immovable bodies keep their motion and take along the bodies that they meet.
     fn roll_back(&mut self, pair: (usize, usize), back: &mut Back) -> Result<(), (usize, Cause)> {
         back.with.resize(self.scene.bodies.len(), None);
         let solid = self.scene.in_order(self.scene.bodies.solid.iter().copied());
@@ -272,7 +272,7 @@ impl Correction<'_> {
                     let start = self.scene.before.position[body];
                     self.end.position[body] = start + self.moves_of(frame);
                     self.turn_back(body);
-                    // What forces have given it on the way that it has not gone.
+                    // Removes the speed that forces gave the body on the way that it has not gone.
                     let before = self.scene.before.velocity[body];
                     if before.length() < self.end.velocity[body].length() {
                         self.end.velocity[body] = before;
@@ -285,7 +285,8 @@ impl Correction<'_> {
         Ok(())
     }
 
-    /// Turns a body as it was where the step began, with no more energy of turning than it had there.
+    /// Sets the rotation of a body back to that at the start of the step, with no more rotational energy than it had
+    /// there.
     fn turn_back(&mut self, body: usize) {
         let bodies = self.scene.bodies;
         if let Some(slot) = bodies.turners.slot(body) {
@@ -300,7 +301,7 @@ impl Correction<'_> {
         }
     }
 
-    /// How far what bodies have been put back beside has moved in the step.
+    /// The displacement of a frame in the step.
     fn moves_of(&self, frame: Frame) -> DVec3 {
         frame.wall().map_or(DVec3::ZERO, |wall| {
             self.end.position[wall] - self.scene.before.position[wall]
@@ -329,8 +330,8 @@ impl ContactSolver<'_> {
         position[j] += second * by;
     }
 
-    /// The same at a time, where others leave room: half of it is left to them. What the one has no room for
-    /// the other one moves. Tells how far apart they have been moved, m.
+    /// The same at a time, as far as other bodies leave room: half of the free distance is left to them. If one body
+    /// lacks room, the other one moves farther. Returns the distance by which the bodies were moved apart, m.
     pub(super) fn move_apart_in_room(
         &mut self,
         (i, j): (usize, usize),
@@ -357,8 +358,8 @@ impl ContactSolver<'_> {
         Ok((first + second) * by.length())
     }
 
-    /// The part of a way that a body goes from where its trajectory starts before it meets another body than
-    /// one, at a time.
+    /// The fraction of a displacement that a body can move from the start of its trajectory before it meets a body
+    /// other than `except`, at a time.
     fn free_part(
         &mut self,
         body: usize,
@@ -375,7 +376,7 @@ impl ContactSolver<'_> {
                 .near
                 .broad
                 .each_partner(body, |other| partners.push(other)),
-            // Where bodies have just been placed, those that it touches.
+            // If bodies were just placed, the bodies that it touches.
             false => partners.extend(self.contacts.of_body(body).iter().map(|&index| {
                 let (i, j) = self.contacts.all()[index as usize].bodies;
                 i + j - body
@@ -410,7 +411,7 @@ impl ContactSolver<'_> {
     }
 }
 
-/// Parts of a displacement that two bodies take, of which one may stay where it is.
+/// The shares of a displacement that two bodies take, of which one may be immovable.
 pub(super) fn shares(first_moves: bool, second_moves: bool) -> (f64, f64) {
     match (first_moves, second_moves) {
         (true, true) => (0.5, 0.5),

@@ -1,16 +1,15 @@
-//! Whether a step gets on: impacts that follow each other in no time, and have no end.
+//! Whether a step makes progress, or impacts follow each other without time between them and without end.
 //!
-//! Where bodies have no room, as between walls that fit them, impacts repeat and the step never ends.
-//! Without time between them bodies stay where they are, and the normals `n` of their contacts the
-//! same. If there is room, there are ways to go on which every contact opens: velocities `w` with
-//! `n·(w_j - w_i) >= 1` for each contact, as fast as their angles are sharp. Impulses `λ` change the
-//! momenta `p` by `Σ λ n`, so that `Σ λ <= Σ λ n·(w_j - w_i) = Σ w·Δp`: what is exchanged in all is
-//! bounded by the momenta there are, times the number of bodies and a factor that the angles make.
-//! Without room nothing bounds it. So many blocks as one likes may count the digits of pi: all that
-//! they exchange is four times the momentum of the largest.
+//! If bodies have no room, as between walls that fit them, impacts repeat and the step never ends. Without time
+//! between impacts the bodies stay where they are, and so do the normals `n` of their contacts. If there is room,
+//! there are motions in which every contact opens: velocities `w` with `n·(w_j - w_i) >= 1` for each contact. The
+//! sharper the angles, the greater these velocities are. Impulses `λ` change the momenta `p` by `Σ λ n`, so that
+//! `Σ λ <= Σ λ n·(w_j - w_i) = Σ w·Δp`. So the sum of impulses is bounded by the momenta times the number of bodies
+//! and a factor that depends on the angles. Without room there is no bound. Any number of blocks may count the digits
+//! of pi: the sum of their impulses is four times the momentum of the largest.
 //!
-//! Impacts are taken for those of one instant while no pair has the time to move by more than the gap
-//! of bodies in contact, below which this mode knows no room.
+//! Impacts count as simultaneous while no pair has had the time to move by more than the gap of bodies in contact,
+//! which is the least room that this mode distinguishes.
 
 use alloc::vec::Vec;
 
@@ -21,26 +20,28 @@ use super::{
     view::View,
 };
 
-/// What bodies may exchange in no time, in momenta of each: an angle of 1e-3 between contacts.
+/// The greatest sum of impulses without time between them, in momenta of each body: an angle of 1e-3 between
+/// contacts.
 const MOST_EXCHANGED: f64 = 1e3;
 
-/// How often a body may take part in something in no time that goes without an impulse: a contact that begins or
-/// ends, an impact at which nothing is exchanged.
+/// How often a body may take part in a simultaneous event without an impulse: the begin or end of a contact, or an
+/// impact at which nothing is exchanged.
 const MOST_CHANGES: u64 = 1_000;
 
-/// What has happened in no time.
+/// The events without time between them.
 #[derive(Clone, Debug, Default)]
 pub(in crate::world) struct Progress {
-    /// When it last did, s from the start of the step.
+    /// The time of the last of them, s from the start of the step.
     time: f64,
-    /// Impulses exchanged, N s, in all and the largest, and events without one.
+    /// The sum of impulses and the largest one, N s, and the number of events without an impulse.
     impulse: f64,
     largest: f64,
     changes: u64,
-    /// The greatest speed at which two bodies have closed, m/s, and the greatest mass that has, kg.
+    /// The greatest closing speed of two bodies, m/s, and the greatest finite mass of a body, kg.
     fastest: f64,
     heaviest: f64,
-    /// The bodies that have taken part, by the number of the instant.
+    /// The number of the current instant; by body, the last instant in which it took part; and the number of bodies
+    /// that took part in the current one.
     instant: u32,
     part_of: Vec<u32>,
     bodies: u64,
@@ -62,7 +63,7 @@ impl Progress {
         (self.instant, self.bodies) = (self.instant + 1, 0);
     }
 
-    /// Notes an impulse between bodies of some masses that have closed at a speed.
+    /// Counts an impulse between bodies of some masses that have closed at a speed.
     pub(in crate::world) fn note_impulse(
         &mut self,
         impulse: f64,
@@ -82,12 +83,12 @@ impl Progress {
         }
     }
 
-    /// Notes an impact at which nothing is exchanged: bodies that do not close.
+    /// Counts an impact without an impulse, of bodies that do not close.
     pub(super) fn note_nothing(&mut self) {
         self.changes += 1;
     }
 
-    /// Notes events that have been resolved.
+    /// Counts the resolved events that are not bounces.
     pub(super) fn note_changes(&mut self, group: &[Event]) {
         let is_change = |event: &&Event| event.outcome == Outcome::Rest;
         self.changes += group.iter().filter(is_change).count() as u64;
@@ -106,7 +107,7 @@ impl Progress {
 
     fn has_end(&self) -> bool {
         let bodies = self.bodies as f64;
-        // What lies on others gives on more than it has itself.
+        // A body that lies on others passes on more momentum than it has itself.
         let momentum = self.largest.max(self.heaviest * self.fastest);
         self.impulse <= MOST_EXCHANGED * bodies * momentum
             && self.changes <= MOST_CHANGES * self.bodies
@@ -114,8 +115,8 @@ impl Progress {
 }
 
 impl EventLoop<'_> {
-    /// Counts events that are about to be resolved, and stops where those before them have no end: where
-    /// a body has been between immovable ones that move against each other, it is squeezed.
+    /// Counts events that are about to be resolved, and returns an error if the simultaneous ones before them have no
+    /// end. If a body has been between immovable ones that move against each other, the error is that it is squeezed.
     pub(super) fn count_events(&mut self, group: &[Event]) -> Result<(), (usize, Cause)> {
         let Some(first) = group.first() else {
             return Ok(());
@@ -150,8 +151,8 @@ impl EventLoop<'_> {
 }
 
 impl View<'_> {
-    /// Whether the bodies of an event have moved by more than a gap since events at a time: towards
-    /// each other, or along each other where a contact ends.
+    /// Whether the bodies of an event have moved by more than a gap since the time `last`: towards each other, or
+    /// along each other if a contact ends.
     fn moves_since(&self, event: &Event, last: f64) -> bool {
         let (i, j) = event.bodies;
         let time = event.time - last;
@@ -170,7 +171,7 @@ impl View<'_> {
 mod tests {
     use super::*;
 
-    /// Thousands of impacts at which nothing is exchanged are enough to see that they have no end.
+    /// Thousands of impacts without an impulse suffice to detect that they have no end.
     #[test]
     fn what_exchanges_nothing_in_no_time_has_no_end() {
         let mut progress = Progress::default();

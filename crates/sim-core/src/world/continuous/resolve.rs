@@ -1,4 +1,4 @@
-//! One instant: what happens at it is resolved, and trajectories go on from there.
+//! The resolution of all events of one time, from which trajectories continue.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -38,7 +38,7 @@ impl EventLoop<'_> {
         }
         for event in group.iter_mut() {
             if self.climb(event, time, &mut restarted)? {
-                // It goes on, on another surface.
+                // The body continues on another surface.
                 event.kind = EventKind::ContactEnd;
                 event.outcome = Outcome::Rest;
             }
@@ -46,7 +46,7 @@ impl EventLoop<'_> {
                 self.view().classify(event);
             }
         }
-        // Whose constraints have to be solved.
+        // The bodies whose constraints must be solved.
         let mut seeds: Vec<usize> = Vec::new();
         self.resolve_turning(group, time, (&mut seeds, &mut restarted))?;
         if group.iter().any(Event::is_rest) {
@@ -91,10 +91,10 @@ impl EventLoop<'_> {
         Ok(())
     }
 
-    /// Adds to impacts that come to rest those that their bodies and what lies with these come to soon:
-    /// no farther away than the shortest flight is high, and where a body comes to rest again and
-    /// again in a step all of them. In a heap nearly all are so, and one by one each would move all
-    /// others.
+    /// Adds to impacts that come to rest the later ones that soon follow in their islands: no farther away than the
+    /// height of the shortest flight. If a body comes to rest again and again in a step, all later impacts of its
+    /// island are added. In a heap nearly all impacts are of this kind, and each resolved alone would move all other
+    /// bodies.
     fn join_resting(
         &mut self,
         group: &mut Vec<Event>,
@@ -149,8 +149,8 @@ impl EventLoop<'_> {
         }
     }
 
-    /// How far two bodies are apart at a time before their impact, m, and the speed at which they part,
-    /// m/s, both along its normal.
+    /// The gap of two bodies at a time before their impact, m, and their opening speed, m/s, both along the normal of
+    /// the impact.
     fn gap_before(&mut self, event: &Event, from: f64) -> Result<(f64, f64), (usize, Cause)> {
         let ((i, j), normal) = (event.bodies, event.contact.normal);
         let mut probe = mem::take(&mut self.solver.paths.probe);
@@ -168,8 +168,7 @@ impl EventLoop<'_> {
         Ok((gap - end, opening))
     }
 
-    /// Counts how often bodies have come to rest, and where some do not keep their speed what impacts
-    /// they have had.
+    /// Counts how often bodies have come to rest. If some impacts lose energy, counts the impacts of each body too.
     pub(super) fn count(&mut self, group: &[Event]) {
         for event in group {
             let is_counted = event.outcome != Outcome::Bounce
@@ -198,7 +197,7 @@ impl EventLoop<'_> {
         }
     }
 
-    /// The same from their motion at the time of their impact.
+    /// Classifies an event by the motion of its bodies at the time of their impact.
     fn classify_at_its_time(&mut self, event: &mut Event) -> Result<(), (usize, Cause)> {
         let ((i, j), normal) = (event.bodies, event.contact.normal);
         let mut probe = mem::take(&mut self.solver.paths.probe);
@@ -211,11 +210,11 @@ impl EventLoop<'_> {
         Ok(())
     }
 
-    /// Adds the constraint of an impact that comes to rest.
+    /// Adds the contact constraint of an impact that comes to rest.
     fn begin_contact(&mut self, event: &Event, time: f64) -> Result<(), (usize, Cause)> {
         let (i, j) = event.bodies;
         let hover = self.view().layout().hover_gap(i, j);
-        // Where bodies touch they are moved apart by a rounding, for what rounds and solves after that.
+        // Bodies that touch are moved apart by a rounding, so that later roundings and the solver have room.
         let least = LEAST_GAP * hover;
         let mut gap = event.gap;
         if gap < least {
@@ -244,7 +243,7 @@ impl EventLoop<'_> {
         Ok(())
     }
 
-    /// Notes an impact that has come to rest, if it was one.
+    /// Records an impact that has come to rest, if it was an impact.
     fn report_rest(&mut self, event: &Event, closing: f64, time: f64) {
         let load = event.load_speed;
         if !event.is_rest() || closing - self.view().unfelt(load) <= SLIGHTEST * load {
@@ -269,8 +268,8 @@ impl EventLoop<'_> {
 }
 
 impl ContactSolver<'_> {
-    /// Lets the trajectory of a body, and of those coupled to it, start again. What nothing moves stays
-    /// on its own.
+    /// Starts the trajectory of a body and of the bodies coupled to it again. Immovable bodies keep their
+    /// trajectories.
     pub(super) fn restart(
         &mut self,
         body: usize,
@@ -283,7 +282,7 @@ impl ContactSolver<'_> {
         Ok(())
     }
 
-    /// Bundles an island of which one body is.
+    /// Bundles an island if one of its bodies is bundled. Returns whether the island is bundled.
     pub(super) fn spread_bundle(&mut self, island: &Island) -> bool {
         let is_bundled = island
             .bodies

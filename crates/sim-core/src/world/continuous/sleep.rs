@@ -1,7 +1,7 @@
-//! Bodies at rest, which cost nothing until something comes.
+//! Sleeping bodies, which cost nothing until another body comes.
 //!
-//! An island that is at rest and has nothing to accelerate it stays as it is: the same input gives the
-//! same answer, so its constraints need not be solved again. This is a memo, and changes no answer.
+//! An island at rest that nothing accelerates stays as it is. The same input gives the same result, so its
+//! constraints need not be solved again. This is a memo and changes no result.
 
 #[cfg(feature = "serde")]
 use alloc::vec::Vec;
@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::{Continuous, solver::ContactSolver, view::View};
 
 impl Continuous {
-    /// Wakes all bodies: something has changed from outside.
+    /// Wakes all bodies, because something was changed from outside.
     pub(in crate::world) fn wake_all(&mut self) {
         self.asleep.clear();
     }
@@ -22,7 +22,7 @@ impl Continuous {
         bodies.filter(|&body| self.asleep[body]).collect()
     }
 
-    /// Lets some of so many bodies be asleep.
+    /// Puts some bodies to sleep; `bodies` is the number of all bodies.
     #[cfg(feature = "serde")]
     pub(in crate::world) fn put_to_sleep(&mut self, these: &[usize], bodies: usize) {
         self.asleep.resize(bodies, false);
@@ -35,7 +35,7 @@ impl View<'_> {
         self.asleep.get(body).is_some_and(|&asleep| asleep)
     }
 
-    /// Whether two bodies are at rest beside each other.
+    /// Whether each of two bodies is asleep, or immovable and at rest.
     pub(super) fn sleep_together(&self, i: usize, j: usize) -> bool {
         let rests = |body: usize| {
             self.is_asleep(body)
@@ -59,7 +59,7 @@ impl ContactSolver<'_> {
         self.asleep[body] = true;
     }
 
-    /// Keeps bodies at rest where they are.
+    /// Keeps sleeping bodies where they are.
     pub(super) fn sleep_on(&mut self) {
         for body in 0..self.asleep.len() {
             if self.asleep[body] {

@@ -1,10 +1,10 @@
-//! What contacts do to bodies: the solution of the constraints of an island.
+//! The solution of the contact constraints of an island.
 //!
-//! An *island* is what contacts tie together through bodies that may move. Its velocities become the
-//! nearest ones, in the norm of kinetic energy, with which no contact moves against its normal
-//! faster than its target; then its accelerations the nearest ones (Gauss' principle) with which no
-//! contact that has its target is accelerated against its normal by more than its surface recedes.
-//! Neither adds energy: what holds a contact is at right angles to how it moves.
+//! An *island* is a set of movable bodies connected by contacts. First the solver replaces the velocities of the
+//! island by the nearest ones, in the norm of kinetic energy, with which no contact closes faster than its target
+//! allows. Then it replaces the accelerations by the nearest ones (Gauss' principle) with which no contact that has
+//! reached its target is accelerated against its normal by more than its surface recedes. Neither step adds energy:
+//! the impulses and forces of contacts are orthogonal to the motion that the contacts keep.
 
 use alloc::vec::Vec;
 use core::mem;
@@ -23,27 +23,28 @@ use super::{
     view::View,
 };
 
-/// Part of the speed that forces give in a step below which bodies that come to rest on each other
-/// have rested before, and it is no impact.
+/// Fraction of the speed that forces give in a step. Bodies that come to rest on each other with less than this speed
+/// were at rest before, and no impact is reported.
 pub(super) const SLIGHTEST: f64 = 1e-6;
 
-/// What an island does, by its constraints and the places of its bodies.
+/// The solution of an island, by its constraints and by the places of its bodies.
 pub(super) struct Solution {
-    /// Whether it is that of a heap.
+    /// Whether the island is a heap.
     pub(super) is_bundled: bool,
-    /// Which contacts part, and keep nothing.
+    /// Whether each contact opens, so that it constrains nothing any more.
     pub(super) open: Vec<bool>,
-    /// Acceleration by which each may close, m/s².
+    /// The acceleration with which each contact may close, m/s².
     pub(super) recession: Vec<f64>,
-    /// Accelerations by forces alone, and with contacts, m/s².
+    /// The accelerations by forces alone, m/s²; `acceleration` are those with contacts.
     pub(super) free: Vec<DVec3>,
     pub(super) acceleration: Vec<DVec3>,
-    /// Of each contact, N.
+    /// The normal force of each contact, N.
     pub(super) force: Vec<f64>,
     pub(super) friction: Friction,
 }
 
-/// When islands are solved, whose trajectories have started again there, and who has been solved.
+/// The time at which islands are solved, s from the step's start, the bodies whose trajectories start again at that
+/// time, and the bodies whose islands are solved already.
 struct Now<'a> {
     time: f64,
     restarted: &'a mut Vec<usize>,
@@ -51,7 +52,8 @@ struct Now<'a> {
 }
 
 impl View<'_> {
-    /// A speed that changes no gap of an island in a step by more than a small part of the least one, m/s.
+    /// A speed that changes no gap of an island in a step by more than a small part of the smallest gap of contacts,
+    /// m/s.
     pub(super) fn unseen_speed(&self, island: &Island) -> f64 {
         let all = self.contacts.all();
         let hover = |&index: &usize| {
@@ -67,7 +69,7 @@ impl View<'_> {
     }
 }
 
-/// Contacts and the trajectories that they bend.
+/// Contacts, and the trajectories that they change.
 pub(super) struct ContactSolver<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) paths: &'a mut Trajectories,
@@ -94,19 +96,18 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// Adds a contact, in the place of one of the same bodies along the same normal.
+    /// Adds a contact. It replaces a contact of the same bodies along the same normal.
     pub(super) fn add_contact(&mut self, new: ContactConstraint) {
         self.contacts.insert(new, self.scene.bodies);
     }
 
-    /// Moves bodies whose trajectories have started again, in order, to the end of the step.
+    /// Steps the bodies whose trajectories have started again, in order, to the end of the step.
     pub(super) fn finish_restarted(&mut self, restarted: &[usize]) -> Result<(), (usize, Cause)> {
         self.paths
             .finish_restarted(self.scene, self.contacts, restarted)
     }
 
-    /// Solves the islands of some bodies at a time, and adds the bodies whose trajectories have started
-    /// again to a list.
+    /// Solves the islands of `seeds` at `time`, and adds the bodies whose trajectories start again to `restarted`.
     pub(super) fn solve_islands_of(
         &mut self,
         seeds: &[usize],
@@ -143,8 +144,8 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// Lets the trajectories of the bodies of an island start at a time, and those of immovable ones that it
-    /// touches.
+    /// Starts the trajectories of the bodies of an island again at the current time, and those of the immovable
+    /// bodies that the island touches.
     fn start_island(&mut self, island: &Island, now: &mut Now) -> Result<(), (usize, Cause)> {
         for &body in &island.bodies {
             now.visited.visit(body);
@@ -162,7 +163,8 @@ impl ContactSolver<'_> {
         Ok(())
     }
 
-    /// Solves an island whose contacts have changed: it may be several now, or a part of a larger one.
+    /// Solves an island whose contacts have changed. It may now consist of several islands, or be part of a larger
+    /// one.
     fn solve_again(
         &mut self,
         island: &Island,
@@ -180,8 +182,8 @@ impl ContactSolver<'_> {
         Ok(())
     }
 
-    /// Looks again at contacts whose normals turn, where bodies are at a time, and tells whether some
-    /// are no more.
+    /// Measures contacts again whose normals turn or whose surfaces have ended by `time`, at the positions of the
+    /// bodies at that time. Returns whether some of them no longer exist.
     fn remeasure(&mut self, island: &Island, time: f64) -> Result<bool, (usize, Cause)> {
         let mut gone: Vec<usize> = Vec::new();
         if time == 0.0 {
@@ -208,7 +210,7 @@ impl ContactSolver<'_> {
         Ok(is_gone)
     }
 
-    /// Solves an island whose bodies are at the start of their trajectories.
+    /// Solves an island whose bodies are at the start of their trajectories, and whose contacts are measured.
     fn solve_measured(
         &mut self,
         island: &Island,
@@ -224,15 +226,15 @@ impl ContactSolver<'_> {
             .filter(|&k| solution.open[k])
             .map(|k| island.constraints[k]);
         let ended = self.contacts.remove_all(gone.collect());
-        // What has been borne by one body is borne by another one now.
+        // If another body now supports what the ended contacts supported, the island has new contacts.
         match hands_over && self.hand_over_all(&ended)? {
             true => self.solve_again(island, now, false),
             false => Ok(()),
         }
     }
 
-    /// Where methods stagger velocities, gives bodies in contact the velocities that the method keeps, by
-    /// which contacts are judged at the start of a step.
+    /// For methods with a velocity stagger: gives bodies in contact the velocities that the method keeps. Contacts
+    /// are judged by these at the start of a step.
     pub(super) fn unstagger_velocities(&mut self) {
         if self.paths.velocity_stagger != 0.0 {
             for constraint in self.contacts.all() {
@@ -243,7 +245,7 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// Staggers the velocities of bodies anew, by what they are accelerated with in contact.
+    /// Staggers the velocities of bodies again, by their accelerations in contact.
     pub(super) fn stagger_velocities(&mut self, bodies: &[usize]) {
         let paths = &mut *self.paths;
         if paths.velocity_stagger != 0.0 {

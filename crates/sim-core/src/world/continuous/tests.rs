@@ -1,4 +1,4 @@
-//! What has gone wrong once.
+//! Regression tests.
 
 use alloc::{sync::Arc, vec::Vec};
 use glam::DVec3;
@@ -66,7 +66,7 @@ fn bodies_in_overlap_may_become_immovable() {
         world.step().unwrap();
     }
     assert!((world.position(0).x + 0.25 - 1.5).abs() < 0.01);
-    // And movable again while they are in each other, where they may part.
+    // The body is movable again while the two are in overlap, from which they may separate.
     world.set_position(1, v(1.5, 0.25, 0.0)).unwrap();
     world.set_kind(1, BodyKind::Dynamic).unwrap();
     world.set_velocity(1, v(9.0, 0.0, 0.0)).unwrap();
@@ -119,7 +119,7 @@ fn a_failed_step_reports_nothing() {
     let bodies = [
         body(ball(0.5), v(-1.0, 0.0, 0.0), v(9.0, 0.0, 0.0)),
         body(ball(0.5), v(0.1, 0.0, 0.0), DVec3::ZERO),
-        // Sends the light one off at nearly twice its speed, beyond the range.
+        // Hits the light ball, which leaves at nearly twice the speed of this one, beyond the range.
         Body {
             mass: 1e6,
             ..body(ball(0.5), v(50.0, 0.0, 0.0), v(6e99, 0.0, 0.0))
@@ -155,8 +155,8 @@ fn inelastic_rows_come_to_an_end() {
     assert!(world.impacts() < 1_000_000, "{}", world.impacts());
 }
 
-/// Dropped from 5 m: the steps of every method that is exact for its order are points of one parabola,
-/// which each bounce turns over, and nothing is lost.
+/// A ball dropped from 5 m. The steps of every method that is exact for its order are points of one parabola. Each
+/// bounce reverses it, and no height is lost.
 #[test]
 fn no_method_loses_height_at_a_bounce() {
     for method in METHODS {
@@ -186,7 +186,7 @@ fn no_method_loses_height_at_a_bounce() {
     }
 }
 
-/// A cube between two slabs that come from both sides and do not stop.
+/// A cube between two slabs that approach from both sides and do not stop.
 fn squeezed(restitution: f64) -> World {
     let cube = Arc::new(cube());
     let slab = |side: f64| Body {
@@ -215,7 +215,7 @@ fn what_is_squeezed_is_named_soon() {
     }
 }
 
-/// What rounding should never bring about: bodies that meet at a step's end.
+/// Bodies that meet at a step's end, which rounding should never cause.
 #[test]
 fn what_is_put_back_leaves_immovable_bodies_where_they_are() {
     let cube = Arc::new(cube());
@@ -245,8 +245,8 @@ fn what_is_put_back_leaves_immovable_bodies_where_they_are() {
     }
 }
 
-/// A bystander, far away, that an immovable body hits has nothing to do with it: the light block of
-/// two has some 157,000 impacts with a wall at rest.
+/// An immovable body that hits a bystander far away does not squeeze these two blocks. The light block has some
+/// 157,000 impacts with a wall at rest.
 #[test]
 fn who_moves_elsewhere_squeezes_nobody() {
     let immovable = |body| Body {
@@ -277,7 +277,7 @@ fn who_moves_elsewhere_squeezes_nobody() {
     assert_eq!(blocks.velocity(4), v(0.0, 4.0, 0.0));
 }
 
-/// A row of balls between two walls that close on each other: no ball meets both.
+/// A row of balls between two walls that close on each other; no ball meets both.
 #[test]
 fn a_row_is_squeezed_too() {
     let wall = |side: f64| Body {
@@ -300,7 +300,7 @@ fn a_row_is_squeezed_too() {
     assert!((2.4..2.6).contains(&world.time()), "{}", world.time());
 }
 
-/// Between walls that fit it, and in the corner of three.
+/// A body between walls that fit it, and in the corner of three.
 #[test]
 fn what_has_no_room_stops_the_step_soon() {
     let wall = |normal: DVec3, far: f64| Body {
@@ -322,7 +322,7 @@ fn what_has_no_room_stops_the_step_soon() {
                 let elsewhere = body(ball(0.5), v(0.0, 0.0, 40.0), DVec3::ZERO);
                 let mut world = world(walls.chain([caught, elsewhere]));
                 let before = world.state_hash();
-                // Some come to rest by rounding.
+                // Some bodies come to rest by rounding.
                 let Err(error) = world.step() else {
                     continue;
                 };
@@ -338,8 +338,8 @@ fn what_has_no_room_stops_the_step_soon() {
     assert!(refused >= 12, "{refused}");
 }
 
-/// A step that fails after bodies have been parted by a rounding, with impacts, and with somebody at
-/// rest: nothing is as if there had been none.
+/// A step fails after bodies have been moved apart by a rounding, with impacts, and with a body at rest. The world is
+/// as if the step had not been tried.
 #[test]
 fn a_failed_step_changes_nothing() {
     let cube = Arc::new(cube());
@@ -350,7 +350,7 @@ fn a_failed_step_changes_nothing() {
             ..floor()
         })
         .unwrap();
-    // They overlap by a rounding.
+    // The blocks overlap by a rounding.
     for level in 0..3 {
         let at = v(20.1, -6.5 + f64::from(level) * (1.0 - 1e-9), 0.3);
         let stacked = body(cube.clone(), at, DVec3::ZERO);
@@ -370,7 +370,7 @@ fn a_failed_step_changes_nothing() {
     assert_eq!(world.step().unwrap_err(), error);
     assert_eq!(world.state_hash(), hash);
     assert_eq!(world.overlapping(), placed.overlapping());
-    // Both go on alike once the slabs stop.
+    // Both worlds continue alike once the slabs stop.
     let mut fresh = placed;
     for world in [&mut world, &mut fresh] {
         for slab in [0, 1] {
@@ -381,7 +381,7 @@ fn a_failed_step_changes_nothing() {
         }
     }
     assert_eq!(world.state_hash(), fresh.state_hash());
-    // And after steps that were done.
+    // The same after successful steps.
     for (slab, speed) in [(0, 1.0), (1, -1.0)] {
         world.set_velocity(slab, v(speed, 0.0, 0.0)).unwrap();
     }

@@ -1,17 +1,16 @@
-//! Where bodies are at any time within a step.
+//! The positions of bodies at any time within a step.
 //!
-//! The *trajectory* of a body leads from its last event in the step, or from the step's start, to the
-//! step's end, as its method makes it: the state at any time in between is that after a step of the
-//! method of just that length. For a body under a constant acceleration that is a parabola, and
-//! free; for others each question is a step of the method, of all bodies that are coupled.
+//! The *trajectory* of a body leads from its last event in the step, or from the step's start, to the step's end, as
+//! its method computes it: the state at any time in between is the state after a step of the method of exactly that
+//! length. For a body under a constant acceleration, the trajectory is a parabola and costs nothing. For other bodies
+//! each evaluation is a step of the method, with all coupled bodies.
 //!
-//! A first-order method gives other points for each length of its steps, and a step in two parts is
-//! not the whole: a ball would lose a part of its height at each bounce. But what it makes of a
-//! constant acceleration `a`, `x + dt (v + fall dt a)`, are points of one parabola, on which the
-//! velocity is `u = v + s a` with the *velocity stagger* `s = (fall - 1/2) dt`. So symplectic and
-//! backward Euler keep the velocity of half a step before, forward Euler that of half a step after.
-//! Trajectories use `u`; impacts change `u` and `v` by the same, and no bounce takes anything,
-//! whenever it comes. Under other forces `a` is the mean over the step.
+//! A first-order method gives other points for each length of its steps, and two partial steps differ from one whole
+//! step: a ball would lose a part of its height at each bounce. But under a constant acceleration `a` its points
+//! `x + dt (v + fall dt a)` are on one parabola, on which the velocity is `u = v + s a` with the *velocity stagger*
+//! `s = (fall - 1/2) dt`. So symplectic and backward Euler keep the velocity of half a step before, forward Euler
+//! that of half a step after. Trajectories use `u`. An impact changes `u` and `v` by the same amount, so that no
+//! bounce loses energy, at whatever time it happens. Under other forces `a` is the mean over the step.
 
 use alloc::{vec, vec::Vec};
 use core::{mem, ops::Range};
@@ -31,63 +30,63 @@ use crate::{
     rotation::{Flight, FlightError},
 };
 
-/// Room to ask where bodies are.
+/// Memory for the evaluation of trajectories.
 #[derive(Clone, Debug, Default)]
 pub(in crate::world) struct Probe {
     pub(super) state: State,
     pub(super) scratch: Scratch,
-    /// What has been asked since this was last taken.
+    /// The work done since this value was last taken.
     pub(super) work: Work,
 }
 
 /// The trajectories of all bodies in a step.
 #[derive(Clone, Debug, Default)]
 pub(in crate::world) struct Trajectories {
-    /// Motion of each body where its trajectory starts, and when that is, s from the step's start.
+    /// The motion of each body at the start of its trajectory, and the time of that start, s from the step's start.
     pub(super) start: State,
     pub(super) since: Vec<f64>,
-    /// Motion at the end of the step, or at the horizon; outside of a step none.
+    /// The motion at the end of the step, or at the horizon; not valid outside of a step.
     pub(in crate::world) end: State,
     pub(in crate::world) horizons: Horizons,
-    /// How often a body's trajectory has changed in this step; an event of an older one is void.
+    /// How often the trajectory of each body has changed in this step. Events of older versions are void.
     pub(super) version: Vec<u32>,
-    /// What forces do to each body all along its trajectory, m/s²: constant ones, or under a method of
-    /// first order all of them.
+    /// The acceleration of each body by forces along its whole trajectory, m/s²: that of constant forces, or of all
+    /// forces under a first-order method.
     pub(super) applied_acceleration: Vec<DVec3>,
-    /// The same together with what contacts do.
+    /// The same with the forces of contacts.
     pub(super) acceleration: Vec<DVec3>,
-    /// How long before that of its trajectory a body's velocity is the one that the method keeps, s.
+    /// The velocity stagger, s: the method keeps the velocity that the trajectory has this long before.
     pub(super) velocity_stagger: f64,
-    /// How bodies that turn do so from where their trajectories start to the step's end, by slot.
+    /// By slot, the flight of the rotation of a turning body from the start of its trajectory to the step's end.
     pub(super) flights: Vec<Flight>,
-    /// By slot, the torque of all forces, N m: constant, or about the mean over the trajectory.
+    /// By slot, the torque of all forces, N m: a constant, or about the mean over the trajectory.
     pub(super) applied_torque: Vec<DVec3>,
-    /// By slot, what a method of first order adds to the angular momentum of a body with levers when the step is
-    /// over, kg m²/s.
+    /// By slot, what a first-order method adds to the angular momentum of a body with levers at the end of the step,
+    /// kg m²/s.
     pub(super) kicks: Vec<Option<DVec3>>,
-    /// By slot, how contacts press a body.
+    /// By slot, the forces on a body that contacts press.
     pub(super) pressed: Vec<Option<Press>>,
-    /// By body, whether its forces are constant from where its trajectory starts (`ContactSolver::freeze`); empty where
-    /// none are.
+    /// By body, whether its forces are constant from the start of its trajectory on (`ContactSolver::freeze`); empty
+    /// if there is no such body.
     pub(super) frozen: Vec<bool>,
     /// Whether every trajectory is a parabola.
     pub(super) is_free: bool,
-    /// Room to ask where bodies are, and for what starts again.
+    /// Memory for the evaluation of trajectories and for trajectories that start again.
     pub(super) probe: Probe,
     restarted_motion: Vec<(DVec3, DVec3)>,
     restarted_turned: Vec<(usize, Turned)>,
 }
 
-/// The forces on a body in contact: constant ones.
+/// The constant forces on a body in contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Press {
-    /// Of all forces, those of contacts included, N m.
+    /// The torque of all forces, contacts included, N m.
     pub(super) torque: DVec3,
-    /// When they end, s from the step's start.
+    /// The time at which these forces end, s from the step's start.
     pub(super) until: f64,
 }
 
-/// Trajectories in their scene.
+/// The trajectories with their scene.
 #[derive(Clone, Copy)]
 pub(super) struct Motion<'a> {
     pub(super) scene: &'a Scene<'a>,
@@ -106,14 +105,14 @@ impl Trajectories {
         event.versions == (version[i], version[j])
     }
 
-    /// Lets every trajectory start where the step does. The ends are there already.
+    /// Starts every trajectory at the start of the step. The ends must be there already.
     pub(super) fn begin(&mut self, scene: &Scene<'_>) {
         let n = scene.bodies.len();
         let sections = &scene.forces.plan.sections;
         let method = scene.settings.method;
         let is_first_order = method.order == 1 && method.fall.is_some();
         self.is_free = is_first_order || sections.is_empty() && method.fall.is_some();
-        // Zero from the second order on.
+        // Zero for methods of second and higher order.
         self.velocity_stagger = method.fall.map_or(0.0, |fall| fall - 0.5) * scene.settings.dt;
         self.start.clone_from(scene.before);
         self.applied_acceleration
@@ -139,7 +138,7 @@ impl Trajectories {
         self.version.resize(n, 0);
     }
 
-    /// Turns all bodies that do to the step's end.
+    /// Computes the flights of all turning bodies to the end of the step.
     pub(super) fn begin_turning(&mut self, scene: &Scene<'_>) -> Result<(), (usize, Cause)> {
         self.flights.clear();
         self.pressed.clear();
@@ -149,7 +148,7 @@ impl Trajectories {
         self.applied_torque.clone_from(&scene.bodies.turners.torque);
         for (slot, &body) in scene.bodies.turners.body.iter().enumerate() {
             let mut length = scene.settings.dt;
-            // Of what forces turn that depend on the motion, the method knows how it is turned at the end.
+            // If forces that depend on the motion turn a body, the method gives its rotation at the end.
             let is_levered = scene.is_turned_by_levers(body);
             if is_levered {
                 self.begin_levered(scene, slot, body)
@@ -173,8 +172,9 @@ impl Trajectories {
         Ok(())
     }
 
-    /// Until when a body is followed that turns: as long as contacts press it as they do, and not for so many turns in
-    /// a step that each impact would cost thousands of them. There its trajectory starts again.
+    /// The time until which the trajectory of a turning body is computed: as long as contacts press it with constant
+    /// forces, and not for so many turns in a step that each impact would cost thousands of them. Its trajectory
+    /// starts again there.
     fn turns_until(
         &self,
         scene: &Scene<'_>,
@@ -198,7 +198,7 @@ impl Trajectories {
         })
     }
 
-    /// Lets the parabola of a body end at a time, which is its horizon if it is before the step's end.
+    /// Ends the parabola of a body at a time, which is its horizon if it is before the step's end.
     fn end_at(&mut self, scene: &Scene<'_>, body: usize, until: f64) {
         let dt = scene.settings.dt;
         let known = (until < dt).then_some(until);
@@ -217,7 +217,7 @@ impl Trajectories {
         }
     }
 
-    /// The flight of a body that turns, from how it is turned.
+    /// The flight of a turning body from a given rotation and angular momentum.
     pub(super) fn flight_from(
         &self,
         scene: &Scene<'_>,
@@ -244,7 +244,7 @@ impl Trajectories {
         };
     }
 
-    /// Lets a body turn on from where its trajectory starts.
+    /// Computes the rotation of a body from the start of its trajectory on.
     fn turn_on(&mut self, scene: &Scene<'_>, slot: usize, body: usize) -> Result<(), FlightError> {
         let mut length = self.motion(scene).horizon(body) - self.since[body];
         let (start, is_bent) = (
@@ -262,8 +262,8 @@ impl Trajectories {
         Ok(())
     }
 
-    /// Lets the trajectory of a body, and of those coupled to it, start again at a time, where they
-    /// are then, and tells which bodies those are.
+    /// Starts the trajectory of a body and of the bodies coupled to it again at a time, at their positions then, and
+    /// returns these bodies.
     pub(super) fn restart_at(
         &mut self,
         scene: &Scene<'_>,
@@ -310,8 +310,8 @@ impl Trajectories {
         found.map(|()| bodies)
     }
 
-    /// Moves bodies whose trajectories have started again, in order, to the end of the step: of those that
-    /// are stepped together once all.
+    /// Steps the bodies whose trajectories have started again, in order, to the end of the step; bodies that are
+    /// stepped together only once.
     pub(super) fn finish_restarted(
         &mut self,
         scene: &Scene<'_>,
@@ -328,8 +328,7 @@ impl Trajectories {
         Ok(())
     }
 
-    /// Moves bodies that are stepped together from the start of their trajectories to the end of the
-    /// step, or to their horizon.
+    /// Steps coupled bodies from the start of their trajectories to the end of the step, or to their horizon.
     fn finish(
         &mut self,
         scene: &Scene<'_>,
@@ -373,8 +372,8 @@ impl Trajectories {
 }
 
 impl<'a> Motion<'a> {
-    /// The bodies that must be stepped with one, and whether forces couple them; `None` where its
-    /// trajectory is a parabola.
+    /// The bodies that must be stepped with a body, and whether forces couple them; `None` if the trajectory of the
+    /// body is a parabola.
     #[inline(always)]
     pub(super) fn coupled_group(&self, body: usize) -> Option<(Range<usize>, bool)> {
         match self.paths.is_free {
@@ -383,7 +382,7 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// How contacts press a body, if they do.
+    /// The constant forces on a body, if contacts press it.
     pub(super) fn press(&self, body: usize) -> Option<Press> {
         let slot = self.scene.bodies.turners.slot(body)?;
         self.paths.pressed[slot]
@@ -405,8 +404,8 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Position and velocity of a body at a time between its trajectory's start and its horizon, s from
-    /// the step's start.
+    /// The position and velocity of a body at a time between the start of its trajectory and its horizon, s from the
+    /// step's start.
     pub(super) fn motion_at(
         &self,
         body: usize,
@@ -441,8 +440,8 @@ impl<'a> Motion<'a> {
         Ok((probe.state.position[body], probe.state.velocity[body]))
     }
 
-    /// How a body that turns is turned at a time between its trajectory's start and the step's end, s from the
-    /// step's start: under the mean of what turns it, where forces bend that.
+    /// The rotation and angular momentum of a turning body at a time between the start of its trajectory and the
+    /// step's end, s from the step's start. If the torque depends on the motion, its mean is used.
     pub(super) fn turned_at(&self, slot: usize, body: usize, time: f64) -> Turned {
         let h = time - self.paths.since[body];
         if h == 0.0 {
@@ -455,7 +454,7 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Position and velocity of a body on a parabola, some time after its trajectory has started.
+    /// The position and velocity of a body on a parabola, `h` seconds after the start of its trajectory.
     #[inline]
     fn on_parabola(&self, body: usize, h: f64) -> (DVec3, DVec3) {
         let start = &self.paths.start;
@@ -464,7 +463,7 @@ impl<'a> Motion<'a> {
         (x + h * (v + 0.5 * h * a), v + h * a)
     }
 
-    /// Steps coupled bodies, or one, from the start of their trajectories to a time.
+    /// Steps coupled bodies, or a single one, from the start of their trajectories to a time.
     pub(super) fn step_group(
         &self,
         bodies: Range<usize>,
@@ -477,7 +476,7 @@ impl<'a> Motion<'a> {
         self.scene.step_block(block, to, scratch, None)
     }
 
-    /// Coupled bodies, or one, from the start of their trajectories to a time.
+    /// The block of coupled bodies, or of a single one, from the start of their trajectories to a time.
     fn block_of(&self, bodies: Range<usize>, is_coupled: bool, time: f64) -> Block<'a> {
         let paths = self.paths;
         let since = paths.since[bodies.start];
@@ -492,12 +491,12 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// The velocity that the method keeps where a body's trajectory has another one.
+    /// The velocity that the method keeps when the velocity of a body on its trajectory is `on_trajectory`.
     fn unstaggered_velocity(&self, body: usize, on_trajectory: DVec3) -> DVec3 {
         on_trajectory - self.stagger_of(body) * self.paths.acceleration[body]
     }
 
-    /// By how much of its acceleration the velocity on the trajectory of a body is ahead of the method's, s.
+    /// The velocity stagger of a body, s: the trajectory's velocity is the method's plus this times the acceleration.
     fn stagger_of(&self, body: usize) -> f64 {
         let stagger = self.paths.velocity_stagger;
         if stagger == 0.0 {
@@ -509,17 +508,17 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// What forces and contacts do to a body where its trajectory starts, m/s².
+    /// The acceleration of a body by forces and contacts at the start of its trajectory, m/s².
     pub(super) fn acceleration_there(&self, body: usize) -> DVec3 {
         self.acceleration_beside(body, &[])
     }
 
-    /// The same if some bodies were moved from there, each by so much, m.
+    /// The same if some bodies were displaced from there, each by the given vector, m.
     pub(super) fn acceleration_beside(&self, body: usize, moved: &[(usize, DVec3)]) -> DVec3 {
         self.loads_beside(body, moved).0
     }
 
-    /// Acceleration, and if levers turn it the torque of all forces.
+    /// The acceleration, m/s², and the torque of all forces, N m, if the body is coupled to one with levers.
     pub(super) fn loads_beside(
         &self,
         body: usize,
@@ -559,9 +558,8 @@ impl<'a> Motion<'a> {
             .loads(part, time, (&x, v), &paths.start.turned, body)
     }
 
-    /// How far a body's trajectory departs from its chord, m, by component: at most so on a parabola,
-    /// about so where the method makes the trajectory, but not where it turns round and back within
-    /// a step.
+    /// The deviation of a body's trajectory from its chord, m, by component. On a parabola it is a bound. For other
+    /// trajectories it is an estimate, unless the trajectory turns around and back within a step.
     #[inline(always)]
     pub(super) fn chord_deviation(&self, body: usize) -> DVec3 {
         let paths = self.paths;
@@ -569,15 +567,15 @@ impl<'a> Motion<'a> {
         if self.coupled_group(body).is_none() {
             return (0.125 * h * h) * paths.acceleration[body].abs();
         }
-        // Of a parabola the sum is four times the deviation.
+        // On a parabola the sum is four times the deviation.
         let chord = self.paths.end.position[body] - paths.start.position[body];
         let before = chord - h * paths.start.velocity[body];
         let after = chord - h * self.paths.end.velocity[body];
         0.25 * (before.abs() + after.abs())
     }
 
-    /// How far the relative trajectory of two bodies departs from a chord, m, per square of its length,
-    /// s², by component.
+    /// The deviation of the relative trajectory of two bodies from a chord, m, divided by the square of the duration
+    /// of the chord, s², by component.
     pub(super) fn deviation_per_time2(&self, i: usize, j: usize) -> DVec3 {
         if self.coupled_group(i).is_none() && self.coupled_group(j).is_none() {
             let push = &self.paths.acceleration;
@@ -586,7 +584,8 @@ impl<'a> Motion<'a> {
         }
         let length = |body: usize| self.horizon(body) - self.paths.since[body];
         let h = length(i);
-        // What is stepped together is bent alike by what acts on both, which bends neither as seen from the other.
+        // Forces that act on both bodies alike bend both trajectories alike, but not the relative one. So the
+        // relative trajectory is used if both trajectories cover the same time.
         if h > 0.0 && self.paths.since[i] == self.paths.since[j] && h == length(j) {
             let (start, end) = (&self.paths.start, &self.paths.end);
             let from = start.position[j] - start.position[i];

@@ -1,18 +1,19 @@
 //! The forces of turning bodies in contact ([`super::turning_rest`]).
 //!
-//! They are those after which no gap is less than its room, at the end of the step and at times within, and no gap
-//! begins to close: `0 <= f ⟂ g(τ) - room >= 0`, where `g(t)` is the gap of the features that touch as bodies really
-//! move, by Newton's method over problems of complementarity.
+//! They are the forces after which no gap is less than its room, at the end of the step and at times within it, and
+//! no gap begins to close: `0 <= f ⟂ g(τ) - room >= 0`. Here `g(t)` is the gap of the touching features in the true
+//! motion of the bodies. Newton's method finds the forces, by a sequence of complementarity problems.
 //!
-//! **Energy.** A force does the work `f D`, where `D(s)` is how far its point gets along it. With arms and
-//! normals of the start `D(s) = g(s) - g(0) - c s²/2`, and with those of the end `g(s) - g(0) + c (τ s - s²/2)`,
-//! where `c` is how the gap would be bent if bodies kept their velocities, third orders apart. Each contact
-//! takes the one with which it does no work but for the room that it lacks, whenever the step is cut short:
-//! contact never gives energy to second order. For that the arms of the end are those of the points that are over
-//! each other then, not of those that were at the start. What is left, of third order and where a contact opens, is
-//! known, as bodies are on parabolas: forces that give energy are not taken ([`Pressing::find`]).
+//! **Energy.** A force does the work `f D`, where `D(s)` is the distance that its point moves along it until the time
+//! `s`. With the lever arms and normals of the start `D(s) = g(s) - g(0) - c s²/2`, and with those of the end
+//! `g(s) - g(0) + c (τ s - s²/2)`, up to terms of third order, where `c` is the second derivative of the gap if the
+//! bodies kept their velocities. Each contact takes the one with which it does no work, except for the room that it
+//! lacks, at whatever time the step is cut: contacts never give energy to second order. For this the lever arms of
+//! the end are those of the points that are opposite each other then, not of those that were opposite at the start.
+//! The rest is of third order, or arises when a contact opens. It is known, because the bodies are on parabolas, and
+//! forces that give energy are rejected ([`Pressing::find`]).
 //!
-//! What flat faces do, and what does not turn, has `c = 0` and is exact; else the loss is `f |c| τ²/2` in a step,
+//! Flat faces, and bodies that do not turn, have `c = 0` and are exact. Otherwise the loss is `f |c| τ²/2` in a step,
 //! and vanishes with its length.
 
 use alloc::{vec, vec::Vec};
@@ -25,45 +26,47 @@ use crate::{
     rotation::Flight,
 };
 
-/// Parts of the time in which forces are constant at which bodies are looked at: its start, its end, and times within.
+/// The times at which bodies are examined while forces are constant, as fractions of the duration: its start, its
+/// end, and times within.
 pub(super) const PARTS: [f64; 4] = [0.0, 1.0, 0.5, 0.125];
 
-/// Rounds in which forces are found at most. What is left of a gap then is met early.
+/// The greatest number of rounds in which forces are computed. A gap that is still too small then leads to an early
+/// impact.
 pub(super) const ROUNDS: usize = 12;
 
-/// Angle that a body turns by at most while forces are constant, rad.
+/// The greatest angle by which a body turns while forces are constant, rad.
 const MOST_TURN: f64 = 1.0;
 
-/// A contact by points of both bodies.
+/// A contact, given by a point of each body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Anchored {
     pub(super) bodies: (usize, usize),
-    /// As seen from the centres of mass, in the frames of the shapes, m.
+    /// From the centres of mass, in the frames of the shapes, m.
     pub(super) points: [DVec3; 2],
-    /// In the frame of the one whose surface it is.
+    /// In the frame of the owner, the body to whose surface the normal belongs.
     pub(super) normal: DVec3,
     pub(super) owner: usize,
-    /// Directions of edges that cross, in the frames of their shapes.
+    /// The directions of crossing edges, in the frames of their shapes.
     pub(super) edges: Option<[DVec3; 2]>,
     pub(super) room: f64,
 }
 
-/// How a body of an island moves on.
+/// The motion of a body of an island.
 pub(super) struct Mover {
     pub(super) body: usize,
     pub(super) turns: Option<Turns>,
     pub(super) position: DVec3,
     pub(super) velocity: DVec3,
-    /// Inverse mass, 1/kg; zero where nothing moves it.
+    /// The inverse mass, 1/kg; zero for an immovable body.
     pub(super) mass: f64,
-    /// How it is turned after [`PARTS`] of that time, if contacts do not turn it.
+    /// The rotations of the body after [`PARTS`] of the time, if contacts do not turn it.
     pub(super) rotations: [DQuat; PARTS.len()],
 }
 
-/// What a body has that turns and is moved by contacts.
+/// The data of a turning body that contacts move.
 pub(super) struct Turns {
     pub(super) slot: usize,
-    /// What forces other than contacts do, m/s² and N m.
+    /// The acceleration and the torque of forces other than contacts, m/s² and N m.
     pub(super) pull: DVec3,
     pub(super) torque: DVec3,
     pub(super) moments: DVec3,
@@ -71,28 +74,28 @@ pub(super) struct Turns {
     pub(super) turned: Turned,
 }
 
-/// Contacts of an island and how its bodies move, without the forces that are sought.
+/// The contacts of an island and the motion of its bodies, without the forces that are sought.
 pub(super) struct Pressing<'a> {
-    /// How long forces are constant, s.
+    /// The duration for which forces are constant, s.
     pub(super) length: f64,
     pub(super) movers: Vec<Mover>,
-    /// What impulses do to mean velocities.
+    /// How impulses change mean velocities.
     pub(super) yielding: Vec<Yielding>,
     pub(super) touching: &'a [Touching],
     pub(super) anchored: Vec<Anchored>,
-    /// The gap that each is kept at, m.
+    /// The gap that each contact keeps, m.
     pub(super) room: Vec<f64>,
     pub(super) contacts: &'a [Arms],
 }
 
-/// Forces of contacts, with the arms and normals along which they push.
+/// The contact forces, with the lever arms and normals along which they push.
 pub(super) struct Forces {
-    /// Over all of that time, N s.
+    /// The impulse over the whole duration, N s.
     pub(super) impulse: Vec<f64>,
     pub(super) contacts: Vec<Arms>,
 }
 
-/// A contact somewhere on its way.
+/// A contact at a later time.
 pub(super) struct Later {
     pub(super) gap: f64,
     pub(super) normal: DVec3,
@@ -108,7 +111,7 @@ pub(super) struct At {
 }
 
 impl Anchored {
-    /// A contact in the frames of its shapes, by what turns the world into those.
+    /// A contact in the frames of its shapes; `inverse` rotates from the world into these frames.
     pub(super) fn of(touching: &Touching, inverse: [DQuat; 2]) -> Anchored {
         Anchored {
             bodies: touching.bodies,
@@ -122,7 +125,7 @@ impl Anchored {
         }
     }
 
-    /// Where it is in some poses: a corner over the plane that it was over, or the nearest points of two lines.
+    /// The contact in given poses: a vertex over the plane of a face, or the nearest points of two lines.
     pub(super) fn later(&self, at: [At; 2]) -> Later {
         let [first, second] = at;
         let mut arms = (
@@ -143,7 +146,7 @@ impl Anchored {
             None if self.owner == 0 => arms.0 += slid,
             None => arms.1 -= slid,
             Some([e, f]) => {
-                // Along each line as far as the other one has slid across it.
+                // Along each line by the distance that the other line has slid across it.
                 let sine = e.cross(f).dot(normal);
                 arms.0 += slid.cross(f).dot(normal) / sine * e;
                 arms.1 += slid.cross(e).dot(normal) / sine * f;
@@ -153,7 +156,7 @@ impl Anchored {
     }
 }
 
-/// How a body moves at the start.
+/// The motion of a body at the start.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Rates {
     pub(super) velocity: DVec3,
@@ -163,7 +166,7 @@ pub(super) struct Rates {
 }
 
 impl Rates {
-    /// Velocity and acceleration of a point at an arm.
+    /// The velocity and acceleration of a point at a lever arm.
     pub(super) fn at(&self, arm: DVec3) -> (DVec3, DVec3) {
         let swept = self.spin.cross(arm);
         let bent = self.turning.cross(arm) + self.spin.cross(swept);
@@ -171,18 +174,18 @@ impl Rates {
     }
 }
 
-/// Motion of the bodies of an island under some forces.
+/// The motion of the bodies of an island under given forces.
 pub(super) struct Course {
-    /// By body at the start.
+    /// By body, the motion at the start.
     pub(super) rates: Vec<Rates>,
-    /// By body after [`PARTS`] of the time.
+    /// By body, the poses after [`PARTS`] of the time.
     pub(super) at: Vec<[At; PARTS.len()]>,
-    /// By body the angle that it turns by, as a vector: the integral of its spin.
+    /// By body, the angle by which it turns, as a vector: the integral of its angular velocity.
     pub(super) turn: Vec<DVec3>,
 }
 
 impl Pressing<'_> {
-    /// What forces give to each body: impulse and torque.
+    /// The impulse and torque that the forces give each body.
     pub(super) fn pushes(&self, forces: &Forces) -> Vec<(DVec3, DVec3)> {
         let mut pushes = vec![(DVec3::ZERO, DVec3::ZERO); self.movers.len()];
         for (contact, &impulse) in forces.contacts.iter().zip(&forces.impulse) {
@@ -196,7 +199,8 @@ impl Pressing<'_> {
         pushes
     }
 
-    /// How bodies move under some forces; none where one turns so far that nothing can be said of its contacts.
+    /// The motion of the bodies under given forces; `None` if a body turns so far that nothing can be said of its
+    /// contacts.
     fn course(&self, forces: &Forces) -> Option<Course> {
         let pushes = self.pushes(forces);
         let mut course = Course {
@@ -254,14 +258,14 @@ impl Pressing<'_> {
         Some(course)
     }
 
-    /// A contact after one of [`PARTS`].
+    /// A contact after the given entry of [`PARTS`].
     pub(super) fn later(&self, k: usize, course: &Course, part: usize) -> Later {
         let (i, j) = self.contacts[k].bodies;
         self.anchored[k].later([course.at[i][part], course.at[j][part]])
     }
 
-    /// Twice what a gap grows by at first over the square of the time, up to the first part of the time
-    /// at which gaps are looked at: its second derivative, and what it opens by.
+    /// Twice the growth of a gap until the earliest time at which gaps are examined, divided by the square of that
+    /// time: the second derivative of the gap, plus the part of the opening speed.
     pub(super) fn growth(&self, k: usize, course: &Course) -> f64 {
         let contact = &self.contacts[k];
         let n = contact.normal;
@@ -284,7 +288,8 @@ impl Pressing<'_> {
         bend + 2.0 * n.dot(opening) / (PARTS[PARTS.len() - 1] * self.length)
     }
 
-    /// Whether neither body of a contact turns: impulses change their velocities at once, and their gap from then on.
+    /// Whether neither body of a contact turns. Then impulses change their velocities at once, and their gap from
+    /// then on.
     fn is_straight(&self, k: usize) -> bool {
         let turns = |place: usize| {
             let mover = &self.movers[place];
@@ -294,7 +299,7 @@ impl Pressing<'_> {
         !turns(i) && !turns(j)
     }
 
-    /// The speed at which such a contact opens, m/s.
+    /// The opening speed of such a contact, m/s.
     fn parting(&self, k: usize, course: &Course) -> f64 {
         let contact = &self.contacts[k];
         let (i, j) = contact.bodies;
@@ -302,7 +307,7 @@ impl Pressing<'_> {
         contact.normal.dot(relative)
     }
 
-    /// How far the point of a contact gets along a constant direction at constant arms.
+    /// The distance that the point of a contact moves along a constant direction with constant lever arms, m.
     pub(super) fn gets(&self, contact: &Arms, course: &Course) -> f64 {
         let of = |body: usize, arm: DVec3| {
             let at = &course.at[body];
@@ -314,8 +319,8 @@ impl Pressing<'_> {
             .dot(of(j, contact.arms.1) - of(i, contact.arms.0))
     }
 
-    /// Chooses between arms and normals of the start and of the end those with which contacts do less work,
-    /// unless they do none, and tells whether any has changed.
+    /// Chooses for each contact the lever arms and normal of the start or of the end, whichever do less work, unless
+    /// the contact does no work. Returns whether any has changed.
     pub(super) fn choose(&self, forces: &mut Forces, course: &Course) -> bool {
         let mut is_changed = false;
         for k in 0..self.contacts.len() {
@@ -338,7 +343,7 @@ impl Pressing<'_> {
         is_changed
     }
 
-    /// What contacts give to bodies, J, but for what it takes to get the room that they lack.
+    /// The energy that contacts give to bodies, J, without the work that restores the room that they lack.
     fn gain(&self, forces: &Forces, course: &Course) -> f64 {
         let pairs = forces.contacts.iter().zip(&forces.impulse).enumerate();
         let given = pairs.map(|(k, (contact, impulse))| {
@@ -347,13 +352,13 @@ impl Pressing<'_> {
         given.sum()
     }
 
-    /// How far a contact may get along its force, m: the room that it lacks, and what is a rounding beside it.
+    /// The distance that a contact may move along its force, m: the room that it lacks, and a slack of rounding size.
     fn allowed(&self, k: usize) -> f64 {
         let touching = &self.touching[k];
         (self.room[k] - touching.gap).max(0.0) + 0.25 * touching.room
     }
 
-    /// No forces at all.
+    /// Zero forces.
     pub(super) fn no_forces(&self) -> Forces {
         Forces {
             impulse: vec![0.0; self.touching.len()],
@@ -361,8 +366,8 @@ impl Pressing<'_> {
         }
     }
 
-    /// The forces after which no gap is less than it must be, or about those, and whether they are found; none
-    /// where they would give energy or nothing can turn so.
+    /// The forces after which no gap is less than it must be, and whether they are exact or only near; `None` if the
+    /// forces would give energy or a body would turn too far.
     pub(super) fn find(&self) -> Option<(Forces, bool)> {
         let mut forces = self.no_forces();
         for round in 0..ROUNDS {
@@ -384,8 +389,8 @@ impl Pressing<'_> {
         (self.gain(&forces, &course) <= 0.0).then_some((forces, false))
     }
 
-    /// The mean speed at which each contact has to open by forces, m/s, if others only change it as where bodies
-    /// are now; and whether it does so already.
+    /// The mean speed at which each contact must open by forces, m/s, if contacts influence each other as in the
+    /// present poses; and whether the present forces are the solution.
     fn wanted(&self, forces: &Forces, course: &Course) -> (Vec<f64>, bool) {
         let widest = self.touching.iter().map(|touching| touching.room);
         let widest = widest.fold(0.0, f64::max);
@@ -411,7 +416,8 @@ impl Pressing<'_> {
         (wanted, is_found)
     }
 
-    /// What a gap lacks at some time, m, as of the end; less than nothing where it is never so small.
+    /// The greatest distance that a gap lacks at the examined times, m, scaled to the end of the duration; negative
+    /// if the gap is never too small.
     fn missing(&self, k: usize, course: &Course) -> f64 {
         let (from, room) = (self.touching[k].gap.min(self.room[k]), self.room[k]);
         let at_first = -0.5 * self.length * self.length * self.growth(k, course);

@@ -1,7 +1,7 @@
-//! What turning bodies do where they touch: they bounce, or stay in contact ([`super::turning_rest`]).
+//! The response of turning bodies that touch: they bounce, or stay in contact ([`super::turning_rest`]).
 //!
-//! All features that touch at the instant are answered at once, with their arms ([`crate::impulse::arms`]):
-//! restitution along each normal, no friction.
+//! All features that touch at the same time are resolved at once, with their lever arms ([`crate::impulse::arms`]):
+//! with restitution along each normal and without friction.
 
 use alloc::{vec, vec::Vec};
 use core::{f64::consts::PI, mem};
@@ -24,41 +24,41 @@ use crate::{
     pieces::ties,
 };
 
-/// Features touch that are no farther apart than this times what is a contact.
+/// Features touch if they are no farther apart than this times the distance that counts as a contact.
 pub(super) const REACH: f64 = 64.0;
-/// Least gap from which bodies bounce, in the same: where those stop that come from afar.
+/// The least gap from which bodies bounce, in the same unit: bodies that come from afar stop at this gap.
 const LEAST_ROOM: f64 = 0.75;
-/// Gap at which bodies in contact are kept, in the same.
+/// The gap of bodies in contact, in the same unit.
 const ROOM: f64 = 32.0;
-/// Impacts of a turning body in a step after which it stays in contact, if its impacts lose something.
+/// The number of impacts of a turning body in a step after which it stays in contact, if its impacts lose energy.
 const MANY_IMPACTS: u32 = 32;
-/// The same if they lose nothing.
+/// The same if its impacts are elastic.
 const MANY_ELASTIC_IMPACTS: u32 = 4096;
-/// A contact where bodies are now.
+/// A contact at the present poses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touching {
     pub(super) bodies: (usize, usize),
     pub(super) arms: (DVec3, DVec3),
     pub(super) normal: DVec3,
     pub(super) owner: usize,
-    /// Directions of edges that cross.
+    /// The directions of crossing edges.
     pub(super) edges: Option<[DVec3; 2]>,
     pub(super) gap: f64,
     pub(super) room: f64,
 }
 
-/// What becomes of an impact.
+/// The outcome of an impact.
 enum TurningOutcome {
     Bounce,
-    /// Bodies lose the speed at which they close, and stay in contact.
+    /// The bodies lose their closing speed and stay in contact.
     Stop,
-    /// They stay in contact, as they were.
+    /// The bodies stay in contact with their present motion.
     Rest,
 }
 
 impl EventLoop<'_> {
-    /// Answers the impacts of turning bodies at a time, at which their trajectories start, and takes them
-    /// from a group.
+    /// Resolves the impacts of turning bodies at a time, at which their trajectories start, and removes them from a
+    /// group.
     pub(super) fn resolve_turning(
         &mut self,
         group: &mut Vec<Event>,
@@ -93,9 +93,10 @@ impl EventLoop<'_> {
         }
         group.retain(|event| !is_turning(event));
         turning.retain(|event| !self.solver.goes_on(event));
-        // Whom contacts have pushed they push on, whatever hits it.
+        // Bodies that contacts have pushed stay in contact, whatever hits them.
         let mut pressed: Vec<usize> = Vec::new();
-        // What presses them together is what is left of forces where contacts bear them.
+        // The acceleration that presses bodies together is the rest of their acceleration that contacts do not
+        // support.
         let load = |body: usize| self.solver.view().motion().acceleration_there(body);
         let loads: Vec<[DVec3; 2]> = turning
             .iter()
@@ -146,7 +147,8 @@ impl EventLoop<'_> {
         Ok(())
     }
 
-    /// Lets bodies bounce, those that impacts tie together at once: with a restitution, or the least of all.
+    /// Lets bodies bounce. Bodies that impacts connect bounce together, with the given restitution or else the least
+    /// of all.
     fn bounce_turning(
         &mut self,
         bouncing: &[(&Event, Vec<Touching>)],
@@ -196,7 +198,7 @@ impl EventLoop<'_> {
                 restitution,
             ),
         };
-        // Through the centres of mass nothing is turned.
+        // An impulse through the centres of mass turns no body.
         let turning = if is_flat { &[][..] } else { &given };
         self.solver.put(&island, turning);
         let mut first = 0;
@@ -216,8 +218,8 @@ impl EventLoop<'_> {
                 mean(&|arms| arms.opening(&island.twists)),
             );
             let at = self.view().instant(event.bodies, time);
-            // Of several features that touch at once the event has one, and its normal may be any between
-            // those of its faces: what is told is what is given.
+            // If several features touch at once, the event has only one of them, and its normal may be any between
+            // those of its faces. So the total impulse is reported.
             let sum = |of: &dyn Fn(&Arms) -> DVec3| {
                 parts().map(|(arms, given)| given * of(arms)).sum::<DVec3>()
             };
@@ -235,7 +237,7 @@ impl EventLoop<'_> {
     }
 }
 
-/// The bodies of some contacts, once each, with their motion.
+/// The bodies of some contacts, each once, with their motion.
 pub(super) struct ArmIsland {
     pub(super) bodies: Vec<usize>,
     pub(super) contacts: Vec<Arms>,
@@ -244,8 +246,8 @@ pub(super) struct ArmIsland {
 }
 
 impl ArmIsland {
-    /// Whether an impulse through the centres of mass answers all contacts alike: they are along one normal,
-    /// close at one speed, and the centre of each body that moves is over what it touches with.
+    /// Whether one impulse through the centres of mass resolves all contacts alike: they have the same normal and
+    /// close at the same speed, and along the normal the centre of each movable body is within its contact points.
     fn is_flat(&self, touching: &[Touching]) -> bool {
         let Some(first) = self.contacts.first() else {
             return false;
@@ -263,7 +265,7 @@ impl ArmIsland {
                 is_over(&arms, normal)
             }
         };
-        // Of two that turn what pushes the one through its centre has to push the other one so.
+        // If both bodies turn, the impulse must pass through both centres.
         let turns = |body: usize| self.yielding[body].inertia != DMat3::ZERO;
         let between = touching[0].arms.0 - touching[0].arms.1;
         let is_in_line = between.cross(normal).length() <= SAME_PLACE * between.length();
@@ -275,8 +277,8 @@ impl ArmIsland {
             && over(j, |touching| touching.arms.1)
     }
 
-    /// Exchanges an impulse along the normal that all contacts share, through the centres of mass, and says
-    /// what share of it each has.
+    /// Exchanges an impulse along the common normal of all contacts, through the centres of mass. Returns the share
+    /// of each contact.
     fn bounce_flat(&mut self, restitution: f64) -> Vec<f64> {
         let contact = self.contacts[0];
         let (i, j) = contact.bodies;
@@ -297,8 +299,8 @@ impl ArmIsland {
     }
 }
 
-/// Whether the origin, seen along a normal, is within the hull of points, or but for rounding on its border:
-/// between none of two neighbours in direction is more than half a turn.
+/// Whether the origin, seen along a normal, is within the convex hull of the points, or on its border up to rounding.
+/// This holds if no two points that are neighbours in direction are more than half a turn apart.
 fn is_over(points: &[DVec3], normal: DVec3) -> bool {
     let (u, v) = normal.any_orthonormal_pair();
     let flat = points.iter().map(|p| (p.dot(u), p.dot(v)));
@@ -319,12 +321,11 @@ fn is_over(points: &[DVec3], normal: DVec3) -> bool {
     angles.windows(2).all(|pair| pair[1] - pair[0] <= half) && wrap <= half
 }
 
-/// Rounding of arms and of their directions.
+/// The relative rounding of lever arms and of their directions.
 const SAME_PLACE: f64 = 1e-12;
 
 impl ContactSolver<'_> {
-    /// Whether an event is no contact yet, and the search goes on from there; not for ever in a step.
-    /// How a body is turned at a time: shape into the world.
+    /// The rotation of a body at a time, from its shape to the world.
     pub(super) fn rotation_at(&self, body: usize, time: f64) -> DQuat {
         let bodies = self.scene.bodies;
         match bodies.turners.slot(body) {
@@ -344,7 +345,7 @@ impl ContactSolver<'_> {
         Ok(place?.0)
     }
 
-    /// All that touches at an impact.
+    /// All features that touch at an impact.
     fn touching(&mut self, event: &Event, time: f64) -> Result<Vec<Touching>, (usize, Cause)> {
         let (i, j) = event.bodies;
         let (first, second) = (self.place_at(i, time)?, self.place_at(j, time)?);
@@ -383,8 +384,8 @@ impl ContactSolver<'_> {
             .collect())
     }
 
-    /// Moves bodies apart that are nearer than a search from there can tell from a contact: by a rounding,
-    /// where others leave room for it.
+    /// Moves bodies apart if they are so near that a search from there cannot distinguish them from bodies in
+    /// contact. The distance is a rounding, and other bodies must leave room for it.
     fn make_room(
         &mut self,
         event: &Event,
@@ -399,7 +400,7 @@ impl ContactSolver<'_> {
         if missing <= 0.0 {
             return Ok(());
         }
-        // Both, or the one that has room for it.
+        // Both bodies move, or the one that has room.
         let (i, j) = event.bodies;
         let before = [i, j].map(|body| self.paths.start.position[body]);
         let (first, second) = shares(
@@ -428,7 +429,7 @@ impl ContactSolver<'_> {
         Ok(())
     }
 
-    /// Another body that one meets at a time, by the exact test.
+    /// Another body that overlaps with `body` at a time, by the exact test.
     pub(super) fn met_by(
         &mut self,
         body: usize,
@@ -454,7 +455,7 @@ impl ContactSolver<'_> {
         Ok(met)
     }
 
-    /// What becomes of an impact.
+    /// The outcome of an impact.
     fn outcome(
         &mut self,
         event: &Event,
@@ -489,7 +490,7 @@ impl ContactSolver<'_> {
         let [first, second] = load.map(|acceleration| acceleration.dot(normal));
         let load_speed = self.scene.settings.dt * (first - second);
         let pull = first.abs().max(second.abs());
-        // What has fallen through the room that bodies are kept at is no impact.
+        // Bodies that have fallen only through the gap of bodies in contact have no impact.
         let fallen = libm::sqrt(8.0 * ROOM * event.gap * pull);
         let unfelt = self.view().unfelt(load_speed) + fallen;
         if closing <= unfelt && restitution < 1.0 {
@@ -504,7 +505,7 @@ impl ContactSolver<'_> {
         )
     }
 
-    /// Bodies of contacts as they move at a time.
+    /// The bodies of some contacts with their motion at a time.
     pub(super) fn gather(
         &mut self,
         touching: &[Touching],
@@ -550,8 +551,8 @@ impl ContactSolver<'_> {
         })
     }
 
-    /// Gives the bodies of an island their new motion: velocities as they are, and angular momenta by the
-    /// impulses, so that what one gains the other one loses.
+    /// Gives the bodies of an island their new motion. Velocities are set. Angular momenta are changed by the
+    /// impulses, so that one body gains what the other one loses.
     pub(super) fn put(&mut self, island: &ArmIsland, given: &[f64]) {
         let all = self.scene.bodies;
         for (place, &body) in island.bodies.iter().enumerate() {

@@ -1,13 +1,14 @@
-//! Turning bodies that stay in contact for what is left of a step.
+//! Turning bodies that stay in contact for the rest of a step.
 //!
-//! First the contacts that close cease to: of all motions in which none does, bodies take the nearest one in
-//! the norm of kinetic energy, which takes energy only. Then each contact pushes with a constant force `f`,
-//! along a constant direction at constant arms, so that bodies go along parabolas and turn under constant
-//! torques, which is exact ([`crate::rotation`]; [`super::turning_forces`] finds it), for what is left of the step, or
-//! half of it, or a quarter, as long as these forces are found and give no energy. Then they are found anew.
+//! First the closing contacts are stopped: the bodies take the nearest motion, in the norm of kinetic energy, in
+//! which no contact closes. This only takes energy. Then each contact pushes with a constant force `f`, along a
+//! constant direction and with constant lever arms, so that the bodies move on parabolas and turn under constant
+//! torques. Such a rotation is computed exactly ([`crate::rotation`]; [`super::turning_forces`] finds the forces).
+//! The forces last for the rest of the step, or for half of it, or a quarter, until forces are found that give no
+//! energy. After that time they are computed anew.
 //!
-//! Trajectories are searched like all others. What they meet early ends the contact forces there, and they
-//! are found anew with that contact as well. No crossing is possible whatever the forces are.
+//! Impacts on these trajectories are searched like all others. An earlier impact ends the contact forces, and they
+//! are computed anew with that contact as well. So bodies cannot cross, whatever the forces are.
 
 use alloc::{vec, vec::Vec};
 use glam::{DMat3, DVec3};
@@ -26,30 +27,29 @@ use crate::{
     rotation,
 };
 
-/// Contacts that may be met while bodies are in contact, one after the other, before they stop for the rest of
-/// the step.
+/// The number of impacts in succession that bodies in contact may have before they stop for the rest of the step.
 const MANY_ROUNDS: u32 = 24;
 
-/// Part of a step for which constant forces last at least, if the step does.
+/// The least time for which constant forces last, as a fraction of the step, unless the step ends before.
 const SHORTEST_PRESS: f64 = 1.0 / 512.0;
 
-/// Cosine above which two normals are one.
+/// Two normals whose cosine is above this count as the same.
 const SAME_NORMAL: f64 = 1.0 - 1e-6;
 
-/// Turning bodies in contact in a step.
+/// The turning bodies in contact in a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TurningRest {
-    /// By slot: impacts and rounds of contact in the step.
+    /// By slot, the number of impacts and of rounds of contact in the step.
     pub(super) impacts: Vec<u32>,
     rounds: Vec<u32>,
-    /// By slot, the motion that a body keeps which stays where it is for the rest of the step.
+    /// By slot, the kept motion of a body that is stopped for the rest of the step.
     stopped: Vec<Option<Kept>>,
-    /// What is known to touch.
+    /// The known contacts.
     contacts: Vec<Anchored>,
 }
 
-/// The motion of a body that stays where it is: impacts count with it and change it, and it goes on with it in the
-/// next step. So what hits the body exchanges momentum and energy with it as with any other.
+/// The kept motion of a stopped body. Impacts use and change it, and the body continues with it in the next step. So
+/// a body that hits the stopped body exchanges momentum and energy with it as with any other.
 #[derive(Clone, Copy, Debug)]
 struct Kept {
     velocity: DVec3,
@@ -70,7 +70,7 @@ impl TurningRest {
 }
 
 impl EventLoop<'_> {
-    /// Gives bodies that have stopped in the step the motion that they have kept.
+    /// Gives the bodies that were stopped in the step their kept motion.
     pub(super) fn go_on_turning(&mut self) {
         let ContactSolver {
             scene,
@@ -89,7 +89,7 @@ impl EventLoop<'_> {
 }
 
 impl ContactSolver<'_> {
-    /// Whether an event asks only to be looked for anew.
+    /// Whether an event only requires a new search.
     pub(super) fn goes_on(&mut self, event: &Event) -> bool {
         let (i, j) = event.bodies;
         if event.kind != EventKind::Horizon {
@@ -103,7 +103,7 @@ impl ContactSolver<'_> {
         !self.is_stopped(i) && !self.is_stopped(j)
     }
 
-    /// Ends the contact forces on a body, whose trajectory starts then, and tells whether there were some.
+    /// Ends the contact forces on a body whose trajectory starts at this time. Returns whether there were any.
     pub(super) fn release(&mut self, body: usize) -> bool {
         let Some(slot) = self.scene.bodies.turners.slot(body) else {
             return false;
@@ -119,12 +119,12 @@ impl ContactSolver<'_> {
         is_pressed
     }
 
-    /// Notes that two bodies touch, where they are at a time.
+    /// Stores a contact of two bodies at a time, in the frames of the bodies.
     pub(super) fn anchor(&mut self, touching: &Touching, time: f64) {
         let (i, j) = touching.bodies;
         let inverse = [i, j].map(|body| self.rotation_at(body, time).inverse());
         let contact = Anchored::of(touching, inverse);
-        // One of the same features is taken for the same.
+        // A known contact of the same features is replaced.
         let is_same = |known: &Anchored| {
             known.bodies == contact.bodies
                 && known.owner == contact.owner
@@ -136,7 +136,7 @@ impl ContactSolver<'_> {
         self.turning.contacts.push(contact);
     }
 
-    /// What is known to touch among some bodies and what they touch, where they are at a time.
+    /// The known contacts among `bodies` and with the bodies that they touch, at a time.
     fn known_contacts(
         &mut self,
         bodies: &[usize],
@@ -146,7 +146,7 @@ impl ContactSolver<'_> {
         for place in 0..self.turning.contacts.len() {
             let contact = self.turning.contacts[place];
             let (i, j) = contact.bodies;
-            // What has bounced off since goes its own way.
+            // A body that has bounced off since then is no longer in contact.
             let is_off = |body: usize| {
                 let all = self.scene.bodies;
                 all.is_movable(body) && all.tumbles(body) && !bodies.contains(&body)
@@ -161,8 +161,8 @@ impl ContactSolver<'_> {
                 .map(|[e, f]| [rotations[0] * e, rotations[1] * f]);
             let at = |rotation, position| At { position, rotation };
             let later = contact.later([at(rotations[0], DVec3::ZERO), at(rotations[1], between)]);
-            // Bodies never meet: what would be so far within the other one has left it, over the end of an edge or
-            // the border of a face.
+            // Bodies never meet. A contact with such a deep overlap has left the other body, over the end of an edge
+            // or the border of a face.
             if later.gap < -contact.room {
                 continue;
             }
@@ -179,13 +179,13 @@ impl ContactSolver<'_> {
         Ok(touching)
     }
 
-    /// The motion that a body keeps which has stopped.
+    /// The kept motion of a body, if it is stopped.
     fn kept(&self, body: usize) -> Option<Kept> {
         let slot = self.scene.bodies.turners.slot(body)?;
         self.turning.stopped[slot]
     }
 
-    /// How a body moves that impacts change.
+    /// The motion of a body that impacts change.
     pub(super) fn twist_of(&self, body: usize) -> Twist {
         let (all, start) = (self.scene.bodies, &self.paths.start);
         match (all.turners.slot(body), self.kept(body)) {
@@ -201,7 +201,7 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// What impacts change of the motion of a body: its velocity, and if it turns its angular momentum.
+    /// The parts of the motion of a body that impacts change: its velocity and, if it turns, its angular momentum.
     pub(super) fn changed(&mut self, body: usize) -> (&mut DVec3, Option<&mut DVec3>) {
         let slot = self.scene.bodies.turners.slot(body);
         let start = &mut self.paths.start;
@@ -214,14 +214,14 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// Whether a body has met so much in a step that it stays where it is.
+    /// Whether a body has had so many impacts in the step that it is stopped.
     fn is_stopped(&self, body: usize) -> bool {
         let slot = self.scene.bodies.turners.slot(body);
         slot.is_some_and(|slot| self.turning.rounds[slot] > MANY_ROUNDS)
     }
 
-    /// Adds the contacts that bodies keep which do not turn, and whom turning ones push: they give on what
-    /// they get.
+    /// Adds the contacts of bodies that do not turn and that turning bodies push, because these bodies pass on the
+    /// push.
     fn add_kept_contacts(
         &mut self,
         touching: &mut Vec<Touching>,
@@ -268,7 +268,7 @@ impl ContactSolver<'_> {
         Ok(())
     }
 
-    /// Bodies that some lie on or that lie on them, all in contact.
+    /// The movable bodies among `seen`, and those connected to them by contacts that press.
     fn tied_in_contact(&self, seen: &[usize]) -> Vec<usize> {
         let all = self.scene.bodies;
         let mut bodies: Vec<usize> = seen
@@ -298,8 +298,8 @@ impl ContactSolver<'_> {
         bodies
     }
 
-    /// Lets bodies that touch, and those in contact that touch them, stay in contact by constant forces until these have to
-    /// be found anew. Whether they have met something, which counts, or former forces have come to their end.
+    /// Keeps touching bodies, and those in contact with them, in contact by constant forces until the forces must be
+    /// computed anew. `is_met` says whether they had an impact, which is counted, or only former forces have ended.
     pub(super) fn press_all(
         &mut self,
         (seen, is_met): (&[usize], bool),
@@ -321,7 +321,7 @@ impl ContactSolver<'_> {
         self.lift(&bodies, &mut touching, time, restarted)?;
         let pulls = self.begin_contact((&bodies, is_met), &touching, time);
         let mut island = self.gather(&touching, time)?;
-        // Nothing closes any more.
+        // Stop the contacts that close.
         let wanted: Vec<f64> = island
             .contacts
             .iter()
@@ -357,8 +357,8 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// Moves bodies apart that lack the room of their contacts: by roundings, each as little as it can, where
-    /// others leave room for it.
+    /// Moves bodies apart whose gaps are less than the room of their contacts. The distances are roundings and as
+    /// small as possible, and other bodies must leave room for them.
     fn lift(
         &mut self,
         bodies: &[usize],
@@ -391,7 +391,7 @@ impl ContactSolver<'_> {
                 }
                 return Ok(());
             };
-            // What has no room stays, and others make more of it.
+            // A body without room stays, and the others move farther.
             let place = island.bodies.iter().position(|&body| body == blocked);
             match place.filter(|&place| island.yielding[place].mass > 0.0) {
                 Some(place) => island.yielding[place].mass = 0.0,
@@ -400,15 +400,15 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// Moves bodies, and what is in their way with them; where that has no room none, and it tells which of them
-    /// has none.
+    /// Moves bodies, and the bodies in their way with them. If one of the given bodies has no room, no body is moved,
+    /// and that body is returned.
     fn move_by(
         &mut self,
         ways: impl Iterator<Item = (usize, DVec3)>,
         time: f64,
         restarted: &mut Vec<usize>,
     ) -> Result<Option<usize>, (usize, Cause)> {
-        // The body, its way, where it was, and which of those that were moved first takes it along.
+        // Each body with its displacement, its former position, and the body whose displacement it follows.
         let mut moved: Vec<(usize, DVec3, DVec3, usize)> = ways
             .filter(|&(_, way)| way != DVec3::ZERO)
             .map(|(body, way)| (body, way, self.paths.start.position[body], body))
@@ -437,8 +437,8 @@ impl ContactSolver<'_> {
         Ok(None)
     }
 
-    /// Takes bodies from their forces, which are constant from here on, and tells those: by body what
-    /// accelerates it. What has met too much stops, and so does what touches it.
+    /// Takes bodies out of their usual stepping, because their forces are constant from here on. Returns by body the
+    /// acceleration by these forces. Bodies with too many impacts are stopped, and so are the bodies that touch them.
     fn begin_contact(
         &mut self,
         (bodies, is_met): (&[usize], bool),
@@ -467,7 +467,8 @@ impl ContactSolver<'_> {
             let kick = self.kick_left(slot, body);
             self.paths.start.turned[slot].momentum += kick;
             if self.is_stopped(body) {
-                // Others get from forces between bodies what it loses.
+                // If forces between bodies act on it, the other bodies get the reaction. So its kept motion gets the
+                // impulse of its forces for the rest of the step.
                 let section = self.scene.forces.plan.section_at(body);
                 let is_coupled = section.is_some_and(|section| section.bodies.len() > 1);
                 let given = if is_coupled { left } else { 0.0 };
@@ -486,7 +487,7 @@ impl ContactSolver<'_> {
         pulls
     }
 
-    /// Stops what touches what has stopped: it would be in its way.
+    /// Stops the bodies that touch a stopped body, because it would be in their way.
     fn stop_together(&mut self, bodies: &[usize], touching: &[Touching]) {
         let turners = &self.scene.bodies.turners;
         loop {
@@ -506,7 +507,7 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// All that it takes to find the forces of contacts.
+    /// Collects the data from which the contact forces are computed.
     fn pressing<'a>(
         &mut self,
         island: &'a ArmIsland,
@@ -531,7 +532,7 @@ impl ContactSolver<'_> {
                     turned: self.paths.start.turned[slot],
                 })
             });
-            // What has stopped stands.
+            // A stopped body does not move.
             let (velocity, mass) = match is_kept {
                 true => (DVec3::ZERO, 0.0),
                 false => (island.twists[place].velocity, island.yielding[place].mass),
@@ -548,8 +549,8 @@ impl ContactSolver<'_> {
                 },
             });
         }
-        // Of a constant force half of the speed at its end is the mean; what does not turn gets its impulse
-        // at once.
+        // Under a constant force the mean speed is half of the speed at the end. A body that does not turn gets its
+        // impulse at once.
         let yielding = island.yielding.iter().zip(&movers);
         let yielding = yielding
             .map(|(yielding, mover)| match mover.turns {
@@ -569,7 +570,7 @@ impl ContactSolver<'_> {
                 Anchored::of(touching, inverse)
             })
             .collect();
-        // Nothing is lifted on what has stopped.
+        // No body is lifted from a stopped body.
         let room = island.contacts.iter().zip(touching);
         let room = room
             .map(|(contact, touching)| {
@@ -591,12 +592,12 @@ impl ContactSolver<'_> {
         })
     }
 
-    /// Lets forces push until a time.
+    /// Applies forces until a time.
     fn press(&mut self, pressing: &Pressing<'_>, forces: &Forces, until: f64) {
         let all = self.scene.bodies;
         let pushes = pressing.pushes(forces);
         for (mover, &(impulse, torque)) in pressing.movers.iter().zip(&pushes) {
-            // What has stopped stands, and is immovable for what does not turn.
+            // A stopped body does not move, and is immovable for bodies that do not turn.
             if self.kept(mover.body).is_some()
                 && let Some(slot) = all.turners.slot(mover.body)
             {

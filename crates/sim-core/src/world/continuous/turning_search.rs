@@ -1,9 +1,9 @@
-//! When two bodies of which one turns have their next impact.
+//! The search for the next impact of two bodies of which one turns.
 //!
-//! [`turning::first_contact`] proves when, on parabolas. Where a method makes another trajectory, it is
-//! cut into parts that are parabolas but for rounding, or as short as it gets. Each part goes through where its bodies
-//! are at its ends and in its middle, and how they are turned there, whatever velocities the method tells: so parts
-//! follow each other without a gap, and nothing gets past at a seam.
+//! [`turning::first_contact`] proves the time of impact on parabolas. If a method makes another trajectory, it is cut
+//! into parts that are parabolas up to rounding, or as short as the number of halvings allows. Each part goes through
+//! the positions and rotations of its bodies at its ends and in its middle, whatever velocities the method gives. So
+//! the parts join without a gap, and no impact is missed where they join.
 
 use glam::{DQuat, DVec3};
 
@@ -23,16 +23,16 @@ use crate::{
     rotation::Flight,
 };
 
-/// Halvings of a step in search of parts that are parabolas.
+/// The number of halvings of a step in search of parts that are parabolas.
 const MAX_HALVINGS: i32 = 5;
 
-/// And more in search of those on which two bodies touch.
+/// The number of further halvings in search of parts on which two bodies touch.
 const TO_TOUCH: i32 = 16;
 
 /// Position, velocity and acceleration at the start of a part.
 type Parabola = (DVec3, DVec3, DVec3);
 
-/// Two bodies at a time, s from the step's start.
+/// The poses of two bodies at a time, s from the step's start.
 #[derive(Clone, Copy)]
 struct Knot {
     time: f64,
@@ -43,7 +43,7 @@ struct Knot {
 #[derive(Clone, Copy)]
 struct Part<'a> {
     from: &'a Knot,
-    /// Its middle and its end, where some trajectory is no parabola.
+    /// Its middle and its end, if a trajectory is not a parabola.
     later: Option<[&'a Knot; 2]>,
     length: f64,
 }
@@ -59,21 +59,20 @@ impl<'a> Part<'a> {
 }
 
 impl View<'_> {
-    /// The next impact within the step of two bodies of which one turns. The trees over their meshes must be
-    /// there.
+    /// The next impact within the step of two bodies of which one turns. The trees over their meshes must be built.
     pub(super) fn find_turning_impact(
         &self,
         (i, j): (usize, usize),
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
-        // What has lain on each other at the end of the last step does so where this one starts.
+        // Bodies in contact at the end of the last step are in contact at the start of this one.
         let is_first = self.paths.version[i] == 0 && self.paths.version[j] == 0;
         let reach = if is_first { REACH } else { 1.0 };
         self.find_certified_impact((i, j), reach, probe)
     }
 
-    /// The same of any two bodies, by certificates: until then they are apart. Those that are no farther apart at the
-    /// start than `reach` times what is a contact lie on each other there.
+    /// The same for any two bodies, by certificates, which prove that the bodies are apart until then. Bodies are in
+    /// contact at the start if they are no farther apart than `reach` times the distance that counts as a contact.
     pub(super) fn find_certified_impact(
         &self,
         (i, j): (usize, usize),
@@ -100,7 +99,7 @@ impl View<'_> {
         self.find_on_part((i, j), &part, (MAX_HALVINGS, reach), probe)
     }
 
-    /// Both bodies at a time.
+    /// The poses of both bodies at a time.
     fn knot(
         &self,
         (i, j): (usize, usize),
@@ -115,7 +114,7 @@ impl View<'_> {
         })
     }
 
-    /// Whether a body stays where and as it is.
+    /// Whether a body neither moves nor turns.
     fn stands(&self, body: usize) -> bool {
         let slot = self.scene.bodies.turners.slot(body);
         self.paths.start.velocity[body] == DVec3::ZERO
@@ -128,7 +127,7 @@ impl View<'_> {
             })
     }
 
-    /// Whether the trajectory of a body is no parabola.
+    /// Whether the trajectory of a body is not a parabola.
     fn is_bent(&self, body: usize) -> bool {
         self.motion().coupled_group(body).is_some()
     }
@@ -176,7 +175,8 @@ impl View<'_> {
         let Some(touch) = found else {
             return Ok(None);
         };
-        // Where they touch they start again from where the method has them then: it has to be the same place.
+        // At the impact, the trajectories start again at the positions that the method gives then, which must be the
+        // same.
         if halvings > -TO_TOUCH
             && let Some(later) = self.where_bent((i, j), part, probe)?
         {
@@ -192,10 +192,11 @@ impl View<'_> {
             face: None,
         };
         let TurningTouch { near, distance, .. } = touch;
-        // What is taken for a contact at the very end of the step is one of the next step's start.
+        // A contact at the very end of the step would be one at the start of the next step. So its time is just
+        // before the end.
         let time = (part.from.time + at).min(self.scene.settings.dt.next_down());
         let event = Event::impact(time, (i, j), contact, near, &self.paths.version);
-        // What has been looked at for long enough goes on from there.
+        // If the search has stopped early, it continues from there.
         let kind = match distance <= reach * near {
             true => EventKind::Impact,
             false => EventKind::Horizon,
@@ -203,7 +204,7 @@ impl View<'_> {
         Ok(Some(Event { kind, ..event }))
     }
 
-    /// The same on the halves of a part, by its start and both bodies after a quarter, a half and all of it.
+    /// The same on the halves of a part, given its start and both bodies after a quarter, a half and all of it.
     fn find_in_halves(
         &self,
         bodies: (usize, usize),
@@ -221,8 +222,8 @@ impl View<'_> {
         self.find_on_part(bodies, &second, depth, probe)
     }
 
-    /// Both bodies after a quarter of a part, a half and all of it, if one of them is off the parabola or the flight
-    /// through its other three places by more than rounding after the quarter.
+    /// Both bodies after a quarter, a half and all of a part, if one of them does not move on a parabola and a flight
+    /// up to rounding: after the quarter its pose is off the curve through its three other poses.
     fn where_bent(
         &self,
         (i, j): (usize, usize),
@@ -257,7 +258,7 @@ impl View<'_> {
         Ok(None)
     }
 
-    /// The parabola that one of both bodies is on, or the one through three places of it.
+    /// The parabola of one of the bodies, or the parabola through three of its positions.
     fn parabola_of(&self, (k, body): (usize, usize), part: &Part<'_>) -> Parabola {
         let from = &part.from.poses[k];
         let x = from.position;
@@ -272,8 +273,8 @@ impl View<'_> {
         (x, (4.0 * near - far) / part.length, bend)
     }
 
-    /// How one of both bodies turns on a part of the step, if it shows: where forces bend that, over three rotations.
-    /// There is room for a flight that is not that of the trajectory.
+    /// The flight of one of the bodies on a part of the step, if its rotation is visible. If the method computes the
+    /// rotation, the flight goes through three rotations. `room` stores a flight that is not that of the trajectory.
     fn flight_on<'a>(
         &'a self,
         (k, body): (usize, usize),
@@ -311,7 +312,7 @@ impl View<'_> {
 }
 
 impl super::super::bodies::Bodies {
-    /// How a body turns by its flight, or stays as its shape is.
+    /// The rotation of a body by its flight, or the fixed one of its shape.
     pub(super) fn turning_of<'a>(&self, body: usize, flight: Option<&'a Flight>) -> Turning<'a> {
         match (flight, self.turners.slot(body)) {
             (Some(flight), Some(slot)) => {

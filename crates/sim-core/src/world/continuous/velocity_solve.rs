@@ -1,5 +1,5 @@
-//! The velocities of an island: the nearest ones, in the norm of kinetic energy, with which no contact moves
-//! against its normal faster than its target.
+//! The velocities of an island: the nearest ones, in the norm of kinetic energy, with which no contact closes faster
+//! than its target allows.
 
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -13,12 +13,12 @@ use super::{
 };
 use crate::impulse::{Known, greatest, project_with};
 
-/// Part of the greatest speed at which a contact may still close where its island is solved.
+/// Fraction of the greatest speed at which a contact of a solved island may still close.
 const UNSOLVED: f64 = 1e-6;
 
 impl ContactSolver<'_> {
-    /// Gives the bodies of an island velocities with which no contact closes faster than its target, nor
-    /// parts for less than the shortest flight.
+    /// Gives the bodies of an island velocities with which no contact closes faster than its target allows. In a heap
+    /// no contact that forces press together opens for less than the shortest flight.
     pub(super) fn solve_velocities(
         &mut self,
         island: &Island,
@@ -49,15 +49,17 @@ impl ContactSolver<'_> {
             }
         };
         let hop: Vec<f64> = (0..count).map(hop).collect();
-        // Slower than this a gap grows by less than that of contacts in a step, or than a hop counts.
+        // At a lower speed a gap grows in a step by less than the gap of bodies in contact, or the speed is
+        // negligible beside that of the shortest hop.
         let still = |k: usize| {
             let (i, j) = constraint(k).bodies;
             let hover = self.view().layout().hover_gap(i, j) / self.scene.settings.dt;
             hover.max(4.0 * rounding).max(SLIGHTEST * hop[k])
         };
         let still: Vec<f64> = (0..count).map(still).collect();
-        // In a heap, what forces press does not part, unless by more than they turn back in a step. That takes
-        // energy and gives none, as standing still is among what is allowed.
+        // In a heap, a contact that forces press together is held: it does not open, unless its speed is more than
+        // forces reverse in a step. This takes energy and gives none, because standing still is one of the allowed
+        // motions.
         let is_held =
             |k: usize| is_bundled && constraint(k).target >= 0.0 && constraint(k).load_speed > 0.0;
         let mut held: Vec<bool> = (0..count).map(is_held).collect();
@@ -78,7 +80,7 @@ impl ContactSolver<'_> {
             };
             spent = bundled.map(|left| rubbed.into_iter().map(|rubbed| rubbed / left).collect());
         }
-        // Where normals turn a velocity is along the surface but for what steps round off.
+        // If the normal of a contact turns, the velocity is along the surface only up to the discretisation by steps.
         let turned: Vec<f64> = (0..count)
             .map(|k| match constraint(k).is_turning {
                 true => hop[k],
@@ -91,7 +93,7 @@ impl ContactSolver<'_> {
         let open: Vec<bool> = (0..count)
             .map(|k| !is_bundled && parting[k] > still[k].max(turned[k]))
             .collect();
-        // What is left of a speed at which it parts turns back by the end of the step.
+        // The remaining opening speed reverses by the end of the step.
         let recession = |k: usize| match parting[k] > 4.0 * rounding {
             true => 2.0 * parting[k] / left,
             false => 0.0,
@@ -148,7 +150,7 @@ impl ContactSolver<'_> {
         Ok(solution)
     }
 
-    /// Solves an island as a heap, as its friction is not found otherwise.
+    /// Solves an island as a heap, because its friction was not found otherwise.
     pub(super) fn bundle_and_solve(
         &mut self,
         island: &Island,
@@ -162,8 +164,8 @@ impl ContactSolver<'_> {
 }
 
 impl View<'_> {
-    /// Stops contacts from closing faster than their targets, and those that are held from parting. Returns
-    /// the impulse of each, N s, and its target, which is lowered to none where gaps cannot be widened.
+    /// Stops contacts from closing faster than their targets, and held contacts from opening. Returns the impulse of
+    /// each contact, N s, and its target, which is lowered to zero if gaps cannot be widened.
     fn stop_closing(
         &self,
         island: &Island,
@@ -200,8 +202,8 @@ impl View<'_> {
             } else {
                 given.fill(0.0);
             }
-            // A gap is widened where there is room for it, and where it takes no more than forces give back
-            // that press it together.
+            // Gaps are widened only if there is room, and if this takes no more energy than four times what the
+            // forces that press the contacts together give back.
             let widened: Vec<usize> = (0..count).filter(|&k| target[k] > 0.0).collect();
             let most = (4.0 * enough).max(4.0 * rounding);
             let is_met = (0..count).all(|k| missing(velocity, k) <= most);
@@ -219,8 +221,8 @@ impl View<'_> {
         }
     }
 
-    /// The kinetic energy that contacts have taken from bundled bodies, J, and how far ahead of their time
-    /// gaps are closed or what height flights would have had, m.
+    /// The kinetic energy that contacts have taken from bundled bodies, J. The second value is a length, m: the
+    /// greatest distance by which a gap was closed too early, or the greatest height of a suppressed flight.
     fn cost_of_bundling(
         &self,
         places: &Places,
@@ -242,7 +244,7 @@ impl View<'_> {
                 });
         let distance = |k: usize| match (target[k] < 0.0, given[k]) {
             (true, pushed) if pushed > 0.0 => -target[k] * left,
-            // Up and down again within the time: a quarter of what its speed would make of it.
+            // The flight would go up and down within the time; its height is a quarter of time times speed.
             (false, pulled) if pulled < 0.0 => {
                 0.25 * left * places.joined[k].opening(before).max(0.0)
             }
@@ -252,7 +254,8 @@ impl View<'_> {
         (lost.sum::<f64>().max(0.0), farthest)
     }
 
-    /// That the bodies of a contact are crushed, if immovable bodies of the island move against each other.
+    /// The error that the bodies of a contact are crushed, if immovable bodies of the island move relative to each
+    /// other.
     fn crushed(&self, island: &Island, (i, j): (usize, usize)) -> Option<(usize, Cause)> {
         let both = |&index: &usize| {
             let (i, j) = self.contacts.all()[index].bodies;
@@ -272,8 +275,8 @@ impl View<'_> {
     }
 }
 
-/// The contacts that are held, and that part by more than a hop where none is held. Between surfaces that turn
-/// by little from one to the next, what is held would stop all that slides along them.
+/// The held contacts that would open faster than a hop if no contact were held. Between surfaces whose normals differ
+/// a little from one to the next, held contacts would stop everything that slides along them.
 fn leaving(
     places: &Places,
     before: &[DVec3],

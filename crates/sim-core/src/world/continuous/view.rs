@@ -1,4 +1,4 @@
-//! A step with continuous collision, to look at: nothing here changes it.
+//! A read-only view of a step in the continuous mode.
 
 use alloc::vec::Vec;
 
@@ -13,16 +13,16 @@ use super::{
 };
 use crate::collide::Contact;
 
-/// Trajectories and contacts as they are now.
+/// The present trajectories and contacts.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) paths: &'a Trajectories,
     pub(super) contacts: &'a ContactSet,
     pub(super) tallies: &'a Tallies,
-    /// Bodies that are at rest, to which nothing happens until something comes; empty where none are.
+    /// By body, whether it is asleep: at rest until another body comes; empty if no body is.
     pub(super) asleep: &'a [bool],
-    /// Pairs in overlap that move as one in this step.
+    /// Pairs in overlap that move as one body in this step.
     pub(super) held: &'a [(usize, usize)],
 }
 
@@ -35,7 +35,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Bodies where their trajectories end.
+    /// The bodies at the ends of their trajectories.
     #[inline]
     pub(super) fn layout(&self) -> Layout<'a> {
         Layout {
@@ -48,7 +48,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Puts events of one time into an order that is not that of the places of bodies.
+    /// Sorts events of one time in an order that does not depend on the indices of bodies.
     pub(super) fn sort_events(&self, events: &mut [Event]) {
         if events.len() < 2 {
             return;
@@ -64,7 +64,7 @@ impl<'a> View<'a> {
         });
     }
 
-    /// The contacts of bodies that are awake, in an order that is not that of the places of bodies.
+    /// The contacts of awake bodies, in an order that does not depend on the indices of bodies.
     pub(super) fn contacts_in_order(&self) -> Vec<usize> {
         let all = self.contacts.all();
         let is_awake = |&index: &usize| {
@@ -78,7 +78,7 @@ impl<'a> View<'a> {
         awake
     }
 
-    /// A contact as an impact now.
+    /// A contact as an impact at a time.
     pub(super) fn event_of(&self, constraint: &ContactConstraint, time: f64) -> Event {
         let contact = Contact {
             time: 0.0,
@@ -90,8 +90,8 @@ impl<'a> View<'a> {
         Event::impact(time, constraint.bodies, contact, 0.0, &self.paths.version)
     }
 
-    /// Where two bodies are and how they are turned that have an impact at a time, s from the step's start, at
-    /// which the trajectories of those that it moves start.
+    /// The positions and rotations of two bodies that have an impact at a time, s from the step's start, at which the
+    /// trajectories of the movable ones start.
     pub(super) fn instant(&self, bodies: (usize, usize), time: f64) -> Instant {
         let scene = self.scene;
         let place = |body: usize| match scene.bodies.is_movable(body) {

@@ -1,30 +1,29 @@
-//! What a step costs beside what it would cost without impacts, and how much of that is too much.
+//! The work of a step beyond what it would cost without impacts, and its limits.
 //!
-//! Impacts of free bodies cost little, and may be very many ([`World::MOST_IMPACTS`]). Where a method
-//! makes the trajectory, each question where a body is is a step of the method, of all that it is stepped
-//! with, and one with error control takes steps of its own in each; and turning bodies are followed by
-//! certificates. At speeds and forces far out of proportion to sizes all of it is asked without end. So a
-//! step may cost what it costs without impacts times a number, and all its questions together as many of a
-//! method's own steps as one may have. It is counted, not timed, and so the same on every machine and on any
-//! number of threads.
+//! Impacts of free bodies cost little, and there may be very many ([`World::MOST_IMPACTS`]). If a method computes the
+//! trajectory, each evaluation of a position is a step of the method, with all coupled bodies. A method with error
+//! control takes steps of its own in each of these. Turning bodies are followed by certificates. If speeds and forces
+//! are far out of proportion to sizes, this work has no end. So a step may cost a fixed multiple of its cost without
+//! impacts, and all its evaluations together may take as many of a method's own steps as one evaluation may. The work
+//! is counted, not timed, and so it is the same on every machine and with any number of threads.
 //!
 //! [`World::MOST_IMPACTS`]: crate::World::MOST_IMPACTS
 
 use super::super::{bodies::Bodies, stepping::Cause};
 use crate::integrate::adaptive::MOST_STEPS;
 
-/// Bodies moved by the method, for each body of the world.
+/// The greatest number of bodies moved by the method, for each body of the world.
 const MOST_MOVED: u64 = 1 << 14;
 
-/// Pairs of boxes and of pieces certified, for each body of the world.
+/// The greatest number of certified pairs of boxes and of pieces, for each body of the world.
 const MOST_CERTIFIED: u64 = 1 << 20;
 
-/// What has been done.
+/// The work done.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::world) struct Work {
     /// Bodies that were moved by the method to some time within the step.
     pub(super) moved: u64,
-    /// Bodies that were moved by each step that a method with error control has tried for that.
+    /// Bodies that were moved by each step that a method with error control has tried for these times.
     pub(super) tried: u64,
     /// Pairs of boxes and of pieces that were certified to be apart.
     pub(super) certified: u64,
@@ -42,7 +41,7 @@ impl Work {
         self.certified += other.certified;
     }
 
-    /// An error, at that of two bodies which moves, if this is too much for a world.
+    /// Returns an error at the movable one of two bodies if the work is too much for the world.
     pub(super) fn check(
         &self,
         (i, j): (usize, usize),
