@@ -395,7 +395,7 @@ impl Kept {
             self.energy,
             now.energy
         );
-        // Bodies that do not rotate are treated as immovable after too many impacts in a step.
+        // A body that does not rotate is treated as immovable after too many impacts in a step.
         let turns = |body| world.inertia(body).is_some();
         if all().count() < world.len() || lasts && !all().all(turns) {
             return;

@@ -2,7 +2,7 @@
 
 use sim_core::{Mesh, Vec3};
 
-/// Triangles without shared vertices, each given by a corner and two vectors, of which three tenths lead to the other
+/// Triangles without shared vertices. Each is given by a corner and two vectors; 0.3 times these lead to the other
 /// corners.
 pub fn soup(triangles: &[([f32; 3], [[f32; 3]; 2])]) -> Mesh {
     let corners = triangles.iter().flat_map(|&(at, arms)| {

@@ -26,7 +26,7 @@ pub(super) fn test(method: &'static Method) -> Tried {
     };
     let mut best = None;
     for effort in efforts {
-        // A step that would take too long can fail.
+        // A method can fail if its steps are too long.
         let Ok(end) = problem.by_method(method, effort, true) else {
             continue;
         };

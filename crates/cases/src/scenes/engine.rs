@@ -27,7 +27,7 @@ pub trait Engine {
     /// Kinetic energy of all bodies, J.
     fn kinetic_energy(&self) -> f64;
 
-    /// The error of solving contacts together in the last step, if known.
+    /// The cost of solving contacts together in the last step, if known.
     fn bundled(&self) -> Option<Bundled> {
         None
     }

@@ -276,8 +276,7 @@ pub static CONTACTS: [Contact; 8] = [
                 truth: Truth::At((FRAC_PI_4 - (height * 2_f64.sqrt()).acos()) / spin),
             }
         },
-        // Rounding errors of 1e-16 m in the initial state change the time of a grazing contact by more than that of
-        // others.
+        // Rounding errors of 1e-16 m in the initial state cause larger errors of the time of a grazing contact.
         tolerance: 1e-9,
         passed_by: Seeker::ALL,
         failed_by: &[],

@@ -353,7 +353,7 @@ mod tests {
         }
     }
 
-    /// A rest at the end hides no error: after half a step the error is half as large.
+    /// A body at rest at the end hides no error: steps of half the length give half the error.
     #[test]
     fn methods_of_the_first_order_err_by_the_first_order() {
         for lever in &LEVERS {

@@ -19,7 +19,7 @@ pub fn galperin(k: i32, radius: f64) -> World {
     world_of(precise(DT), [wall, light, heavy])
 }
 
-/// The number of steps until the blocks separate for good; the error of the number of impacts, and that of the energy.
+/// Steps until the blocks have separated for good, and checks the number of impacts and the energy after that.
 pub(crate) fn digits_of_pi() -> Tried {
     let (mut wrong, mut energy): (u64, f64) = (0, 0.0);
     let mut counts = Vec::new();
