@@ -3,13 +3,13 @@
 use scene::Scene;
 use sim_core::{Collision, DVec3, METHODS, Method, Settings, World};
 
-/// The error of each method's height against `v t - t²/2` under a constant acceleration of -1 m/s², in units of `t dt /
-/// 2`.
+/// The error of each method's height against `v t - t²/2` under a constant acceleration of -1 m/s², in units of
+/// `t dt / 2`.
 ///
-/// Forward Euler moves with the velocity from before the step: the heights of `n` steps sum to `v n dt - dt² n (n - 1)
-/// / 2`, which is `t dt / 2` too high. Both other Euler methods move with the velocity from after it, `dt² n (n + 1) /
-/// 2`, and are too low by the same amount; they differ only if the force depends on the motion. Methods of higher order
-/// are exact for parabolas.
+/// Forward Euler moves with the velocity from before the step: the heights of `n` steps sum to
+/// `v n dt - dt² n (n - 1) / 2`, which is `t dt / 2` too high. Both other Euler methods move with the velocity from
+/// after it, `dt² n (n + 1) / 2`, and are too low by the same amount; they differ only if the force depends on the
+/// motion. Methods of higher order are exact for parabolas.
 fn height_error(method: &Method) -> f64 {
     match method.name {
         "forward-euler" => 1.0,

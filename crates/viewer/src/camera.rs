@@ -185,8 +185,8 @@ impl Camera {
         (projection * view).as_mat4()
     }
 
-    /// How much a part of the depth buffer's value is, compared with that in perspective, for things at the
-    /// target.
+    /// The factor for relative offsets of the depth buffer's value: with it an offset at the target has the same effect
+    /// as in perspective.
     pub fn depth_share(&self) -> f64 {
         match self.parallel {
             true => 1.0 / PARALLEL_REACH,

@@ -19,7 +19,7 @@ use crate::stopwatch::Stopwatch;
 pub enum Form {
     /// A table of the final states.
     Table,
-    /// The same data as one JSON object.
+    /// The same data as one JSON array.
     Json,
     /// Every state of every run.
     Csv,
