@@ -78,7 +78,7 @@ pub(crate) fn naive_against_bvh(growth: &[Series]) -> String {
                 time(seconds).replace(".00", "").replace(".0", "")
             })));
         match class {
-            // Where no line is, because a contact is found long before a second.
+            // The legend is where no line is, because a contact is found long before a second.
             Class::Deep => layout
                 .with_legend_position(LegendPosition::InsideTopRight)
                 .with_legend_entries(STYLES.iter().map(Style::legend).collect()),

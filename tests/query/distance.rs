@@ -38,7 +38,8 @@ fn size(s: Triangle) -> f64 {
 fn check(first: [Vec3; 3], second: [Vec3; 3], offset: DVec3) -> Result<bool, TestCaseError> {
     let (one, other) = (triangle(first), triangle(second));
     let found = between(&one, &other, offset);
-    // Of two meshes the one that is lower is asked first, and the other one's vertices are placed.
+    // The frame is that of the mesh with the lexicographically lower position; the other one's vertices are placed in
+    // it.
     let (x, y, z) = offset.into();
     let (s, t) = match (x, y, z) < (0.0, 0.0, 0.0) {
         true => (placed(first, -offset), placed(second, DVec3::ZERO)),

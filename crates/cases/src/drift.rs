@@ -24,9 +24,9 @@ pub struct Drift {
 /// The greatest relative errors within an orbit.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Orbit {
-    /// Of the sum of kinetic and potential energy.
+    /// The error of the sum of kinetic and potential energy.
     pub energy: f64,
-    /// Of the angular momentum about the centre.
+    /// The error of the angular momentum about the centre.
     pub angular_momentum: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene.
+//! The errors of scenes.
 
 use std::io;
 use std::path::PathBuf;

@@ -27,19 +27,19 @@ pub enum Kind {
     OurDopri5,
     /// Our implementation of their method of order 8.
     OurDop853,
-    /// Of `ode_solvers`.
+    /// Dormand and Prince's method of order 5 in `ode_solvers`.
     #[cfg(feature = "ode_solvers")]
     OdeSolversDopri5,
-    /// Of `ode_solvers`.
+    /// Their method of order 8 in `ode_solvers`.
     #[cfg(feature = "ode_solvers")]
     OdeSolversDop853,
-    /// Of `differential-equations`.
+    /// Dormand and Prince's method of order 5 in `differential-equations`.
     #[cfg(feature = "differential-equations")]
     DifferentialEquationsDopri5,
-    /// Of `differential-equations`.
+    /// Their method of order 8 in `differential-equations`.
     #[cfg(feature = "differential-equations")]
     DifferentialEquationsDop853,
-    /// Of `differential-equations`, for stiff problems.
+    /// A method for stiff problems in `differential-equations`.
     #[cfg(feature = "differential-equations")]
     DifferentialEquationsRadau5,
 }

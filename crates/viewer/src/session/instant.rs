@@ -143,7 +143,7 @@ impl Session {
         let start = self.world.interpolated_pose(i, 0.0).1;
         let mut from = (0.0, (self.world.previous_position(i), start));
         for pass in passes {
-            // Of several at the same time, the first.
+            // Of several impacts at the same time, the first.
             let there = (pass.part, (pass.place, pass.rotation));
             if pass.part >= part && pass.part > from.0 {
                 return [from, there];
