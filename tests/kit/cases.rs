@@ -124,7 +124,7 @@ fn scene_text(text: &str) {
 const MOST_BODIES: usize = 40;
 const MOST_NAIVE: usize = 1_000;
 
-/// A message names file and line, except for a step that is not given in the file.
+/// A message names file and line, except the one that the step is missing.
 fn assert_placed(message: &str, text: &str) {
     assert_message(message);
     let place = message.strip_prefix("fuzz.toml:").expect("the file");

@@ -6,7 +6,7 @@ use sim_core::{Collision, Settings, World};
 
 use super::snapshot::motley;
 
-/// One in so many worlds is stepped, because even a step that is refused as too much work takes time.
+/// The number of changed worlds that are stepped: even a step that is refused as too much work takes time.
 const STEPPED: usize = 60;
 
 /// Steps a world in every mode: each step ends, successfully or with an error.

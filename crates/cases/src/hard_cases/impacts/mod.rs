@@ -22,7 +22,8 @@ fn worst(figures: impl IntoIterator<Item = f64>) -> f64 {
         .fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
 }
 
-/// Relative change of the kinetic energy, and change of the momentum relative to the sum of the bodies' momenta.
+/// The greater of two changes: of the kinetic energy, relative, and of the momentum, relative to the sum of the bodies'
+/// momenta.
 fn lost(world: &World, start: &World) -> f64 {
     let energy = world.kinetic_energy() / start.kinetic_energy() - 1.0;
     let all = (0..start.len()).filter(|&i| start.kind(i).is_movable());
