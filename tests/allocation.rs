@@ -1,4 +1,4 @@
-//! No step but the first allocates, and no question about meshes.
+//! Only the first step allocates, and no query about meshes does.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -14,7 +14,7 @@ thread_local! {
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// The system's allocator, counting on each thread.
+/// The system's allocator with a counter for each thread.
 struct Counting;
 
 #[allow(unsafe_code)]
@@ -22,12 +22,12 @@ struct Counting;
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller upholds the contract.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller upholds the contract.
         unsafe { System.dealloc(memory, layout) }
     }
 }
@@ -123,24 +123,24 @@ fn questions_about_meshes_do_not_allocate() {
     assert_eq!(allocations(questions), 0);
 }
 
-/// Steps of a scene after which all room that it needs has been made, but for what it has not met yet.
+/// The number of steps after which a scene has allocated all its buffers, except for events that it has not had yet.
 const WARM_UP: u32 = 60;
 
-/// Scenes of which contacts last: each island is solved in vectors of its own.
+/// Scenes with persisting contacts: each island is solved in vectors of its own.
 const SOLVED: [&str; 2] = ["bounce", "herd"];
 
-/// Steps without an impact may make room that grows, a few times in a run.
+/// Steps without an impact may enlarge growing buffers, a few times in a run.
 const GROWTH: u64 = 24;
 
-/// With solids, in the continuous mode and by the BVH: what allocates is the answer to an impact (who is in
-/// it, and its report), and the contacts of an island that lasts.
+/// With solids, in the continuous mode and the BVH mode. Allocations are made for the response to an impact (the bodies
+/// in it, and its report), and for the contacts of a persisting island.
 #[test]
 fn steps_of_the_gallery_allocate_only_where_bodies_meet() {
     for entry in SCENES {
         for collision in [Collision::Continuous, Collision::Bvh] {
             let mut scene = entry.scene().expect("a gallery scene");
             scene.collision = collision;
-            // Searches among what turns make their queues anew, and the discrete modes turn nothing.
+            // Searches among turning bodies allocate their queues each time, and the discrete modes rotate no bodies.
             if scene.bodies.iter().any(|body| body.turn.is_some()) {
                 continue;
             }
@@ -161,7 +161,7 @@ fn steps_of_the_gallery_allocate_only_where_bodies_meet() {
     }
 }
 
-/// Steps that list contacts allocate no more than others, once there is room for them.
+/// Steps that list contacts allocate no more than others, once the lists have their capacity.
 #[test]
 fn events_of_contacts_do_not_allocate() {
     for entry in SCENES {
@@ -176,7 +176,7 @@ fn events_of_contacts_do_not_allocate() {
             more += if k < WARM_UP { 0 } else { all - own };
             events += listing.contact_events().len();
         }
-        // Lists of impacts, contacts and events grow where more happens than before.
+        // Lists of impacts, contacts and events grow when there are more of them than before.
         assert!(more <= GROWTH, "{}: {more} for {events} events", entry.name);
     }
 }

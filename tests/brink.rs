@@ -1,4 +1,4 @@
-//! Meshes so large that slabs are compared, on the brink of contact.
+//! Meshes so large that slabs are compared, very close to contact.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use kit::meshes::{builtin, grid, mesh, scaled};
 use sim_core::collide::{Placement, tree};
 use sim_core::{Bvh, DQuat, DVec3, Mesh, Vec3};
 
-/// A square of 24 by 24 squares about the origin, bent.
+/// A bent sheet of 24 by 24 quads about the origin.
 fn sheet(at: impl Fn(f32, f32) -> Vec3) -> Arc<Mesh> {
     grid(24, false, |x, z| at(x - 0.5, z - 0.5))
 }
@@ -26,7 +26,7 @@ fn large() -> [Arc<Mesh>; 3] {
     ]
 }
 
-/// Both sides of the first contact along many directions, to within a rounding.
+/// Tests both sides of the first contact along many directions, to within rounding.
 #[test]
 fn naive_and_bvh_agree_where_surfaces_come_within_a_hair() {
     let meshes = large();
@@ -56,7 +56,7 @@ fn naive_and_bvh_agree_where_surfaces_come_within_a_hair() {
     assert!(answers[0] > 60 && answers[1] > 60, "{answers:?}");
 }
 
-/// A vertex of one mesh put exactly on a vertex, on the middle of an edge and of a face of another.
+/// Puts a vertex of one mesh exactly on a vertex, the middle of an edge and that of a face of another.
 #[test]
 fn meshes_that_touch_exactly_meet() {
     let cube = builtin("cube.obj");
@@ -70,7 +70,7 @@ fn meshes_that_touch_exactly_meet() {
                 .map(|v| v.as_dvec3());
             let [x, y, _] = corners;
             for target in [x, (x + y) * 0.5] {
-                // Exact as long as sums of these floats are, which is what the test needs.
+                // The test needs exact sums, which these floats have.
                 let offset = target - vertex;
                 if vertex + offset == target {
                     assert!(assert_same(first, second, offset));
@@ -80,7 +80,7 @@ fn meshes_that_touch_exactly_meet() {
     }
 }
 
-/// Two spheres, one inside the other and nowhere touching: mostly slabs are compared.
+/// Two spheres, one inside the other without contact: mostly slabs are compared.
 #[test]
 fn nested_spheres_are_apart_until_they_touch() {
     let sphere = |n: u32, radius: f32| {
@@ -121,8 +121,8 @@ fn nested_spheres_are_apart_until_they_touch() {
     assert!(answers[0] > 40 && answers[1] > 40, "{answers:?}");
 }
 
-/// Flat sheets far out in their own frames, so that their slabs are as thin as what f32 misses
-/// there, and bent ones at all scales, where products of coordinates leave f32.
+/// Flat sheets far from the origin of their frames, so that their slabs are as thin as the rounding of f32 there, and
+/// bent sheets at all scales, where products of coordinates exceed the range of f32.
 #[test]
 fn slabs_and_planes_prove_nothing_that_is_false() {
     let out = Vec3::new(900.0, 1100.0, -700.0);
@@ -152,8 +152,7 @@ fn slabs_and_planes_prove_nothing_that_is_false() {
     assert!(answers[0] > 50 && answers[1] > 50, "{answers:?}");
 }
 
-/// Found by a review: slabs turned by a matrix that is not quite a rotation are slabs of another
-/// mesh.
+/// Regression: slabs rotated by a matrix that is not exactly a rotation belong to a slightly different mesh.
 #[test]
 fn what_passes_as_of_unit_length_is_a_rotation() {
     let turn = DQuat::from_axis_angle(DVec3::new(0.8, 0.0, -0.6), 3.0);
@@ -176,7 +175,7 @@ fn what_passes_as_of_unit_length_is_a_rotation() {
     assert!(Placement::turned(DQuat::from_array([0.0, 0.0, 0.0, 1.1]), DVec3::ZERO).is_none());
 }
 
-/// Found by a review: at the end of f32 boxes are infinite, and say nothing.
+/// Regression: at the limits of f32 boxes are infinite and exclude nothing.
 #[test]
 fn the_largest_floats_are_in_range() {
     let end = f32::MAX;
@@ -197,7 +196,7 @@ fn the_largest_floats_are_in_range() {
     }
 }
 
-/// Found by a review: the middle of two neighbouring floats is one of them.
+/// Regression: the midpoint of two neighbouring floats is one of them.
 #[test]
 fn triangles_with_almost_one_centre_make_a_tree() {
     for count in [5, 9, 17, 40, 200] {
@@ -210,8 +209,8 @@ fn triangles_with_almost_one_centre_make_a_tree() {
     }
 }
 
-/// Two soups in one plane, interleaved, that meet in a single triangle: their slabs have no
-/// thickness, and as the second one lies far from its own origin, their heights differ by rounding.
+/// Two soups in one plane, interleaved, that meet in a single triangle. Their slabs have zero thickness. The second one
+/// lies far from its own origin, so their heights differ by rounding.
 #[test]
 fn roundings_of_slabs_are_allowed_for() {
     let soup = |shift: f32, extra: Option<(f32, f32)>, at: &dyn Fn(f32, f32) -> Vec3| {

@@ -12,8 +12,8 @@ use sim_core::collide::predicates::{segment_meets_triangle, triangles_meet};
 use sim_core::collide::{Placement, naive, tree};
 use sim_core::{Bvh, DQuat, DVec3, Mesh, Shape, Vec3};
 
-/// Points that touch, coincide and lie in planes more often than not: a small lattice, some of
-/// it moved by an ulp, scaled by a power of two and moved far away.
+/// Points that mostly touch, coincide or lie in common planes: on a small lattice, some of them moved by an ulp, scaled
+/// by a power of two and moved far away.
 fn hard_points<const N: usize>() -> impl Strategy<Value = [DVec3; N]> {
     let coordinate = (0..5i32, -1..=1i32);
     let points = prop::array::uniform::<_, N>(prop::array::uniform3(coordinate));
@@ -57,20 +57,19 @@ fn random_soup() -> impl Strategy<Value = Mesh> {
     prop::collection::vec(triangle, 1..60).prop_map(|triangles| soup(&triangles))
 }
 
-/// That naive and BVH agree, and that it does not matter which mesh comes first.
+/// Tests that naive and BVH agree, and that the order of the meshes does not matter.
 fn assert_symmetric(first: &Mesh, second: &Mesh, offset: DVec3) {
     let meet = assert_same(first, second, offset);
     assert_eq!(meet, assert_same(second, first, -offset));
 }
 
-/// Whether bodies of these shapes overlap, the second one displaced.
+/// Whether bodies of these shapes overlap; the second one is displaced.
 fn overlap(first: &Mesh, second: &Mesh, offset: DVec3) -> bool {
     let [first, second] = [first, second].map(|mesh| Shape::Mesh(Arc::new(mesh.clone())));
     meet(&first, &second, offset)
 }
 
-/// Rotations: any, and those by right angles, after which lattices meet lattices exactly or by a
-/// rounding.
+/// Arbitrary rotations, and those by right angles, which map lattices to lattices exactly or up to rounding.
 fn rotations() -> impl Strategy<Value = DQuat> {
     let any = prop::array::uniform4(-1.0..1.0f64).prop_filter_map("a direction", |q| {
         let q = DQuat::from_array(q);
@@ -127,9 +126,9 @@ proptest! {
     ) {
         let [first, second] = [first, second].map(|mesh| scaled(&mesh, DVec3::splat(scale)));
         let offset = DVec3::from_array(offset.map(f64::from)) * scale;
-        // What f32 holds places vertices without rounding.
+        // An offset that f32 represents places vertices without rounding.
         assert_symmetric(&first, &second, offset.as_vec3().as_dvec3());
-        // Else the order of meshes says which one is rounded; that of bodies does not.
+        // Otherwise the order of meshes determines which one is rounded; the order of bodies does not.
         assert_same(&first, &second, offset);
         assert_same(&second, &first, -offset);
         prop_assert_eq!(overlap(&first, &second, offset), overlap(&second, &first, -offset));
@@ -156,8 +155,7 @@ proptest! {
     }
 }
 
-/// Found by a random search: placed in the frame of the one, a corner lies on an edge, and beside it in
-/// that of the other.
+/// Found by a random search: a corner lies on an edge if placed in one frame, and beside it if placed in the other.
 #[test]
 fn bodies_that_touch_by_a_rounding_do_so_in_either_order() {
     let tiny = |corners: [[f32; 3]; 3]| {
@@ -173,7 +171,7 @@ fn bodies_that_touch_by_a_rounding_do_so_in_either_order() {
     assert_eq!(meet, overlap(&second, &first, -offset));
 }
 
-/// Found by a random search: a vertex so little off a plane that the determinant underflows.
+/// Found by a random search: a vertex so close to a plane that the determinant underflows.
 #[test]
 fn offsets_below_any_product_count_as_none() {
     let triangle =

@@ -1,6 +1,7 @@
-//! A fixed number of the cases that `fuzz/` tries without end: inputs that are known, and mutations of
-//! them by a fixed seed. `COWBELL_FUZZ_RUNS` sets how many there are of each case (of `values` and `turning` a fifth), `COWBELL_FUZZ_SEED`
-//! the seed, and `COWBELL_FUZZ_CASE` the only one.
+//! A fixed number of runs of the cases that `fuzz/` tries without end: known inputs, and mutations of them by a fixed
+//! seed.
+//! `COWBELL_FUZZ_RUNS` sets the number of runs of each case (of `values` and `turning` a fifth), `COWBELL_FUZZ_SEED`
+//! the seed, and `COWBELL_FUZZ_CASE` selects a single case.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,7 +17,7 @@ fn setting(name: &str, usual: u64) -> u64 {
     given.map_or(usual, |text| text.parse().expect("a number"))
 }
 
-/// The corpus of a case, and what has broken it once; nothing at all where there is neither.
+/// The corpus of a case and the inputs that have broken it; empty if there are none.
 fn corpus(case: &str) -> Vec<Vec<u8>> {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
     let folder = match case {
@@ -38,7 +39,7 @@ fn corpus(case: &str) -> Vec<Vec<u8>> {
     inputs
 }
 
-/// Some changes of an input by chance, with pieces of another one.
+/// Random mutations of an input, with pieces of another one.
 fn mutate(random: &mut Random, from: &[u8], other: &[u8]) -> Vec<u8> {
     let mut bytes = from.to_vec();
     for _ in 0..1 + random.below(6) {
@@ -73,7 +74,7 @@ fn mutate(random: &mut Random, from: &[u8], other: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Bytes by chance, for cases that read them as numbers.
+/// Random bytes, for cases that interpret them as numbers.
 fn fresh(random: &mut Random) -> Vec<u8> {
     (0..24 + random.below(160))
         .map(|_| random.bits() as u8)
@@ -93,7 +94,7 @@ fn nothing_that_is_tried_breaks_what_must_hold() {
         let corpus = corpus(name);
         let mut random = Random::scrambled(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
         let known = corpus.len() as u64;
-        // The ones make worlds and step them in every mode, and some of the others take a second.
+        // Some cases make worlds and step them in every mode; a run of some of the others can take a second.
         let runs = match name {
             "values" | "turning" => runs / 5,
             _ => runs,

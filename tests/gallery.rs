@@ -3,13 +3,13 @@
 use scene::Scene;
 use sim_core::{Collision, DVec3, METHODS, Method, Settings, World};
 
-/// How far each method's height is from `v t - t²/2` under a constant acceleration of -1 m/s², in
-/// units of `t dt / 2`.
+/// The error of each method's height against `v t - t²/2` under a constant acceleration of -1 m/s², in units of
+/// `t dt / 2`.
 ///
 /// Forward Euler moves with the velocity from before the step: the heights of `n` steps sum to
-/// `v n dt - dt² n (n - 1) / 2`, which is `t dt / 2` too high. Both other Euler methods move with
-/// the velocity from after it, `dt² n (n + 1) / 2`, as much too low: they differ only where the
-/// force depends on the motion. Methods of a higher order are exact for parabolas.
+/// `v n dt - dt² n (n - 1) / 2`, which is `t dt / 2` too high. Both other Euler methods move with the velocity from
+/// after it, `dt² n (n + 1) / 2`, and are too low by the same amount; they differ only if the force depends on the
+/// motion. Methods of higher order are exact for parabolas.
 fn height_error(method: &Method) -> f64 {
     match method.name {
         "forward-euler" => 1.0,
@@ -50,9 +50,9 @@ fn throw(scene: &str, method: &'static Method, steps: u32) -> Vec<(f64, f64, f64
         .collect()
 }
 
-/// Where the polyline through the positions first comes down through height 0.
+/// The first point at which the polyline through the positions descends through height 0.
 fn landing(path: &[(f64, f64, f64)]) -> f64 {
-    // A position of height 0 but for rounding lies on the line, on whichever side it fell.
+    // A position of height 0 up to rounding counts as on the line, whatever its sign.
     let down = path
         .windows(2)
         .find(|pair| pair[0].2 > 0.0 && pair[1].2 <= 1e-12);
@@ -113,8 +113,8 @@ fn five_hertz_shows_each_methods_error_at_four_seconds() {
     }
 }
 
-/// Runs a force-free scene of the gallery and checks that momentum and kinetic energy stay, to
-/// 1e-12 of the sums of their parts.
+/// Runs a force-free scene of the gallery and checks that momentum and kinetic energy are conserved, to 1e-12 of the
+/// sums of their parts.
 fn run_conserving(scene: &str, steps: u32) -> World {
     let mut world = Scene::load(scene)
         .expect("a gallery scene")
@@ -189,7 +189,7 @@ fn naive_and_bvh_worlds_are_the_same_to_the_bit() {
     }
 }
 
-/// A gallery scene after some of its steps.
+/// A gallery scene after a number of steps.
 fn run(scene: &str, steps: u64) -> World {
     let scene = Scene::load(scene).expect("a gallery scene");
     assert_eq!(scene.collision, Collision::Continuous);
@@ -228,7 +228,7 @@ fn the_bullet_never_passes_a_plate() {
     let world = run("bullet", 60);
     assert_eq!(world.impacts(), 105);
     assert_eq!(world.velocity(0), DVec3::new(-1000.0, 0.0, 0.0));
-    // 1000 m, of which the way to the first plate is 4.7495 m, and each one after it 9.499 m.
+    // The path is 1000 m; the way to the first plate is 4.7495 m, and to each further one 9.499 m.
     let gap = 9.499;
     let left = 1000.0 - 0.5 * gap - 104.0 * gap;
     let x = 0.5 * gap - left;
@@ -277,7 +277,7 @@ fn the_peg_passes_the_channel_untouched() {
     assert_eq!(world.impacts(), 0);
     assert_eq!(world.velocity(1), DVec3::NEG_Z);
     assert!(world.position(1).z < -1.7, "{}", world.position(1));
-    // The room is real: pushed aside by a little more than it, the peg stands in the wall.
+    // The clearance is real: displaced by slightly more than it, the peg overlaps the wall.
     let mut world = run("u-channel", 120);
     let middle = world.position(1);
     for aside in [DVec3::X, DVec3::NEG_X, DVec3::NEG_Y] {
@@ -307,7 +307,7 @@ fn a_hundred_cubes_keep_their_energy_in_their_box() {
 #[test]
 fn the_herd_settles_in_its_pen() {
     let mut world = run("herd", 300);
-    // They have fallen 4 m on average: nearly all that gave them goes.
+    // They have fallen 4 m on average: nearly all energy from that is dissipated.
     let early = world.kinetic_energy();
     assert!(early < 100.0, "{early} J");
     for _ in 0..120 {
@@ -322,7 +322,7 @@ fn the_herd_settles_in_its_pen() {
     assert!(late < 50.0, "{late} J");
 }
 
-/// The body of that name in a gallery scene.
+/// The index of a body in a gallery scene, by its name.
 fn body(scene: &Scene, name: &str) -> usize {
     let found = scene.bodies.iter().position(|body| body.name == name);
     found.unwrap_or_else(|| panic!("no body {name}"))
@@ -330,7 +330,7 @@ fn body(scene: &Scene, name: &str) -> usize {
 
 const GRAVITY: f64 = 9.81;
 
-/// Bricks that land among others were lifted into these, and thrown back to where the step began.
+/// Regression: bricks that landed among others were lifted into these, and moved back to the start of the step.
 #[test]
 fn bricks_without_friction_gain_nothing_at_any_rate() {
     for rate in [120.0, 480.0] {
@@ -439,7 +439,7 @@ fn a_push_gets_through_the_dominoes_as_far_as_one_would_slide() {
         let moved = moved(&format!("elastic {number}"));
         assert!((moved - way).abs() < 1e-9, "{number}: {moved}, not {way}");
     }
-    // Three that stick are pushed together; the fourth waits in vain.
+    // The three sticky bodies are pushed together; the fourth is not reached.
     let at = |number: usize| world.position(body(&scene, &format!("sticky {number}"))).x;
     for number in 1..3 {
         let between = at(number + 1) - at(number) - 0.1875;

@@ -1,9 +1,7 @@
-//! The gallery, step by step, to the bit: every scene ends in the state whose hash is pinned in
-//! `hashes.txt`.
+//! The gallery, step by step, bit for bit: every scene ends in the state whose hash is recorded in `hashes.txt`.
 //!
-//! A change that means to keep every result keeps that file; one that means to change results
-//! changes it, where a reader of the change sees which. To print it anew:
-//! `COWBELL_PRINT_HASHES=1 cargo test --test hashes -- --nocapture`.
+//! A change that preserves all results does not change that file. A change of results changes it, visibly for
+//! reviewers. To print it again: `COWBELL_PRINT_HASHES=1 cargo test --test hashes -- --nocapture`.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -14,14 +12,14 @@ use sim_core::Collision;
 
 const STEPS: u32 = 600;
 
-/// How collisions are found, by the names in the table.
+/// The collision modes, by their names in the table.
 const MODES: [(&str, Collision); 3] = [
     ("continuous", Collision::Continuous),
     ("bvh", Collision::Bvh),
     ("naive", Collision::Naive),
 ];
 
-/// What is not run, and why. The continuous mode of every scene is.
+/// The runs left out, with reasons. The continuous mode of every scene is run.
 const LEFT_OUT: [(&str, &str, &str); 3] = [
     (
         "herd",
@@ -85,7 +83,7 @@ fn every_scene_ends_in_the_pinned_state() {
             found.insert((entry.name, mode), hash);
         }
     }
-    // Whatever is pinned: the naive search and the BVH give the same answers.
+    // Independent of the recorded hashes: the naive search and the BVH give the same answers.
     for (&(scene, mode), hash) in &found {
         if mode == "naive" {
             assert_eq!(Some(hash), found.get(&(scene, "bvh")), "{scene}");

@@ -1,12 +1,11 @@
-//! The inertia of meshes against rational arithmetic, by another rule: over a tetrahedron the mean of
-//! a polynomial of degree two is a twentieth of the sum of its values at the corners and four fifths
-//! of that at the middle.
+//! The inertia of meshes against rational arithmetic by another quadrature rule: the mean of a polynomial of degree two
+//! over a tetrahedron is a twentieth of the sum of its values at the corners plus four fifths of that at the middle.
 
 use kit::random::Random;
 use kit::rational::{Point, Q, cross, dot, rational, zero};
 use sim_core::{DMat3, DQuat, DVec3, Mesh, Solid, Vec3};
 
-/// Volume, its first and its second moments about the origin, exactly.
+/// The volume, and its first and second moments about the origin, exactly.
 fn integrals(mesh: &Mesh) -> (Q, Point, [[Q; 3]; 3]) {
     let whole = |n: i64| Q::from_integer(n.into());
     let mut volume = zero();
@@ -32,13 +31,13 @@ fn integrals(mesh: &Mesh) -> (Q, Point, [[Q; 3]; 3]) {
 }
 
 fn rounded(q: &Q) -> f64 {
-    // Digits first, as numerator and denominator may each be beyond f64.
+    // The digits are scaled first, because numerator and denominator may each exceed f64.
     let scale = Q::from_integer(2.into()).pow(200);
     let whole = (q * &scale).round().to_integer();
     whole.to_string().parse::<f64>().expect("digits") * 2_f64.powi(-200)
 }
 
-/// A star: around its middle every direction has its own radius, so that faces are at all angles.
+/// A star: the radius varies with the direction, so that faces have many orientations.
 fn star(random: &mut Random, away: DVec3) -> Mesh {
     let (n, k) = (7_u32, 9_u32);
     let mut vertices = vec![away.as_vec3() + Vec3::Z, away.as_vec3() - Vec3::Z];
@@ -86,7 +85,7 @@ fn stars_have_the_inertia_of_rational_arithmetic() {
             (solid.volume() / rounded(&volume) - 1.0).abs() < 2e-15,
             "{case}"
         );
-        // The tensor from moments and axes, beside the exact one.
+        // The tensor from moments and axes, compared with the exact one.
         let inertia = solid.inertia(1.0).expect("an inertia");
         let axes = DMat3::from_quat(inertia.axes());
         let tensor = axes * DMat3::from_diagonal(inertia.moments()) * axes.transpose();

@@ -47,7 +47,7 @@ proptest! {
     }
 }
 
-/// Against all features, the other way round, and mirrored.
+/// Tests against all features, with the meshes exchanged, and mirrored.
 fn check(first: &Mesh, second: &Mesh, offset: DVec3, motion: DVec3) -> Result<(), TestCaseError> {
     let (a, b) = (Bvh::build(first), Bvh::build(second));
     let time = time_of_impact(&a, &b, offset, motion);
@@ -58,7 +58,7 @@ fn check(first: &Mesh, second: &Mesh, offset: DVec3, motion: DVec3) -> Result<()
     let exact = brute_force(first, second, offset, motion);
     assert_rounded_down(time, exact.impact)?;
     let touch = first_touch(&a, &b, offset, motion);
-    // At borders contacts count only where they block, and edges only where they part the meshes.
+    // At borders only blocking contacts count, and edges only if they separate the meshes.
     match &touch {
         _ if exact.across == exact.sure => {
             assert_rounded_down(touch.map(|touch| touch.time), exact.sure)?;
@@ -74,7 +74,7 @@ fn check(first: &Mesh, second: &Mesh, offset: DVec3, motion: DVec3) -> Result<()
         prop_assert!((touch.normal.length() - 1.0).abs() < 1e-15);
         prop_assert!(touch.normal.dot(motion) < 1e-15 * motion.length());
     }
-    // An offset that rounds no vertex leaves them the same numbers in the other's frame.
+    // If the offset rounds no vertex, the coordinates are the same in the other's frame.
     if offset == offset.round() {
         let back = first_touch(&b, &a, -offset, -motion);
         prop_assert_eq!(back.map(|t| t.time), touch.map(|t| t.time));
@@ -104,12 +104,12 @@ proptest! {
         offset in vector(-2.0..2.0),
         turn in vector(-0.3..0.3),
     ) {
-        // Towards the other mesh, more or less.
+        // Approximately towards the other mesh.
         check(&first, &second, offset, turn - 1.5 * offset)?;
     }
 }
 
-/// Directions all around, none along an axis.
+/// Directions distributed over the sphere, none along an axis.
 fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     (0..count).map(move |i| {
         let height = (f64::from(2 * i + 1) / f64::from(count) - 1.0) * 0.99;
@@ -119,7 +119,7 @@ fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Meshes of the gallery, and a turned cube.
+/// Meshes of the gallery, and a rotated cube.
 fn solids() -> Vec<Arc<Mesh>> {
     let turn = DQuat::from_scaled_axis(DVec3::new(0.5, 0.3, 0.1));
     let cube = builtin("cube.obj");
@@ -127,8 +127,8 @@ fn solids() -> Vec<Arc<Mesh>> {
     vec![cube, Arc::new(turned), builtin("cow.obj")]
 }
 
-/// Surfaces are apart up to a hair before the time and meet a hair after it, where neither only
-/// grazes; and what is apart at the start and meets at the end has a first contact.
+/// Surfaces are apart until just before the time and meet just after it, unless one only grazes the other. If they are
+/// apart at the start and meet at the end, there is a first contact.
 #[test]
 fn surfaces_meet_after_the_first_touch_and_not_before() {
     let trees: Vec<Bvh> = solids().iter().map(|mesh| Bvh::build(mesh)).collect();
@@ -156,7 +156,7 @@ fn surfaces_meet_after_the_first_touch_and_not_before() {
     }
 }
 
-/// The plain search over all pairs of triangles, with the predicates.
+/// A brute-force search over all pairs of triangles, with the predicates.
 #[test]
 fn trees_find_what_a_search_over_all_features_finds() {
     let (cow, turned) = (builtin("cow.obj"), solids().swap_remove(1));
@@ -184,11 +184,11 @@ fn trees_find_what_a_search_over_all_features_finds() {
     }
 }
 
-/// All lengths scaled by a power of two: the same times and normals to the bit.
+/// All lengths scaled by a power of two: the same times and normals, bit for bit.
 #[test]
 fn scale_does_not_matter() {
     let cube = builtin("cube.obj");
-    // Coordinates of few digits, so that none is lost at the ends of f32.
+    // Coordinates with few digits, so that none is lost at the limits of f32.
     let spike = mesh(
         [
             [0.0, 0.0, 0.0],
@@ -227,7 +227,7 @@ fn mirrored_and_exchanged_meshes_touch_alike() {
     for (first, first_mirrored) in trees.iter().zip(&mirrored) {
         for (second, second_mirrored) in trees.iter().zip(&mirrored) {
             for direction in directions(40) {
-                // Coordinates of the second mesh keep all their digits.
+                // The coordinates of the second mesh keep all their digits.
                 let offset = (4.0 * direction).round();
                 let motion = DVec3::new(0.3, -0.2, 0.1) - offset;
                 let touch = first_touch(first, second, offset, motion);
@@ -259,7 +259,7 @@ fn what_is_no_number_or_too_far_touches_nothing() {
         }
     }
     let touch = first_touch(&cube, &cube, DVec3::X * 1e99, DVec3::X * -2e99);
-    // A vertex at -0.5 m is in the way.
+    // A vertex at -0.5 m blocks the way.
     assert_eq!(
         touch.map(|t| (t.time, t.normal)),
         Some((0.5_f64.next_down(), DVec3::X))

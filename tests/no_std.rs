@@ -1,4 +1,4 @@
-//! The probe of `probe/`, which runs without the standard library, has the same hash with it.
+//! The probe of `probe/` runs without the standard library, and has the same hash with it.
 
 extern crate alloc;
 

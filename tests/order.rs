@@ -1,4 +1,4 @@
-//! The order in which bodies stand in a file has no say in what becomes of them.
+//! The order of bodies in a file does not influence the result.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ const MODES: [(&str, Collision); 3] = [
     ("naive", Collision::Naive),
 ];
 
-/// What is not run, and why.
+/// The runs left out, with reasons.
 const LEFT_OUT: [(&str, &str, &str); 2] = [
     (
         "herd",
@@ -24,7 +24,7 @@ const LEFT_OUT: [(&str, &str, &str); 2] = [
     ("bin", "naive", "the same"),
 ];
 
-/// Scenes in which what turns is hit: sums over features that touch are in the order of bodies.
+/// Scenes in which turning bodies are hit: sums over touching features depend on the order of bodies.
 const TURNING: [&str; 5] = [
     "cubes-turning",
     "cube-cow-spin",
@@ -33,7 +33,7 @@ const TURNING: [&str; 5] = [
     "chain",
 ];
 
-/// The bodies of a scene in another order: `order[i]` is where the one that comes to place `i` was.
+/// The scene with its bodies in another order: `order[i]` is the original index of body `i`.
 fn permuted(scene: &Scene, order: &[usize]) -> Scene {
     let mut place = vec![0; order.len()];
     for (new, &old) in order.iter().enumerate() {
@@ -52,7 +52,7 @@ fn permuted(scene: &Scene, order: &[usize]) -> Scene {
     permuted
 }
 
-/// Some orders of so many bodies: the reverse, a rotation, and two by chance.
+/// Some orders of so many bodies: the reverse, a rotation, and two random ones.
 fn orders(count: usize) -> Vec<Vec<usize>> {
     let mut orders = vec![
         (0..count).rev().collect(),
@@ -69,7 +69,7 @@ fn orders(count: usize) -> Vec<Vec<usize>> {
     orders
 }
 
-/// Position and velocity of each body after each step, or the error that ends them.
+/// Position and velocity of each body after each step, or the error that ended the run.
 fn run(scene: &Scene, steps: usize) -> (World, Vec<Vec<[u64; 6]>>, bool) {
     let mut world = scene.world().expect("a world");
     let mut states = Vec::new();
@@ -83,13 +83,13 @@ fn run(scene: &Scene, steps: usize) -> (World, Vec<Vec<[u64; 6]>>, bool) {
 }
 
 fn bits(world: &World, body: usize) -> [u64; 6] {
-    // A zero has no sign that would matter.
+    // Zeros are compared without their sign.
     let plain = |v: DVec3| (v + DVec3::ZERO).to_array().map(f64::to_bits);
     let ([x, y, z], [u, v, w]) = (plain(world.position(body)), plain(world.velocity(body)));
     [x, y, z, u, v, w]
 }
 
-/// The first step after which a body is elsewhere in another order, and that body.
+/// The first step after which a body has another state in another order, and that body.
 fn first_difference(scene: &Scene, order: &[usize], steps: usize) -> Option<(usize, String)> {
     let (world, states, failed) = run(scene, steps);
     let (other_world, others, other_failed) = run(&permuted(scene, order), steps);
@@ -105,7 +105,7 @@ fn first_difference(scene: &Scene, order: &[usize], steps: usize) -> Option<(usi
     (!same).then(|| (states.len() + 1, "impacts, or an error".to_owned()))
 }
 
-/// Panics where some orders of the bodies of a scene give other states.
+/// Panics if some orders of the bodies of a scene give other states.
 fn assert_order_free(what: &str, scene: &Scene, orders: &[Vec<usize>], steps: usize) {
     for order in orders {
         let difference = first_difference(scene, order, steps);
@@ -117,7 +117,7 @@ fn parsed(text: &str) -> Scene {
     Scene::parse(text, Path::new("order.toml")).expect("a scene")
 }
 
-/// A cube that is hit from both sides within a step, which it was from whoever came first in the file.
+/// Regression: a cube hit from both sides within a step was hit by the first body in the file.
 #[test]
 fn a_body_that_two_hit_in_a_step_is_hit_by_the_earlier_one() {
     let scene = parsed(
@@ -156,7 +156,7 @@ fn a_body_that_two_hit_in_a_step_is_hit_by_the_earlier_one() {
     }
 }
 
-/// Equal balls in a row and a square that collapses: hits at the same time, to a rounding or exactly.
+/// Equal balls in a row and a collapsing square: simultaneous hits, up to rounding or exactly.
 #[test]
 fn bodies_that_touch_at_the_same_time_go_together() {
     let ball = |name: usize, [x, y]: [f64; 2], [u, v]: [f64; 2], more: &str| {
@@ -199,7 +199,7 @@ fn bodies_that_touch_at_the_same_time_go_together() {
     }
 }
 
-/// Heaps in which everybody is in everybody, and a box so full that a few hundred meet in a step.
+/// Heaps in which all bodies overlap, and a box so full that a few hundred meet in a step.
 #[test]
 fn crowds_have_no_first_body() {
     let heap = r#"
@@ -223,7 +223,7 @@ fn crowds_have_no_first_body() {
         ball.mass = f64::from(1 + i % 3);
         heap.bodies.push(ball);
     }
-    // Two of them in one place.
+    // Two of them at the same position.
     heap.bodies[1].position = heap.bodies[0].position;
     let world = heap.world().expect("a world");
     assert!(world.overlapping().len() > 300);
@@ -263,8 +263,8 @@ fn crowds_have_no_first_body() {
     assert_order_free("full", &full, &orders(full.bodies.len()), 120);
 }
 
-/// Springs that share bodies, bodies beside them, drag on some and attraction between all: sums of many
-/// terms, norms of all bodies and equations of several come out the same.
+/// Springs with shared bodies, bodies without springs, drag on some and attraction between all: sums of many terms,
+/// norms over all bodies and coupled equations give the same results.
 #[test]
 fn forces_are_summed_in_no_order_of_bodies() {
     let mut text = "rate = 60\ncollision = \"bvh\"\n".to_owned();

@@ -1,4 +1,4 @@
-//! The solvers that control their error, beside `ode_solvers`.
+//! The solvers with error control, compared with `ode_solvers`.
 
 use std::time::Instant;
 
@@ -7,7 +7,7 @@ use cases::solvers::SOLVERS;
 use sim_core::ode::{Dop853Stages, Dopri5Stages, Pair, Solver};
 use sim_core::{Dop853, Dopri5, SolveError, Tolerance};
 
-/// The end, and the time of the best of some runs, s, as other processes disturb the rest.
+/// The result, and the time of the fastest of some runs, s, because other processes slow down the rest.
 fn solve(problem: &dyn Solve, solver: &str, tolerance: f64) -> (End, f64) {
     let solver = SOLVERS.iter().find(|known| known.name == solver);
     let solver = solver.expect("a solver of that name");
@@ -39,7 +39,7 @@ fn compare(problem: &dyn Solve, tolerance: f64) {
             time,
             our_time / time
         );
-        // The same method with the same control takes the same steps, but for rounding.
+        // The same method with the same step control takes the same steps, up to rounding.
         let ratio = ours.evaluations as f64 / theirs.evaluations as f64;
         assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
         assert!(
@@ -88,7 +88,7 @@ fn dense_output_has_its_order_between_the_steps() {
         }
         worst
     }
-    // In each step a polynomial of order p leaves h^(p+1).
+    // The error of a polynomial of order p in each step is of order h^(p+1).
     let order = |coarse: f64, fine: f64| (coarse / fine).log2();
     let dopri5 = order(
         error::<Dopri5Stages<_>>(0.1),
@@ -108,7 +108,7 @@ fn dense_output_has_its_order_between_the_steps() {
 #[test]
 fn steps_have_the_order_of_their_method() {
     fn error<P: Pair<[f64; 2]>>(steps: u32) -> f64 {
-        // y = (1 + t/2) cos t: the time enters beside the state.
+        // y = (1 + t/2) cos t: the right-hand side depends on time as well as on the state.
         let f = |t: f64, y: &[f64; 2], dy: &mut [f64; 2]| *dy = [y[1], -y[0] - t.sin()];
         let mut solver = Solver::<P, _, _>::new(f, 0.0, [1.0, 0.5], Tolerance::of(1e3));
         for i in 1..=steps {
@@ -136,7 +136,7 @@ fn solvers_go_back_and_stop_with_a_reason() {
     assert!((solver.state()[0] - 2.0).abs() < 1e-8);
     solver.advance(-1.0).expect("a solution");
     assert!((solver.state()[0] - 0.5).abs() < 1e-8);
-    // y = 1/(1 - t) ends at t = 1.
+    // y = 1/(1 - t) has a pole at t = 1.
     let failure = solver.advance(2.0).expect_err("there is no solution");
     assert!(
         matches!(failure, SolveError::StepTooSmall { .. }),

@@ -1,5 +1,5 @@
-//! A method and two forces from outside, as a user of the library writes them: in a file of their
-//! own, with nothing of sim-core touched.
+//! An external method and two external forces, as a user of the library writes them: in a file of their own, without
+//! changes to sim-core.
 
 use sim_core::{
     Body, BodyLaw, BodyMotion, DVec3, Failure, Force, Law, Method, PairLaw, PairMotion, Settings,
@@ -46,7 +46,7 @@ impl BodyLaw for Magnet {
     }
 }
 
-/// A thread between two bodies that pulls when it is longer than a metre.
+/// A thread between two bodies that pulls if it is longer than a metre.
 #[derive(Debug)]
 struct Thread(f64);
 
@@ -95,7 +95,7 @@ fn a_method_of_ones_own_runs_in_a_world_with_its_order() {
     let error = |steps| (end(&HEUN, steps) - exact).length();
     let order = (error(256) / error(512)).log2();
     assert!((order - 2.0).abs() < 0.05, "{order}");
-    // Body 1 is free: a parabola, which Heun's method meets.
+    // Body 1 is free: a parabola, for which Heun's method is exact.
     let force = Force::Body {
         body: Some(0),
         law: Law::new(Magnet(2.0)),

@@ -1,4 +1,4 @@
-//! What it costs to build a tree, and how good the tree is.
+//! The cost of building a tree, and the quality of the tree.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -21,7 +21,7 @@ use crate::meshes::{Shape, Solid, Solids};
 use crate::sweep::sweep;
 use crate::table::{Table, three_digits, time};
 
-/// A triangle as the crate `bvh` takes it.
+/// A triangle for the crate `bvh`.
 #[derive(Clone)]
 pub(crate) struct BvhTriangle {
     pub(crate) corners: [Point3<f32>; 3],
@@ -63,7 +63,7 @@ pub(crate) fn obvhs_triangles(mesh: &Mesh) -> Vec<obvhs::triangle::Triangle> {
     corners.map(triangle).collect()
 }
 
-/// Who builds.
+/// The builders.
 #[derive(Clone, Copy)]
 enum Builder {
     Ours,
@@ -87,7 +87,7 @@ const BUILDERS: [(&str, Builder); 6] = [
     ("bvh", Builder::Bvh),
 ];
 
-/// The triangles in the form that a builder takes them; making it is not part of the build.
+/// The triangles in the form that a builder needs; converting them is not part of the build.
 enum Input {
     Mesh,
     Obvhs(Vec<obvhs::triangle::Triangle>),
@@ -136,10 +136,10 @@ impl Builder {
 }
 
 impl Tree {
-    /// Boxes and triangles that a random ray through the root's box is expected to be tested
-    /// with: the area of each node times what it holds, over the root's.
+    /// The expected number of boxes and triangles tested with a random ray through the root's box: the area of each
+    /// node times the number of its items, divided by the root's area.
     ///
-    /// Ours does not show the boxes of single triangles; they follow from the mesh.
+    /// Our tree does not store the boxes of single triangles; they are computed from the mesh.
     fn cost(&self, mesh: &Mesh) -> f64 {
         let sum: f64 = match self {
             Tree::Ours(bvh) => {
@@ -223,7 +223,7 @@ pub(crate) struct Build {
     bytes: f64,
 }
 
-/// Cows of every size, and the knot.
+/// Builds cows of every size, and the knot.
 pub(crate) fn bench(c: &mut Criterion, solids: &Solids, scope: Scope) -> Vec<Build> {
     let cows = [1_000, 6_000, 25_000, 100_000, 400_000].map(Shape::Cow);
     let shapes = cows.into_iter().chain([Shape::Knot(124_000)]);

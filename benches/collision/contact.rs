@@ -1,4 +1,4 @@
-//! Do two meshes meet? Time and wrong answers of each method, by class of placement.
+//! Whether two meshes meet: time and wrong answers of each method, by class of placement.
 
 use std::cell::OnceCell;
 use std::hint::black_box;
@@ -12,21 +12,21 @@ use crate::peers::Method;
 use crate::placements::{Class, Pair, Placement};
 use crate::sweep::{median, sweep};
 
-/// What one method did with the placements of one class of a pair.
+/// The results of one method for the placements of one class of a pair.
 pub(crate) struct Outcome {
     pub(crate) class: Class,
     pub(crate) pair: &'static str,
     pub(crate) method: Method,
-    /// The median placement, s.
+    /// The median time of a placement, s.
     pub(crate) time: f64,
     pub(crate) wrong: usize,
     pub(crate) placements: usize,
 }
 
-/// A pair, made when the first of its benchmarks runs.
+/// A pair that is made when the first of its benchmarks runs.
 struct LazyPair<'a> {
     name: &'static str,
-    /// Placements that the naive search gets: it takes 2 ms to 0.3 s for each.
+    /// The number of placements for the naive search, which takes 2 ms to 0.3 s for each.
     naive: usize,
     make: Box<dyn Fn() -> Pair + 'a>,
     made: OnceCell<Pair>,
@@ -69,7 +69,7 @@ fn pairs(solids: &Solids, scope: Scope) -> Vec<LazyPair<'_>> {
         name: NESTED,
         naive: 0,
         make: Box::new(move || {
-            // A gap of 3 % of the radius: parry's trees need 4 to 5 ms.
+            // With a gap of 3 % of the radius, parry's trees need 4 to 5 ms.
             let shapes = [Shape::Sphere(20_000, 1000), Shape::Sphere(20_000, 970)];
             Pair::nested(solids, shapes, 0.005, scope.directions.div_ceil(10))
         }),
@@ -80,7 +80,7 @@ fn pairs(solids: &Solids, scope: Scope) -> Vec<LazyPair<'_>> {
 
 const NESTED: &str = "sphere 20k in sphere 20k";
 
-/// Runs what criterion lets run.
+/// Runs the benchmarks that criterion selects.
 pub(crate) fn bench(c: &mut Criterion, solids: &Solids, scope: Scope) -> Vec<Outcome> {
     let mut outcomes = Vec::new();
     for pair in pairs(solids, scope) {
@@ -136,7 +136,7 @@ fn outcome(
     })
 }
 
-/// No answer of ours may be wrong, at any level and with or without trees.
+/// Fails if any answer of ours is wrong, at any level, with or without trees.
 pub(crate) fn assert_ours_is_right(outcomes: &[Outcome], degenerate: &[Degenerate]) {
     for outcome in outcomes.iter().filter(|o| o.method.is_ours()) {
         let (class, pair, method) = (outcome.class.name(), outcome.pair, outcome.method.name());
@@ -156,8 +156,8 @@ pub(crate) fn assert_ours_is_right(outcomes: &[Outcome], degenerate: &[Degenerat
     }
 }
 
-/// Asks ours about every placement of a class, so many times, with the smaller pairs: for
-/// counting instructions.
+/// Tests every placement of a class with our method, a number of times, for the smaller pairs: for counting
+/// instructions.
 pub(crate) fn repeat(class: &str, times: usize) {
     let solids = Solids::default();
     let scope = Scope {

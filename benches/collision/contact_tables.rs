@@ -1,4 +1,4 @@
-//! What came out of asking whether meshes meet, as tables.
+//! Tables of the contact benchmark.
 
 use crate::contact::Outcome;
 use crate::degenerate::Degenerate;
@@ -29,8 +29,8 @@ impl Cell {
     }
 }
 
-/// Rows of methods, columns of classes: time, how many times that of ours it is, and wrong answers
-/// of how many; last the degenerate placements and the sum.
+/// Rows of methods, columns of classes: the time, its ratio to that of ours, and wrong answers out of all; the last
+/// columns are the degenerate placements and the sum.
 pub(crate) fn of_classes(outcomes: &[Outcome], degenerate: &[Degenerate]) -> Table {
     let mut header = vec!["method"];
     header.extend(Class::ALL.map(Class::name));
@@ -71,7 +71,7 @@ pub(crate) fn of_classes(outcomes: &[Outcome], degenerate: &[Degenerate]) -> Tab
     table
 }
 
-/// Rows of methods for each pair, the naive search among them.
+/// Rows of methods for each pair, including the naive search.
 pub(crate) fn of_pairs(outcomes: &[Outcome]) -> Table {
     let mut header = vec!["pair", "method"];
     header.extend(Class::ALL.map(Class::name));

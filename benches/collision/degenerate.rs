@@ -1,4 +1,4 @@
-//! Placements that trip floating point, with answers by construction or rational arithmetic.
+//! Placements that are hard for floating point, with answers by construction or rational arithmetic.
 
 use std::rc::Rc;
 
@@ -9,14 +9,14 @@ use sim_core::{DQuat, DVec3, Mesh, Vec3};
 use crate::meshes::{Shape, Solid, Solids};
 use crate::placements::Placement;
 
-/// Two solids where they touch, overlap, or are apart by little.
+/// Two solids that touch, overlap, or are slightly apart.
 pub(crate) struct Degenerate {
     pub(crate) first: Rc<Solid>,
     pub(crate) second: Rc<Solid>,
     pub(crate) placement: Placement,
 }
 
-/// Every kind. Small meshes: a few hundred of them are made in no time.
+/// Every kind. The meshes are small, so a few hundred are made quickly.
 pub(crate) fn all(solids: &Solids) -> Vec<Degenerate> {
     let cube = solids.get(Shape::Cube);
     let mut all = cubes(&cube.mesh);
@@ -24,11 +24,11 @@ pub(crate) fn all(solids: &Solids) -> Vec<Degenerate> {
     all
 }
 
-/// Lengths from 1e-10 to 1e10, as powers of two so that all stays exact.
+/// Lengths from 1e-10 to 1e10, as powers of two so that everything stays exact.
 const SCALES: [f64; 3] = [1.0 / (1u64 << 33) as f64, 1.0, (1u64 << 33) as f64];
 
-/// Two cubes on a lattice of half edges: faces, edges and corners that touch, and cubes inside
-/// cubes. They meet if their boxes do and neither is strictly inside the other.
+/// Two cubes on a lattice of half edges: faces, edges and corners that touch, and cubes inside cubes. They meet if
+/// their boxes do and neither is strictly inside the other.
 fn cubes(unit_cube: &Mesh) -> Vec<Degenerate> {
     let cube = |edge: f64| {
         let cube = unit_cube.transformed(DQuat::IDENTITY, DVec3::splat(edge));
@@ -51,7 +51,7 @@ fn cubes(unit_cube: &Mesh) -> Vec<Degenerate> {
             }
         }
     }
-    // The second cube modelled 1.3e8 away from its origin, and brought back by the offset.
+    // The second cube has coordinates 1.3e8 away from its origin, and the offset compensates that.
     let (unit, far) = (64.0, DVec3::splat((1 << 27) as f64));
     let first = Rc::new(Solid::of(cube(2.0 * unit)));
     for edge in [1.0, 2.0, 6.0] {
@@ -81,7 +81,7 @@ fn cubes_meet(apart: DVec3, edge: f64) -> bool {
     most <= 1.0 + half && !inside
 }
 
-/// Points with whole coordinates up to `most`, of mixed signs.
+/// Points with integer coordinates up to `most`, of both signs.
 fn lattice(most: i32) -> impl Iterator<Item = DVec3> {
     let cells = (0..=most)
         .flat_map(move |x| (0..=most).flat_map(move |y| (0..=most).map(move |z| [x, y, z])));
@@ -91,8 +91,8 @@ fn lattice(most: i32) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Single triangles on a small lattice: many touch at corners and edges, lie in one plane, or
-/// have no area; every other is a sliver, a corner an ulp off the line of the others.
+/// Single triangles on a small lattice: many touch at corners and edges, lie in one plane, or have no area. Every other
+/// one is a sliver, with a corner one ulp off the line of the others.
 fn triangles() -> Vec<Degenerate> {
     let mut random = Random::splitmix(1);
     let mut placements = Vec::new();

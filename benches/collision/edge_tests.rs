@@ -1,4 +1,4 @@
-//! What one test of an edge with a triangle costs: the naive search beside a plain loop.
+//! The cost of one edge-triangle test: the naive search compared with a plain loop.
 
 use criterion::Criterion;
 use sim_core::collide::naive;
@@ -20,7 +20,7 @@ const METHODS: [(&str, Meet); 3] = [
     ("Möller-Trumbore f64", moller_trumbore::meet::<f64>),
 ];
 
-/// Time of a test where nothing stops the search, and wrong answers where meshes touch.
+/// The time of a test if nothing stops the search early, and wrong answers for touching meshes.
 pub(crate) fn bench(
     c: &mut Criterion,
     solids: &Solids,

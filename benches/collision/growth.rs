@@ -1,4 +1,4 @@
-//! How the time of a query grows with the number of triangles: two cows of 1,000 to 400,000 each.
+//! Growth of the time of a query with the number of triangles: two cows of 1,000 to 400,000 each.
 
 use std::cell::OnceCell;
 
@@ -21,12 +21,12 @@ const MOST_NAIVE: usize = 6_000;
 pub(crate) struct Series {
     pub(crate) what: String,
     pub(crate) method: String,
-    /// Triangles and s.
+    /// Triangles, and the time in s.
     pub(crate) points: Vec<(f64, f64)>,
 }
 
 impl Series {
-    /// The exponent of the power law that is nearest by least squares of logarithms.
+    /// The exponent of the power law fitted by least squares of logarithms.
     fn exponent(&self) -> f64 {
         let logs: Vec<_> = self
             .points
@@ -74,7 +74,7 @@ pub(crate) fn bench(c: &mut Criterion, solids: &Solids, scope: Scope) -> Vec<Ser
             for (method, series) in methods.into_iter().zip(series) {
                 let most = match method {
                     Method::Naive if size > MOST_NAIVE => continue,
-                    // Every miss takes it the same time.
+                    // Every miss takes the same time.
                     Method::Naive if class == Class::Near => 2,
                     _ => usize::MAX,
                 };
@@ -93,7 +93,7 @@ pub(crate) fn bench(c: &mut Criterion, solids: &Solids, scope: Scope) -> Vec<Ser
     all
 }
 
-/// The builds of cows, by builder.
+/// The build times of cows, by builder.
 pub(crate) fn of_builds(builds: &[Build]) -> Vec<Series> {
     let mut all: Vec<Series> = Vec::new();
     for build in builds {

@@ -1,10 +1,11 @@
-//! Mesh contact beside its peers: time, wrong answers, building, rays and growth.
+//! Mesh contact compared with its peers: time, wrong answers, building, rays and growth.
 //!
-//! `cargo bench` runs all, prints tables, leaves them in `target/contact.md` and the figures in
+//! `cargo bench` runs everything, prints tables, writes them to `target/contact.md` and the figures to
 //! `target/contact.csv`, and draws `docs/naive-vs-bvh.svg`.
-//! `cargo bench -- contact/near` runs a part, `cargo bench -- --quick` all of it in less time.
+//! `cargo bench -- contact/near` runs a part, `cargo bench -- --quick` everything in less time.
 //!
-//! `repeat near 100` asks ours about the near placements of the smaller pairs and does no more, so
+//! `repeat near 100` only tests our method on the near placements of the smaller pairs, so that instructions can be
+//! counted; PROGRAM is the path that `cargo bench --no-run` prints last:
 //! that instructions can be counted; PROGRAM is what `cargo bench --no-run` prints last:
 //!
 //! ```sh
@@ -30,19 +31,19 @@ mod table;
 
 use crate::meshes::Solids;
 
-/// How much is tried.
+/// The extent of the benchmarks.
 #[derive(Clone, Copy)]
 struct Scope {
-    /// From which a mesh comes in.
+    /// The number of directions from which a mesh approaches.
     directions: usize,
     /// Triangles of the largest mesh.
     largest: usize,
-    /// Whether times mean anything.
+    /// Whether times are meaningful.
     is_timed: bool,
 }
 
 impl Scope {
-    /// Without cargo bench's `--bench` criterion runs everything once, as a test.
+    /// Without `--bench` of cargo bench, criterion runs everything once, as a test.
     fn of_args() -> Scope {
         if std::env::args().any(|arg| arg == "--bench") {
             Scope {
@@ -87,14 +88,14 @@ fn main() {
             rays,
         ]);
         report::record(&contact, &growth);
-        // A part of the growth would be a misleading picture.
+        // A picture of only a part of the sizes would be misleading.
         if growth::is_complete(&growth) {
             report::draw(&plot::naive_against_bvh(&growth));
         }
     }
 }
 
-/// From `repeat near 100`.
+/// The class and the number in arguments such as `repeat near 100`.
 fn repeat_of_args() -> Option<(String, usize)> {
     let mut args = std::env::args().skip(1);
     let (_, class) = (args.next().filter(|arg| arg == "repeat")?, args.next()?);

@@ -1,4 +1,4 @@
-//! The meshes that are placed against each other, each made once and prepared for every peer.
+//! The meshes of the benchmarks, each made once and prepared for every peer.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -9,18 +9,18 @@ use parry3d::math::Vector;
 use parry3d::shape::TriMesh;
 use sim_core::{Bvh, DVec3, Mesh};
 
-/// A mesh by its making. Numbers are of triangles, met to within 1 %.
+/// A mesh by its construction. Numbers are of triangles, accurate to within 1 %.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Shape {
     /// The built-in cube.
     Cube,
     /// The project's cow.
     Cow(usize),
-    /// A tube along a trefoil knot: concave everywhere, a hole in its box.
+    /// A tube along a trefoil knot: concave everywhere, with holes in its bounding box.
     Knot(usize),
     /// A sphere with bumps of a tenth of its radius.
     Bumpy(usize),
-    /// A sphere whose radius is so many thousandths.
+    /// A sphere with a radius in thousandths.
     Sphere(usize, u32),
 }
 
@@ -65,7 +65,7 @@ impl Shape {
     }
 }
 
-/// A mesh with its tree, and the same as parry has it.
+/// A mesh with its tree, and the same mesh in parry.
 pub(crate) struct Solid {
     pub(crate) mesh: Mesh,
     pub(crate) bvh: Bvh,
@@ -111,7 +111,7 @@ impl Solids {
 
 /// A (2, 3) torus knot.
 fn knot(triangles: usize) -> Mesh {
-    // Triangles about as long as wide: the tube is some fifteen times as long as around.
+    // The triangles are about as long as wide: the tube is some fifteen times as long as its circumference.
     let around = (triangles as f64 / 30.0).sqrt().round() as usize;
     let along = triangles / 2 / around;
     let curve = |t: f64| {
@@ -126,7 +126,7 @@ fn knot(triangles: usize) -> Mesh {
     for i in 0..along {
         let t = TAU * i as f64 / along as f64;
         let tangent = (curve(t + 1e-4) - curve(t - 1e-4)).normalize();
-        // The tangent is nowhere near the direction from the core circle.
+        // The tangent is nowhere close to the direction from the core circle.
         let core = DVec3::new(0.7 * (2.0 * t).cos(), 0.7 * (2.0 * t).sin(), 0.0);
         let normal = (curve(t) - core)
             .reject_from_normalized(tangent)
@@ -147,7 +147,7 @@ fn knot(triangles: usize) -> Mesh {
     Mesh::new(vertices, faces.collect()).expect("the knot is a mesh")
 }
 
-/// An octahedron, each face cut into `n * n`, blown up to a radius that depends on the direction.
+/// An octahedron with each face cut into `n * n`, projected to a radius that depends on the direction.
 fn sphere(triangles: usize, radius: impl Fn(DVec3) -> f64) -> Mesh {
     let n = (triangles as f64 / 8.0).sqrt().round() as i32;
     let mut vertices = Vec::new();

@@ -1,4 +1,4 @@
-//! The best known plain loop of floating-point tests, to compare the naive search with.
+//! The best-known plain loop of floating-point tests, as a reference for the naive search.
 
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -1,4 +1,4 @@
-//! Who is asked whether two meshes meet, each in its best documented way.
+//! The methods that test whether two meshes meet, each used in its best documented way.
 
 use parry3d::math::{Pose, Vector};
 use parry3d::partitioning::BvhNode;
@@ -8,10 +8,10 @@ use sim_core::collide::{Level, naive, predicates::triangles_meet, tree};
 
 use crate::meshes::Solid;
 
-/// One way to an answer.
+/// A method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Method {
-    /// Ours, with the instructions of a level.
+    /// Ours, with the instruction set of a level.
     Tree(Level),
     /// Ours without trees.
     Naive,
@@ -57,10 +57,10 @@ impl Method {
     }
 }
 
-/// Parry's trees, descended with `Bvh::leaf_pairs`; `meet` decides about two triangles.
+/// Parry's trees, traversed with `Bvh::leaf_pairs`; `meet` decides about two triangles.
 ///
-/// Boxes are compared in f32, moved outward by more than the rounding of offset and sum. So this
-/// is exact with an exact `meet`, and shares no code of trees and descents with ours.
+/// Boxes are compared in f32, enlarged by more than the rounding of offset and sum. So this method is exact if `meet`
+/// is, and it shares no code for trees and their traversal with ours.
 pub(crate) fn parry_tree(
     first: &Solid,
     second: &Solid,
@@ -89,7 +89,7 @@ pub(crate) fn parry_tree(
         })
 }
 
-/// Parry's query for two shapes; it has f32 throughout, so the offset is rounded.
+/// Parry's query for two shapes. It uses f32 throughout, so the offset is rounded.
 fn parry_query(first: &Solid, second: &Solid, offset: DVec3) -> bool {
     let pose = Pose::from_translation(Vector::from_array(offset.as_vec3().to_array()));
     query::intersection_test(&Pose::IDENTITY, &first.parry, &pose, &second.parry)

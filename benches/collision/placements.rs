@@ -1,9 +1,9 @@
-//! Where the second mesh is put, and what is true there.
+//! Placements of the second mesh, and the truth for each.
 //!
-//! The second mesh comes in along directions spread evenly over the sphere, until it touches the
-//! first. Offsets lie on a grid along the direction, so that "touches" and "one step before" are
-//! both exact. Truth is found through parry's trees and their descent with exact predicates,
-//! never through the code under test, and some of it is found again in rational arithmetic.
+//! The second mesh approaches along directions distributed evenly over the sphere, until it touches the first. Offsets
+//! lie on a grid along the direction, so that "touches" and "one step before" are both exact. The truth is computed by
+//! parry's trees and their traversal with exact predicates, never by the code under test; a part of it is verified in
+//! rational arithmetic.
 
 use std::rc::Rc;
 
@@ -14,16 +14,16 @@ use sim_core::collide::predicates::triangles_meet;
 use crate::meshes::{Shape, Solid, Solids};
 use crate::peers::parry_tree;
 
-/// Where along its way the second mesh is.
+/// The position of the second mesh on its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Class {
-    /// 1 % of the size farther out than touching, with boxes that overlap.
+    /// 1 % of the size farther out than the touching position, with boxes that overlap.
     Near,
-    /// The first touching place of the grid.
+    /// The first touching position of the grid.
     Graze,
     /// 30 % of the touching offset.
     Deep,
-    /// The last place of the grid before touching.
+    /// The last position of the grid before touching.
     Hair,
     /// One sphere inside the other, nowhere touching.
     Nested,
@@ -56,7 +56,7 @@ pub(crate) struct Placement {
     pub(crate) meet: bool,
 }
 
-/// Placements along one of so many directions are checked in rational arithmetic, which is slow.
+/// The placements along one in so many directions are verified in rational arithmetic, which is slow.
 const CHECKED: usize = 20;
 
 /// Two solids and their placements.
@@ -67,7 +67,7 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    /// The second comes in towards the first from so many directions.
+    /// The second mesh approaches the first from so many directions.
     pub(crate) fn approaching(solids: &Solids, shapes: [Shape; 2], directions: usize) -> Pair {
         let [first, second] = shapes.map(|shape| solids.get(shape));
         let mut placements = Vec::new();
@@ -134,15 +134,15 @@ fn size(solid: &Solid) -> f64 {
     2.0 * solid.mesh.bounds().half_extent().max_element()
 }
 
-/// The placements along one line, or none where the meshes pass each other.
+/// The placements along one line; `None` if the meshes pass each other.
 fn approach(first: &Solid, second: &Solid, direction: DVec3) -> Option<Vec<(Class, Placement)>> {
     let size = size(first).max(size(second));
-    // A power of two times a direction of few digits: every offset of the grid is exact.
+    // A power of two times a direction with few digits, so that every offset of the grid is exact.
     let step = 2.0_f64.powi(size.log2().ceil() as i32 - 20);
     let at = |steps: i64| steps as f64 * step * direction;
     let meets = |steps| meet(first, second, at(steps));
 
-    // From outside inward in strides, then between the last two strides.
+    // Inwards in large strides, then by bisection between the last two.
     let stride = 1 << 12;
     let outside = 2 << 20;
     let strides = (0..=outside / stride).map(|i| outside - i * stride);

@@ -1,4 +1,4 @@
-//! The picture of naive against BVH and peers, over triangles, both axes logarithmic.
+//! The plot of naive against BVH and peers over the number of triangles, with two logarithmic axes.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::growth::Series;
 use crate::placements::Class;
 use crate::table::time;
 
-/// How a method is drawn: told apart by marker and dashes where there is no colour.
+/// The style of a method: markers and dashes distinguish methods without colour.
 struct Style {
     label: &'static str,
     color: &'static str,
@@ -78,7 +78,7 @@ pub(crate) fn naive_against_bvh(growth: &[Series]) -> String {
                 time(seconds).replace(".00", "").replace(".0", "")
             })));
         match class {
-            // Where no line is: contact is found long before a second.
+            // The legend is where no line is, because a contact is found long before a second.
             Class::Deep => layout
                 .with_legend_position(LegendPosition::InsideTopRight)
                 .with_legend_entries(STYLES.iter().map(Style::legend).collect()),
@@ -96,7 +96,7 @@ pub(crate) fn naive_against_bvh(growth: &[Series]) -> String {
     SvgBackend.render_scene(&figure.render())
 }
 
-/// The label of a tick, for whole powers of ten only: others would run into each other.
+/// The label of a tick, only for whole powers of ten; others would overlap.
 fn decade(n: f64) -> String {
     match n.log10() {
         log if (log - log.round()).abs() > 1e-9 => String::new(),

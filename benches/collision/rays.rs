@@ -1,4 +1,4 @@
-//! Rays against the cow: time, and rays that slip through edges and corners.
+//! Rays against the cow: time, and rays that leak through edges and corners.
 
 use std::cell::OnceCell;
 use std::time::Duration;
@@ -24,14 +24,14 @@ use crate::meshes::{Shape, Solid, Solids};
 use crate::sweep::{median, sweep};
 use crate::table::{Table, three_digits};
 
-/// From a point along a direction, all of them f32 values so that every peer gets the same.
+/// A ray with f32 coordinates, so that every peer gets the same one.
 #[derive(Clone, Copy)]
 struct Ray {
     origin: Vec3,
     direction: Vec3,
 }
 
-/// Who casts rays.
+/// The ray casters.
 #[derive(Clone, Copy)]
 enum Caster {
     Ours,
@@ -47,7 +47,7 @@ const CASTERS: [(&str, Caster); 4] = [
     ("bvh", Caster::Bvh),
 ];
 
-/// The mesh as each peer wants it.
+/// The mesh in the form of each peer.
 struct Peers<'a> {
     solid: &'a Solid,
     obvhs: CwBvh,
@@ -79,7 +79,7 @@ impl<'a> Peers<'a> {
         }
     }
 
-    /// The nearest hit, in lengths of the direction.
+    /// The ray parameter of the nearest hit, in lengths of the direction.
     fn cast(&self, caster: Caster, ray: &Ray) -> Option<f64> {
         match caster {
             Caster::Ours => {
@@ -107,14 +107,14 @@ impl<'a> Peers<'a> {
             }
             Caster::Bvh => {
                 let direction = Vector3::from(ray.direction.to_array());
-                // This peer makes the direction a unit vector.
+                // This peer normalizes the direction.
                 let unit = 1.0 / f64::from(direction.norm());
                 let ray = BvhRay::new(Point3::from(ray.origin.to_array()), direction);
                 let hits = self
                     .bvh
                     .traverse_iterator(&ray, &self.bvh_triangles)
                     .map(|triangle| {
-                        // Its test sees a face from the front only.
+                        // Its test culls back faces.
                         let [a, b, c] = &triangle.corners;
                         let front = ray.intersects_triangle(a, b, c).distance;
                         front.min(ray.intersects_triangle(a, c, b).distance)
@@ -131,7 +131,7 @@ fn truth(mesh: &Mesh, ray: &Ray) -> Option<f64> {
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let hits = (0..mesh.triangles().len()).filter_map(|face| {
         let [a, b, c] = mesh.corners(face).map(|v| v.as_dvec3());
-        // Past everything: the meshes are a few metres wide, and directions reach across.
+        // The segment extends beyond the mesh: the meshes are a few metres wide, and directions reach across.
         segment_meets_triangle(origin, origin + 4.0 * direction, [a, b, c]).then(|| {
             let normal = (b - a).cross(c - a);
             (a - origin).dot(normal) / direction.dot(normal)
@@ -156,10 +156,10 @@ fn around(mesh: &Mesh, count: usize) -> Vec<Ray> {
     rays.collect()
 }
 
-/// A point in the cow's belly, of no special coordinates.
+/// A point in the cow's belly with generic coordinates.
 const INSIDE: Vec3 = Vec3::new(0.031, 0.017, 0.023);
 
-/// From inside at corners and at the middles of edges; in a closed mesh each of them hits.
+/// Rays from inside towards corners and middles of edges; in a closed mesh each of them hits.
 fn at_features(mesh: &Mesh, most: usize) -> [Vec<Ray>; 2] {
     let from_inside = |target: Vec3| Ray {
         origin: INSIDE,
@@ -248,8 +248,7 @@ pub(crate) fn bench(c: &mut Criterion, solids: &Solids, scope: Scope) -> Table {
     table
 }
 
-/// Whether that point is inside: a ray that no corner or edge is in the way of crosses an odd
-/// number of faces.
+/// Whether that point is inside: a ray that meets no corner or edge crosses an odd number of faces.
 fn is_inside(mesh: &Mesh) -> bool {
     let far = DVec3::new(31.0, 17.0, 7.0);
     let crossed = (0..mesh.triangles().len()).filter(|&face| {

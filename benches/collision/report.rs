@@ -1,4 +1,4 @@
-//! Where results go: the terminal, files for people and for programs, the picture in `docs`.
+//! Output of the results: to the terminal, to text and data files, and to the plot in `docs`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -7,18 +7,18 @@ use crate::contact::Outcome;
 use crate::growth::Series;
 use crate::table::Table;
 
-/// Prints the tables that have rows, and leaves them as Markdown.
+/// Prints the tables that have rows, and writes them as Markdown.
 pub(crate) fn publish(tables: &[Table]) {
     let tables = tables.iter().filter(|table| !table.rows.is_empty());
     let text: String = tables.map(|table| table.markdown() + "\n").collect();
-    // Criterion may have been asked for a list only.
+    // Criterion may only list the benchmarks.
     if !text.is_empty() {
         println!("\n{text}");
         save(&target().join("contact.md"), &text);
     }
 }
 
-/// Leaves the figures as comma-separated values, in seconds.
+/// Writes the figures as comma-separated values, in seconds.
 pub(crate) fn record(contact: &[Outcome], growth: &[Series]) {
     let mut text = String::from("what,meshes,method,seconds,wrong,placements\n");
     for o in contact {
@@ -40,7 +40,7 @@ pub(crate) fn record(contact: &[Outcome], growth: &[Series]) {
     }
 }
 
-/// Leaves the picture where the README shows it.
+/// Writes the plot to the place from which the README includes it.
 pub(crate) fn draw(svg: &str) {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
     save(&docs.join("naive-vs-bvh.svg"), svg);
@@ -50,7 +50,7 @@ fn save(path: &Path, text: &str) {
     std::fs::write(path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
 }
 
-/// The folder that cargo builds in: this program is in its `release/deps`.
+/// Cargo's build folder: this program is in its `release/deps`.
 fn target() -> PathBuf {
     let program = std::env::current_exe().expect("a program has a path");
     let target = program.ancestors().nth(3).expect("cargo builds in target");

@@ -1,15 +1,15 @@
-//! Times many cases under criterion, and keeps the time of each.
+//! Times many cases under criterion, and stores the time of each.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkGroup, Criterion, measurement::WallTime};
 
-/// A case is run so often in a row that the clock, of some 20 ns, is not what is measured.
+/// A case is repeated for this time, so that the clock, with a resolution of some 20 ns, does not dominate.
 const AT_LEAST: Duration = Duration::from_micros(5);
 const MOST_REPEATS: u32 = 16;
 
-/// Short runs, since there are many: a median over hundreds of repeats is steady after that.
+/// Runs are short, because there are many; a median over hundreds of repetitions is stable then.
 pub(crate) fn criterion() -> Criterion {
     Criterion::default()
         .warm_up_time(Duration::from_millis(150))
@@ -26,8 +26,8 @@ pub(crate) struct Swept<T> {
     pub(crate) times: Vec<f64>,
 }
 
-/// Times each case; criterion sees one pass over all of them as an iteration. The cases are made
-/// only if criterion does not pass the benchmark over.
+/// Times each case; one iteration of criterion is one pass over all cases. The cases are made only if criterion runs
+/// the benchmark.
 pub(crate) fn sweep<T, R>(
     group: &mut BenchmarkGroup<'_, WallTime>,
     id: &str,

@@ -1,4 +1,4 @@
-//! Tables for people, and figures as they read best.
+//! Tables, and figures in a readable form.
 
 use std::fmt::Write;
 
@@ -17,7 +17,7 @@ impl Table {
         }
     }
 
-    /// Aligned, so that it reads well in a terminal too.
+    /// Aligned, so that it is readable in a terminal too.
     pub(crate) fn markdown(&self) -> String {
         let widths: Vec<usize> = (0..self.header.len())
             .map(|i| {
@@ -29,7 +29,7 @@ impl Table {
         let mut line = |cells: &[String]| {
             for (i, (cell, &width)) in cells.iter().zip(&widths).enumerate() {
                 let pad = " ".repeat(width - cell.chars().count());
-                // The first column is of names, the others of figures.
+                // The first column has names, the others figures.
                 let cell = if i == 0 {
                     format!("{cell}{pad}")
                 } else {
@@ -55,7 +55,7 @@ impl Table {
     }
 }
 
-/// A time in the unit that suits it, three digits.
+/// A time in a suitable unit, with three digits.
 pub(crate) fn time(seconds: f64) -> String {
     if seconds.is_nan() {
         return "-".into();

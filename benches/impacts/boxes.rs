@@ -1,4 +1,4 @@
-//! Our broad phase beside the tree that Rapier's is made of: pairs of swept boxes, step by step.
+//! Our broad phase compared with the tree in Rapier: pairs of swept boxes, step by step.
 
 use cases::scenes::{Form, HALF, crowd};
 use criterion::Criterion;
@@ -11,7 +11,7 @@ use crate::row;
 use crate::table::{Table, three_digits, time};
 use crate::watch;
 
-// The very code of the library, where it is private, with its tests, which nothing runs here.
+// The library's own code, which is private there. Its tests are included but not run here.
 #[allow(
     dead_code,
     unused_imports,
@@ -21,13 +21,13 @@ use crate::watch;
 mod broad;
 use broad::{Broad, Swept};
 
-/// Boxes, and steps that are timed.
+/// Numbers of boxes, and of timed steps.
 const SIZES: [(usize, u32); 3] = [(100, 120), (1_000, 120), (10_000, 30)];
 
-/// By how much leaves of the other tree are widened, m.
+/// The margins of the leaves of the other tree, m.
 const MARGINS: [f32; 2] = [0.0, 0.1];
 
-/// Boxes in each step, in turns, and how many pairs meet in all steps so far.
+/// The boxes of each step, used in turn, and the number of pairs that meet in all steps so far.
 struct Run<'a, T> {
     steps: &'a [Vec<Swept>],
     step: usize,
@@ -95,7 +95,7 @@ fn meet(one: &Swept, other: &Swept) -> bool {
     one.min.cmple(other.max).all() && other.min.cmple(one.max).all()
 }
 
-/// What a crowd of cubes sweeps in each step, if the cubes pass through each other.
+/// The swept boxes of a crowd of cubes in each step, if the cubes pass through each other.
 fn boxes(count: usize, steps: u32) -> Vec<Vec<Swept>> {
     let (scene, half_box) = crowd(count, &Form::Cube(HALF));
     let half_box = half_box - HALF;
@@ -153,7 +153,7 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
         for margin in MARGINS {
             let mut run = theirs(margin);
             steps.iter().for_each(|_| run.step());
-            // Without a margin it rounds boxes to f32, some of them inward.
+            // Without a margin it rounds boxes to f32, some of them inwards.
             let lost = known.met.abs_diff(run.met);
             assert!(lost as f64 <= 1e-5 * known.met as f64, "{margin}: {lost}");
             let name = format!("parry, margin {margin} m");

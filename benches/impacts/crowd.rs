@@ -8,8 +8,8 @@ use crate::table::{Table, three_digits, time};
 use crate::watch;
 use crate::{row, short};
 
-/// Relative error of the energy after some steps, how far out of the box the worst body is, and
-/// how many impacts there were, where that is known.
+/// Relative error of the energy after some steps, the greatest distance of a body outside the box, and the number of
+/// impacts, if known.
 struct End {
     energy: f64,
     outside: f64,
@@ -27,7 +27,7 @@ impl End {
     }
 }
 
-/// Bodies, steps that are timed, steps after which errors are measured.
+/// Numbers of bodies, of timed steps, and of steps after which errors are measured.
 const SIZES: [(usize, u32, u32); 3] = [(100, 120, 600), (1_000, 60, 120), (10_000, 10, 30)];
 
 pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
@@ -46,7 +46,7 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
     );
     let mut group = criterion.benchmark_group("impacts/crowd");
     for (count, timed, steps) in SIZES {
-        // Without `--bench` all runs once, unoptimised perhaps.
+        // Without `--bench` everything runs once, possibly unoptimised.
         if count > 100 && !watch::is_timed() {
             continue;
         }

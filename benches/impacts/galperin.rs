@@ -1,5 +1,5 @@
-//! A heavy block drives a light one against a wall: floor(π 10^k) impacts. Engines that step have
-//! nothing to say here.
+//! A heavy block drives a light one against a wall: floor(π 10^k) impacts. Engines with fixed steps cannot be compared
+//! here.
 
 use cases::hard_cases::chains::galperin;
 use criterion::Criterion;

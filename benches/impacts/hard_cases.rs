@@ -1,4 +1,4 @@
-//! The hard cases of the crate `cases`, each once: how long it takes to find what its row expects.
+//! The hard cases of the crate `cases`, each once: the time until it reaches the expected verdict.
 
 use cases::CASES;
 
@@ -6,9 +6,9 @@ use crate::row;
 use crate::table::{Table, time};
 use crate::watch;
 
-/// Those that come out otherwise are beside the table.
+/// Returns the table, and the cases with other verdicts.
 pub(crate) fn bench() -> (Option<Table>, Vec<String>) {
-    // Unoptimised, tests try them all.
+    // Tests already try them all without optimisation.
     if !watch::is_timed() || !watch::is_asked("impacts/cases") {
         return Default::default();
     }

@@ -1,4 +1,4 @@
-//! Bodies that fall on a heap between walls, and one that lies on a mesh.
+//! Bodies that fall and form a heap between walls, and one that lies on a mesh.
 
 use std::sync::Arc;
 
@@ -10,12 +10,12 @@ use crate::table::{Table, three_digits, time};
 use crate::watch;
 use crate::{row, short};
 
-/// Two seconds, in which they fall and come together, and two in which what can settles.
+/// The two seconds in which bodies fall and pile up, and the two in which they settle.
 const MOVING: usize = 120;
 const SETTLED: usize = 120;
 const WALLS: usize = 5;
 
-/// Time after which no more steps of a run are begun, s.
+/// The time after which no further steps of a run are started, s.
 const BUDGET: f64 = 12.0;
 
 fn half_of(form: &Form) -> DVec3 {
@@ -30,18 +30,18 @@ fn cow() -> Form {
     Form::Mesh(Arc::new(mesh))
 }
 
-/// What a run has shown.
+/// The results of a run.
 #[derive(Default)]
 struct Run {
-    /// Mean time of a step while they fall and come together, and after that, s.
+    /// Mean time of a step while bodies fall and pile up, and after that, s.
     moving: f64,
     settled: f64,
     worst: f64,
     steps: usize,
-    /// Most that the energy has risen in a step, and the energy at the start, J.
+    /// The greatest rise of the energy in a step, and the initial energy, J.
     rise: f64,
     start: f64,
-    /// How deep a body has been in another one or in a wall at the end of a step, m.
+    /// The greatest depth of overlap of a body with another one or with a wall at the end of a step, m.
     depth: f64,
 }
 
@@ -80,9 +80,9 @@ fn run(scene: &Scene, mut engine: impl Engine) -> Run {
     run
 }
 
-/// Those of ours that are wrong, by what is wrong with them, beside the tables.
+/// Returns the tables, and the errors of our engine.
 pub(crate) fn bench() -> (Vec<Table>, Vec<String>) {
-    // Once, as a test, it takes a second; unoptimised a minute.
+    // As a test it would take a second, unoptimised a minute.
     if !watch::is_timed() || !watch::is_asked("impacts/heap") {
         return Default::default();
     }
@@ -161,7 +161,7 @@ fn heaps(wrong: &mut Vec<String>) -> Table {
     table
 }
 
-/// A square floor of so many by so many squares of two triangles, 20 m wide, level or with hills.
+/// A square floor of so many by so many squares of two triangles each, 20 m wide, level or hilly.
 fn floor(squares: u32, height: f32) -> Arc<Mesh> {
     let place = |i: u32, j: u32| {
         let at = |k: u32| (k as f32 / squares as f32 - 0.5) * 20.0;
@@ -178,7 +178,7 @@ fn floor(squares: u32, height: f32) -> Arc<Mesh> {
     Arc::new(Mesh::new(vertices.collect(), triangles.collect()).expect("a floor"))
 }
 
-/// Steps until it lies, and those that are timed.
+/// The number of steps until the body lies, and that of timed steps.
 const LANDING: usize = 120;
 const LYING: usize = 300;
 
@@ -234,7 +234,7 @@ fn on_a_mesh() -> Table {
     table
 }
 
-/// Mean time of a step of what has landed, s.
+/// Mean time of a step after landing, s.
 fn lying(mut engine: impl Engine) -> f64 {
     (0..LANDING).for_each(|_| watch::step(&mut engine));
     let clock = watch::now();

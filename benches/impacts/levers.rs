@@ -1,4 +1,4 @@
-//! Forces at points of bodies that turn: time of a step beside the error at a known end.
+//! Forces at points of turning bodies: time of a step, and error of a known final state.
 
 use cases::problems::Effort;
 use cases::turning::levers::LEVERS;
@@ -9,7 +9,7 @@ use crate::table::{Table, three_digits, time};
 use crate::watch;
 use crate::{row, short};
 
-/// Methods, and the most that each may err by at 60 Hz, m.
+/// Methods, with the largest error allowed at 60 Hz, m.
 const METHODS: [(&str, f64); 4] = [
     ("velocity-verlet", 2e-2),
     ("symplectic-4", 1e-5),

@@ -1,6 +1,6 @@
-//! Continuous collisions beside Rapier: time, impacts found, errors.
+//! Continuous collisions compared with Rapier: time, impacts found, errors.
 //!
-//! `cargo bench -- impacts` runs all, prints tables and leaves them in `target/impacts.md`;
+//! `cargo bench -- impacts` runs everything, prints tables and writes them to `target/impacts.md`;
 //! `cargo bench -- impacts/crowd` runs a part, `cargo bench -- impacts/heap` the heaps alone,
 //! `cargo bench -- impacts/cases` the hard cases. It fails if an answer of ours is wrong.
 
@@ -13,7 +13,7 @@ mod levers;
 mod one;
 mod overlap;
 mod pair;
-// For the unit tests of what [`boxes`] takes from sim-core.
+// For the unit tests of the code of sim-core that [`boxes`] includes.
 #[cfg(test)]
 #[allow(dead_code, reason = "other unit tests of sim-core use the rest")]
 #[path = "../../crates/sim-core/src/test_random.rs"]
@@ -47,7 +47,7 @@ fn main() {
     wrong.extend(others);
     let tables = tables.iter().flatten().chain(&heaps).chain(&cases);
     let text: String = tables.map(|table| table.markdown() + "\n").collect();
-    // Without `--bench` all runs once, as a test.
+    // Without `--bench` everything runs once, as a test.
     if !text.is_empty() && watch::is_timed() {
         println!("\n{text}");
         publish(&text);
@@ -55,7 +55,7 @@ fn main() {
     assert!(wrong.is_empty(), "wrong answers of ours: {wrong:#?}");
 }
 
-/// Leaves the tables in the folder that cargo builds in: this program is in its `release/deps`.
+/// Writes the tables to cargo's build folder: this program is in its `release/deps`.
 fn publish(text: &str) {
     let program = std::env::current_exe().expect("a program has a path");
     let target = program.ancestors().nth(3).expect("cargo builds in target");
@@ -72,7 +72,7 @@ fn short(error: f64) -> String {
     }
 }
 
-/// A row of names and figures, which is what most tables here are of.
+/// Adds a row of names and figures.
 fn row(table: &mut Table, cells: &[&str]) {
     table.rows.push(cells.iter().map(|&c| c.into()).collect());
 }

@@ -1,5 +1,5 @@
-//! What each aspect costs: a body that is alone, that has a shape, that might meet another, that
-//! does; and the bouncing ball.
+//! The cost of each aspect: a single body, a body with a shape, one that might collide, and one that does; and the
+//! bouncing ball.
 
 use cases::scenes::{Form, Item, Rapier, Scene, Who, bouncing_ball, world};
 use criterion::Criterion;
@@ -12,7 +12,7 @@ use crate::{row, short};
 
 const STEPS: u32 = 2_000;
 
-/// Scenes of what may cost something, and how they are asked.
+/// Scenes with the aspects, and their collision modes.
 fn aspects() -> Vec<(&'static str, Scene, Collision)> {
     let (cow, velocity) = (Form::Mesh(builtin("cow.obj")), 0.3 * DVec3::X);
     let point = Item {
@@ -23,7 +23,7 @@ fn aspects() -> Vec<(&'static str, Scene, Collision)> {
     let far = Item::new(cow, 1e3 * DVec3::Y, -velocity);
     let one = |item: &Item| Scene::new(vec![item.clone()]);
     let two = |item: &Item| Scene::new(vec![item.clone(), far.clone()]);
-    // A cube that goes to and fro between two walls, with an impact a step.
+    // A cube that moves to and fro between two walls, with one impact per step.
     let busy = Scene::new(vec![
         Item::new(Form::Wall(DVec3::X), -DVec3::X, DVec3::ZERO),
         Item::new(Form::Wall(-DVec3::X), DVec3::X, DVec3::ZERO),
@@ -88,7 +88,7 @@ pub(crate) fn bench(criterion: &mut Criterion) -> Option<Table> {
     (!table.rows.is_empty()).then_some(table)
 }
 
-/// Of ours and of theirs: height, energy.
+/// Errors of height and energy, for our engine and Rapier.
 fn bounce_errors() -> [String; 4] {
     let known = bouncing_ball();
     let [ours, theirs] = [Who::Continuous, Who::Rapier].map(|who| known.run(who));

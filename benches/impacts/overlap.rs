@@ -1,10 +1,10 @@
-//! How deep bodies are in each other, measured alike for every engine, from where it has put them.
+//! The depth of overlaps, measured alike for every engine from the positions of the bodies.
 
 use cases::scenes::{Form, Item, Scene};
 use sim_core::collide::tree::intersect;
 use sim_core::{Bvh, DVec3};
 
-/// Bodies of a scene as they are measured: each kind of mesh has its tree.
+/// The bodies of a scene in the form for measuring: each kind of mesh has its tree.
 pub(crate) struct Depths<'a> {
     items: &'a [Item],
     half: Vec<DVec3>,
@@ -13,7 +13,7 @@ pub(crate) struct Depths<'a> {
 }
 
 impl Depths<'_> {
-    /// Of a scene whose first bodies are immovable, and whose meshes are all the same one.
+    /// For a scene whose first bodies are immovable, and whose meshes are all the same.
     pub(crate) fn new(scene: &Scene, fixed: usize) -> Depths<'_> {
         let half = scene.items.iter().map(|item| item.half()).collect();
         let mesh = scene.items.iter().find_map(|item| match &item.form {
@@ -28,7 +28,7 @@ impl Depths<'_> {
         }
     }
 
-    /// How deep a body is in another one or in a wall, m.
+    /// The greatest depth of overlap of a body with another one or with a wall, m.
     pub(crate) fn deepest(&self, position: impl Fn(usize) -> DVec3) -> f64 {
         let at: Vec<DVec3> = (0..self.items.len()).map(position).collect();
         let mut deepest: f64 = 0.0;
@@ -37,7 +37,7 @@ impl Depths<'_> {
                 deepest = deepest.max(self.in_wall(wall, place, half));
             }
         }
-        // From left to right, so that only what is side by side is looked at.
+        // Sorted from left to right, so that only neighbouring bodies are compared.
         let mut order: Vec<usize> = (self.fixed..at.len()).collect();
         order.sort_unstable_by(|&i, &j| at[i].x.total_cmp(&at[j].x));
         for (k, &i) in order.iter().enumerate() {
@@ -71,7 +71,7 @@ impl Depths<'_> {
         }
     }
 
-    /// The least way that takes the surfaces apart, along an axis or from middle to middle.
+    /// The shortest translation that separates the surfaces, along an axis or along the line of centres.
     fn of_meshes(&self, offset: DVec3, reach: DVec3) -> f64 {
         let Some(tree) = &self.tree else { return 0.0 };
         if !intersect(tree, tree, offset) {

@@ -1,5 +1,4 @@
-//! Two bodies head on, at rest and coming: impacts found over sub-step phases, and the time of a
-//! step averaged over flight and contact.
+//! Two bodies head on: impacts found over sub-step phases, and the time of a step averaged over flight and contact.
 
 use cases::scenes::{Engine, Form, Pair, Rapier, Scene, continuous, world};
 use criterion::Criterion;
@@ -12,7 +11,7 @@ use crate::{row, short};
 
 const PHASES: u32 = 16;
 const SPEEDS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
-/// Steps from the start to the impact, and in all.
+/// The number of steps from the start to the impact, and in all.
 const BEFORE: u32 = 30;
 const STEPS: u32 = 60;
 
@@ -29,15 +28,15 @@ fn pairs() -> [(&'static str, Pair); 3] {
     ]
 }
 
-/// They touch at a phase of a step.
+/// The scene in which they touch at a phase of a step.
 fn scene(pair: &Pair, speed: f64, phase: f64) -> Scene {
     pair.scene(speed, (f64::from(BEFORE) + phase) / 60.0)
 }
 
-/// What came out over all phases at a speed.
+/// The results over all phases at a speed.
 #[derive(Clone, Copy, Default)]
 struct Found {
-    /// Phases in which the body at rest was set in motion.
+    /// The number of phases in which the body at rest was set in motion.
     impacts: u32,
     /// Largest relative error of the kinetic energy.
     energy: f64,

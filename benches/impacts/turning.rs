@@ -1,4 +1,4 @@
-//! Bodies that turn: time of a step, and what becomes of the energy.
+//! Turning bodies: time of a step, and error of the energy.
 
 use cases::scenes::{Engine, Form, HALF, Item, Rapier, Scene, continuous, crowd};
 use criterion::Criterion;
@@ -12,14 +12,14 @@ use crate::{row, short};
 struct Case {
     name: &'static str,
     scene: Scene,
-    /// Steps that are timed, and those after which the energy is compared.
+    /// The number of timed steps, and of steps after which the energy is compared.
     timed: u32,
     steps: u32,
-    /// Most that ours may be off by, relative; infinite where impacts take energy.
+    /// The largest relative error allowed for our engine; infinite if impacts dissipate energy.
     most: f64,
 }
 
-/// One comes along a way at 10 m/s and turns at 5 rad/s, the other one is at rest.
+/// One body approaches along a direction with 10 m/s and spins with 5 rad/s; the other one is at rest.
 fn hit(forms: [Form; 2], from: f64) -> Scene {
     let way = DVec3::new(1.0, 0.05, 0.1).normalize();
     let [first, second] = forms;
@@ -39,7 +39,7 @@ fn turning(scene: Scene) -> Scene {
     }
 }
 
-/// Eight cubes above each other in pairs of pairs, that fall into a bin.
+/// Eight cubes in two layers of two by two, which fall into a bin.
 fn bin() -> Scene {
     let walls = [DVec3::X, -DVec3::X, DVec3::Z, -DVec3::Z, DVec3::Y];
     let mut items: Vec<Item> = walls
@@ -142,7 +142,7 @@ fn energy(engine: &dyn Engine, scene: &Scene) -> f64 {
     engine.kinetic_energy() - heights.sum::<f64>()
 }
 
-/// Error of the energy at the end, and the most that a step has brought, relative to the start.
+/// The final error of the energy, and the greatest error of a step, relative to the start.
 fn errors(mut engine: impl Engine, case: &Case) -> (f64, f64) {
     let start = energy(&engine, &case.scene);
     let (mut before, mut gained) = (start, 0.0_f64);

@@ -1,4 +1,4 @@
-//! Times runs of many steps under criterion, and keeps the time of a step.
+//! Times runs of many steps under criterion, and stores the time of a step.
 
 use std::time::{Duration, Instant};
 
@@ -15,40 +15,38 @@ pub(crate) fn criterion() -> Criterion {
         .configure_from_args()
 }
 
-/// Without cargo bench's `--bench` criterion runs everything once, as a test.
+/// Without `--bench` of cargo bench, criterion runs everything once, as a test.
 pub(crate) fn is_timed() -> bool {
     std::env::args().any(|arg| arg == "--bench")
 }
 
-/// Whether a part that criterion does not time is asked for: as criterion has it, by a filter that is
-/// in its name.
+/// Whether a part that criterion does not time is selected: as in criterion, by a filter that occurs in its name.
 pub(crate) fn is_asked(part: &str) -> bool {
     let filter = std::env::args().skip(1).find(|arg| !arg.starts_with("--"));
     filter.is_none_or(|filter| part.contains(&filter))
 }
 
-/// Time of the processor that this thread has had, s, so that the longest step is not that in which
-/// another program had it.
+/// Processor time of this thread, s, so that a step interrupted by another program does not count as the longest.
 #[cfg(unix)]
 pub(crate) fn now() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Time on the wall since the first call, s.
+/// Wall-clock time since the first call, s.
 #[cfg(not(unix))]
 pub(crate) fn now() -> f64 {
     static FIRST: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
     FIRST.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// A step of an engine, which none refuses.
+/// Makes a step of an engine; no engine may fail.
 pub(crate) fn step(engine: &mut impl Engine) {
     engine.step().expect("a step");
 }
 
-/// Median time of a step over runs of `steps`, s, each from a fresh start and after a step to warm
-/// up; `None` if criterion passes it over.
+/// Median time of a step over runs of `steps` steps, s, each from a new start and after one warm-up step; `None` if
+/// criterion skips it.
 pub(crate) fn time<E: Engine>(
     group: &mut BenchmarkGroup<'_, WallTime>,
     id: &str,
@@ -58,7 +56,7 @@ pub(crate) fn time<E: Engine>(
     time_by(group, id, steps, start, step)
 }
 
-/// The same of something else that steps.
+/// The same for other objects that step.
 pub(crate) fn time_by<E>(
     group: &mut BenchmarkGroup<'_, WallTime>,
     id: &str,

@@ -1,4 +1,4 @@
-//! What the world says when a step is too long: which body, at which step, and how long it may be.
+//! The errors of a world when a step is too long: the body, the step, and the limit of the step length.
 
 use cases::hard_cases::stiff_spring;
 use cases::worlds::{named_limit, spring_to_origin};
@@ -88,7 +88,7 @@ fn a_blow_up_names_the_step_for_the_motion_before_it() {
         ("symplectic-euler", 2.0),
         ("rk4", 2.785_293_563_4),
     ] {
-        // The rate of decay of a disturbance is 2 c |v| / m.
+        // The decay rate of a disturbance is 2 c |v| / m.
         let limit = stable / (2.0 * 2.0 * 900.0);
         for dt in [0.02, 1.0, 10.0 * limit] {
             let error = failure(&mut dragged(method(name), dt, 900.0, 0.0), 60);
@@ -96,12 +96,12 @@ fn a_blow_up_names_the_step_for_the_motion_before_it() {
             let said = named_limit(&error).unwrap_or_else(|| panic!("{error}"));
             assert!((said / limit - 1.0).abs() < 1e-6, "{name}, {dt} s: {error}");
         }
-        // From rest it gets stiff on its way: at a speed of 10 m/s, where drag holds the force.
+        // From rest the problem becomes stiff: at 10 m/s, where drag balances the force.
         let limit = stable / (2.0 * 2.0 * 10.0);
         for dt in [1.05 * limit, 2.0 * limit, 20.0 * limit] {
             let mut world = dragged(method(name), dt, 0.0, 200.0);
             let Some(error) = failure(&mut world, 10_000) else {
-                // It may go round a place of rest that it cannot reach.
+                // It may circle around a position of rest that it cannot reach.
                 assert!(dt < 4.0 * limit, "{name} goes on at {dt} s");
                 continue;
             };
@@ -118,7 +118,7 @@ fn a_blow_up_names_the_step_for_the_motion_before_it() {
 
 type Start = fn(&'static Method, f64) -> World;
 
-/// Scenes that blow up where `dt` is too long.
+/// Scenes that blow up if `dt` is too long.
 const BLOW_UPS: [(&str, Start); 6] = [
     ("drag", |method, dt| dragged(method, dt, 900.0, 0.0)),
     ("drag from rest", |method, dt| {
@@ -148,7 +148,7 @@ const BLOW_UPS: [(&str, Start); 6] = [
             &[spring],
         )
     }),
-    // The one that blows up is neither the first nor, at first, the fastest.
+    // The body that blows up is neither the first nor, initially, the fastest.
     ("a slow one among others", |method, dt| {
         let bodies = [
             point(DVec3::ZERO, 100.0 * DVec3::Z),
@@ -175,7 +175,7 @@ const BLOW_UPS: [(&str, Start); 6] = [
 fn with_the_step_that_a_blow_up_names_the_same_run_does_not_blow_up() {
     let mut reported = 0;
     for (scene, start) in BLOW_UPS {
-        // Those with error control have no limit.
+        // Methods with error control have no limit.
         for method in METHODS.into_iter().filter(|method| !method.adaptive) {
             let place = |dt: f64| format!("{scene}, {}, {dt:.3e} s", method.name);
             for dt in [5e-3, 1.0 / 60.0, 0.3] {
@@ -183,7 +183,7 @@ fn with_the_step_that_a_blow_up_names_the_same_run_does_not_blow_up() {
                     continue;
                 };
                 let Some(said) = named_limit(&error).filter(|&said| said > 0.0) else {
-                    // Unstable at every step, or no motion that an implicit method could find.
+                    // The method is unstable at every step, or there is no motion that an implicit method could find.
                     let is_known = matches!(error, StepError::NotConverged { .. })
                         || method.stable_dt(1e6, 0.0) == 0.0;
                     assert!(is_known, "{}: {error}", place(dt));

@@ -1,4 +1,4 @@
-//! Every method on every force, chains of forces, and what editing them does.
+//! Every method with every force, chains of forces, and edits of forces.
 
 use std::slice;
 
@@ -247,7 +247,7 @@ fn a_stiff_chain_of_a_thousand_steps_at_sixty_hertz() {
         step(&mut world, 60);
         let gain = (energy(&world) - start) / world.kinetic_energy();
         assert!(gain < 1e-3, "{name}: {gain}");
-        // The free end falls as if it hung on nothing: news of the anchor has not reached it.
+        // The free end falls freely, because no signal from the anchor has reached it yet.
         let end = world.position(999);
         assert!((end.y / (-0.5 * 9.81) - 1.0).abs() < 0.05, "{name}: {end}");
     }

@@ -1,5 +1,5 @@
-//! Worlds under forces against exact solutions: what is beside the hard cases of `cases`, to whose
-//! verdicts `crates/cases/tests/verdicts.rs` holds every method.
+//! Worlds under forces against exact solutions, in addition to the hard cases of `cases`, whose verdicts
+//! `crates/cases/tests/verdicts.rs` checks for every method.
 
 mod blow_ups;
 mod forces;

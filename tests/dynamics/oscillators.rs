@@ -1,4 +1,4 @@
-//! An oscillator over a thousand periods: what methods keep at every step.
+//! An oscillator over a thousand periods: the invariants of methods at every step.
 
 use cases::hard_cases::oscillator;
 use kit::worlds::step;

@@ -1,4 +1,4 @@
-//! Planets and stars, for long and near each other.
+//! Planets and stars, over long times and in close encounters.
 
 use std::f64::consts::PI;
 
@@ -48,7 +48,7 @@ fn adaptive_worlds_come_back_after_a_hundred_orbits() {
     }
 }
 
-/// The book prints digits that are right to some 1e-11.
+/// The digits printed in the book are accurate to about 1e-11.
 #[test]
 fn the_pleiades_end_where_the_book_says() {
     let problems = problems::all();
@@ -79,7 +79,7 @@ fn a_body_at_the_centre_of_attraction_is_an_error_and_not_a_number() {
         let mut world = kepler_world(method, 0.6, 100);
         world.set_position(0, DVec3::ZERO).expect("a position");
         let velocity = world.velocity(0);
-        // Some methods look at no force where the step begins.
+        // Some methods do not evaluate forces at the start of the step.
         match world.step() {
             Ok(()) => assert!(world.position(0).is_finite() && world.velocity(0).is_finite()),
             Err(error) => {

@@ -1,4 +1,4 @@
-//! Forces that no world takes.
+//! Forces that every world refuses.
 
 use cases::hard_cases::stiff_spring;
 use kit::worlds::step;

@@ -1,4 +1,4 @@
-//! Worlds as these tests need them.
+//! Worlds for these tests.
 
 use cases::worlds::{settings, under};
 use sim_core::{Body, DVec3, Force, Method, StepError, World};

@@ -1,4 +1,4 @@
-//! A mesh that lies on another one, while both fall on a floor: energy does not grow.
+//! A mesh lies on another one while both fall on a floor: energy does not grow.
 
 use kit::bodies::{body, immovable, wall};
 use kit::random::Random;
@@ -24,7 +24,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         .map(|shape| shape.mesh().map(|mesh| Bvh::build(mesh)));
     let trees: Option<Vec<Bvh>> = trees.collect();
     let trees = trees?;
-    // Let down on it from above.
+    // Lowered onto it from above.
     let from = DVec3::new(random.from(-0.3, 0.3), 2.0, random.from(-0.3, 0.3));
     let way = DVec3::Y * -4.0;
     let time = time_of_impact(&trees[0], &trees[1], from, way)?;
@@ -89,7 +89,7 @@ fn what_lies_on_what_falls_gains_nothing() {
     judge(150, case);
 }
 
-/// A body at rest on others gives on an impulse larger than those of its own speed: the step has an end.
+/// A body at rest on others transmits an impulse larger than those of its own speed; the step terminates.
 #[test]
 fn what_is_handed_on_has_an_end() {
     judge_from(2585, 1, case);

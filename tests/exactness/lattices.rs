@@ -1,5 +1,5 @@
-//! Sheets, channels and cubes whose coordinates are short numbers but for a rounding: many of them
-//! meet at once, in each other's planes, and on the border of a step.
+//! Sheets, channels and cubes whose coordinates are short numbers up to rounding: many of them meet simultaneously, in
+//! common planes, and at the boundary of a step.
 
 use kit::bodies::{body, wall};
 use kit::random::Random;
@@ -78,7 +78,7 @@ fn what_meets_at_once_keeps_energy_and_ends() {
     judge(1000, case);
 }
 
-/// Sheets that touch along their borders only, at the end of a step, lost up to 17 % of their energy.
+/// Sheets that touch only along their borders, at the end of a step, lost up to 17 % of their energy.
 #[test]
 fn sheets_that_touch_by_their_borders_keep_energy() {
     for scene in [6745, 28000, 139_961, 141_783] {

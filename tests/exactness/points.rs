@@ -1,4 +1,4 @@
-//! Points in closed meshes: they bounce, slide, and rest, and none gets out.
+//! Points in closed meshes: they bounce, slide and rest, and none escapes.
 
 use kit::bodies::{body, immovable};
 use kit::random::Random;
@@ -9,7 +9,7 @@ use sim_core::{Body, DVec3, Shape, collide::Place, collide::locate};
 use crate::scenes::{judge, judge_from, world};
 use crate::shapes::{cube, globe, tetrahedron};
 
-/// Points that share a room, each of which meets its walls only.
+/// The number of points in a room. Each collides only with its walls.
 const POINTS: usize = 25;
 
 fn case(random: &mut Random) -> Option<Result<(), String>> {
@@ -93,7 +93,7 @@ fn points_stay_in_their_rooms() {
     judge(25, case);
 }
 
-/// One slid over two triangles that are in one plane but for f32, and past the seam of a wall.
+/// A point slid over two triangles that are coplanar up to f32 rounding, and past the seam of a wall.
 #[test]
 fn points_that_slip_through_a_seam_are_put_back() {
     judge_from(288, 1, case);

@@ -1,4 +1,4 @@
-//! Two bodies that touch and move together, and a third that hits one of them: the blow goes through.
+//! Two bodies touch and move together, and a third hits one of them: the impulse passes through.
 
 use kit::bodies::body;
 use kit::random::Random;
@@ -7,12 +7,12 @@ use sim_core::{DVec3, Shape};
 use crate::scenes::{judge, step, world};
 use crate::shapes::cube;
 
-/// Three equal bodies in a row: the first hits the second, which touches the third. It takes over
-/// the motion of the others, and the third its.
+/// Three equal bodies in a row: the first hits the second, which touches the third. The first gets the velocity of the
+/// others, and the third gets that of the first.
 fn case(random: &mut Random) -> Option<Result<(), String>> {
     let axis = random.pick(&DVec3::AXES);
     let along = random.pick(&[axis, -axis]);
-    // Out of line, but with less than a side between them.
+    // Out of line, by less than an edge length.
     let aside = |random: &mut Random| match random.below(3) {
         0 => DVec3::ZERO,
         1 => random.pick(&[0.25, -0.3, 0.5]) * DVec3::new(along.z, along.x, along.y),

@@ -1,4 +1,4 @@
-//! How scenes of a kind are made and judged.
+//! Generates scenes of a kind and judges them.
 
 use std::env;
 
@@ -6,7 +6,7 @@ use kit::random::Random;
 use kit::worlds::{meeting, world_of};
 use sim_core::{Body, Collision, Impact, Settings, World};
 
-/// What has been judged of a kind.
+/// The statistics of a kind.
 #[derive(Default)]
 struct Tally {
     judged: usize,
@@ -14,13 +14,13 @@ struct Tally {
     shown: Vec<String>,
 }
 
-/// Judges scenes of a kind: as many as are asked for, or the usual number. A case says nothing of a
-/// scene that is none of its kind, as where bodies overlap from the start.
+/// Judges scenes of a kind: the requested number, or the usual one. A scene that does not belong to its kind, for
+/// example because bodies overlap from the start, does not count.
 pub(crate) fn judge(usual: usize, case: impl Fn(&mut Random) -> Option<Result<(), String>>) {
     judge_from(0, usual, case);
 }
 
-/// The same from another scene on.
+/// The same, beginning at another scene.
 pub(crate) fn judge_from(
     begin: usize,
     usual: usize,
@@ -38,7 +38,7 @@ pub(crate) fn judge_from(
         if tally.judged == count || index == first + 8 * count {
             break;
         }
-        // Each from its own number, so that it can be made again alone.
+        // Each scene has its own seed, so that it can be generated alone.
         let mut random = Random::splitmix((index as u64).wrapping_mul(0xd134_2543_de82_ef95));
         let Some(verdict) = case(&mut random) else {
             continue;
@@ -70,10 +70,10 @@ pub(crate) fn world(dt: f64, bodies: Vec<Body>) -> World {
     world_of(settings, bodies)
 }
 
-/// Impacts that a step of a few bodies may have.
+/// The most impacts of a step with a few bodies.
 const MOST: usize = 2_000;
 
-/// Steps, and says what is wrong after it: an error, impacts without end, or bodies that meet.
+/// Makes a step and checks it: for an error, too many impacts, or overlapping bodies.
 pub(crate) fn step(world: &mut World) -> Result<Vec<Impact>, String> {
     let mut impacts = Vec::new();
     let at = world.steps() + 1;

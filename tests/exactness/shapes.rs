@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use kit::shapes::{self, mesh, scaled};
 use sim_core::{DVec3, Shape, Vec3};
 
-/// A flat parallelogram about the origin, by two corners next to each other.
+/// A flat parallelogram centred at the origin, by two adjacent corners.
 pub(crate) fn sheet(p: Vec3, q: Vec3) -> Shape {
     mesh(vec![p, q, -p, -q], vec![[0, 1, 2], [0, 2, 3]])
 }
@@ -23,7 +23,7 @@ pub(crate) fn tetrahedron(size: f32) -> Shape {
     )
 }
 
-/// A channel along z, open at the top: a floor and two walls, all in one piece.
+/// A channel along z, open at the top: a floor and two walls in one mesh.
 pub(crate) fn channel(size: f32) -> Shape {
     let outline = [
         [-0.5, 0.0],
@@ -49,7 +49,7 @@ pub(crate) fn channel(size: f32) -> Shape {
     mesh(vertices, triangles)
 }
 
-/// A sphere of triangles, with so many rings from pole to pole.
+/// A triangulated sphere with so many rings from pole to pole.
 pub(crate) fn globe(rings: u32, radius: f32) -> Shape {
     let round = 2 * rings;
     let mut vertices = vec![Vec3::new(0.0, radius, 0.0)];

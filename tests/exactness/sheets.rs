@@ -1,5 +1,5 @@
-//! Flat sheets face on, at any tilt, that meet on the border of a step or beside it: they never pass
-//! through each other.
+//! Flat sheets face to face, at any tilt, that meet at or near the boundary of a step: they never pass through each
+//! other.
 
 use kit::bodies::body;
 use kit::random::Random;
@@ -8,7 +8,7 @@ use sim_core::{Body, BodyKind, DVec3, Vec3};
 use crate::scenes::{judge, step, world};
 use crate::shapes::sheet;
 
-/// A corner of a sheet: anywhere, or where many coordinates agree.
+/// A corner of a sheet: arbitrary, or with many equal coordinates.
 fn corner(random: &mut Random) -> Vec3 {
     match random.below(3) {
         0 => {
@@ -19,7 +19,7 @@ fn corner(random: &mut Random) -> Vec3 {
     }
 }
 
-/// A vector of any kind of numbers.
+/// A vector of numbers of any kind.
 fn vector(random: &mut Random, size: f64) -> DVec3 {
     match random.below(3) {
         0 => DVec3::ZERO,
@@ -31,19 +31,19 @@ fn vector(random: &mut Random, size: f64) -> DVec3 {
     }
 }
 
-/// Two sheets on their way to each other.
+/// Two sheets that approach each other.
 struct Pair {
     bodies: [Body; 2],
     /// From the second to the first.
     normal: DVec3,
-    /// At which they close, m/s.
+    /// The closing speed, m/s.
     speed: f64,
-    /// What coordinates there are, m.
+    /// The size of the coordinates, m.
     scale: f64,
     scene: String,
 }
 
-/// Sheets that meet after a time, to rounding, and then go on for half a step at least.
+/// Sheets that meet after a time, up to rounding, and then continue for at least half a step.
 fn pair(random: &mut Random, hit: f64, dt: f64) -> Option<Pair> {
     let (p, q) = (corner(random), corner(random));
     let normal = p.as_dvec3().cross(q.as_dvec3());
@@ -64,16 +64,16 @@ fn pair(random: &mut Random, hit: f64, dt: f64) -> Option<Pair> {
         true => vector(random, 1.0),
         false => DVec3::ZERO,
     };
-    // How far from the origin, m.
+    // The distance from the origin, m.
     let size = random.pick(&[0.25, 1.0, 10.0, 1000.0]);
     let far = vector(random, size);
     // From the middle to the nearest side.
     let (sides, area) = ([p - q, p + q], p.as_dvec3().cross(q.as_dvec3()).length());
     let least = area / f64::from(sides[0].length().max(sides[1].length()));
-    // So little aside that they overlap when they meet, and for as long after.
+    // The lateral displacement is so small that they overlap when they meet, and for as long after.
     let aside = 0.25 * least / (2.0 * hit + 3.0 * dt) * random.vector();
     let relative = aside.reject_from(normal) - speed * normal;
-    // Upon each other to the corner, or not.
+    // Corner exactly on corner, or not.
     let shift = match random.one_in(4) {
         true => DVec3::ZERO,
         false => (0.25 * least * random.vector()).reject_from(normal),
@@ -105,7 +105,7 @@ fn pair(random: &mut Random, hit: f64, dt: f64) -> Option<Pair> {
     })
 }
 
-/// A time at the end of a step, but for rounding, or beside it, or anywhere.
+/// A time at the end of a step up to rounding, or near it, or anywhere.
 fn hit(random: &mut Random, dt: f64) -> f64 {
     let steps = random.whole(1, 5) as f64;
     let by = match random.below(4) {
@@ -117,7 +117,7 @@ fn hit(random: &mut Random, dt: f64) -> f64 {
     steps * dt * (1.0 + by)
 }
 
-/// Some pairs that meet at one time but for rounding, each far away from the others.
+/// Some pairs that meet at one time up to rounding, each far away from the others.
 fn case(random: &mut Random) -> Option<Result<(), String>> {
     let dt = random.pick(&[1.0 / 16.0, 0.05, 1.0 / 60.0, 1.0]);
     let first_hit = hit(random, dt);

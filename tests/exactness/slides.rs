@@ -1,4 +1,4 @@
-//! Bodies put on oblique planes of triangles slide down them as if there were no seams.
+//! Bodies on oblique planes of triangles slide down them as if there were no seams.
 
 use kit::bodies::{body, immovable};
 use kit::random::Random;
@@ -11,8 +11,8 @@ use crate::shapes::{cube, globe};
 
 const G: f64 = 10.0;
 
-/// A plane of whole numbers through the origin with a normal of whole numbers, cut into triangles
-/// of which all corners lie in it exactly.
+/// A plane through the origin with an integer normal, cut into triangles whose corners have integer coordinates and lie
+/// in it exactly.
 fn slope(random: &mut Random, normal: [i64; 3]) -> Shape {
     let [a, b, c] = normal;
     let (u, w) = ([b, -a, 0], [0, c, -b]);
@@ -54,7 +54,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         1 => cube(size as f32),
         _ => globe(5, size as f32),
     };
-    // How far it reaches towards the plane.
+    // The support of the body towards the plane.
     let reach = match &shape {
         Shape::Mesh(mesh) => {
             let heights = mesh.vertices().iter().map(|v| -normal.dot(v.as_dvec3()));
@@ -86,7 +86,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         let moved = world.position(1) - at;
         let off = (moved - 0.5 * time * time * down).length();
         let wrong = (world.velocity(1) - time * down).length();
-        // It is put down on the rounding of its vertices.
+        // Its position is exact up to the rounding of its vertices.
         if off > 1e-6 || wrong > 1e-9 {
             return Err(format!("{off:e} m and {wrong:e} m/s off"));
         }

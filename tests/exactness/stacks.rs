@@ -1,4 +1,4 @@
-//! Bodies stacked flush at sizes that are no sums of powers of two: nobody moves.
+//! Bodies stacked without gaps, with sizes that are no sums of powers of two: none moves.
 
 use kit::bodies::{body, immovable, wall};
 use kit::random::Random;
@@ -15,7 +15,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         0 => Shape::Sphere { radius: half },
         _ => cube(half as f32),
     };
-    // As one writes it down, or as its vertices are.
+    // A decimal number, or the f32 of its vertices.
     let side = match random.one_in(2) {
         true => 2.0 * half,
         false => 2.0 * f64::from(half as f32),
@@ -55,7 +55,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
         }
         for (i, at) in places.iter().enumerate() {
             let off = (world.position(i + 1) - *at).length();
-            // Flush to the rounding of the vertices.
+            // Without gaps up to the rounding of the vertices.
             if off > 1e-6 * half * count as f64 {
                 return Err(format!("body {i} is {off:e} m off"));
             }

@@ -1,5 +1,5 @@
-//! Clumps of small stars that attract each other and hit: they go through no centre, and keep their energy, under
-//! methods that control their error as these do, and their momentum.
+//! Clumps of small stars that attract each other and collide. They pass through no centre, and conserve momentum and,
+//! under methods with error control, energy within the tolerance.
 
 use kit::bodies::body;
 use kit::random::Random;
@@ -9,7 +9,7 @@ use sim_core::{Body, DVec3, Force, METHODS, Method, Settings, World};
 
 use crate::scenes::{judge, step};
 
-/// Parts of what a method may err by in each of its steps that add up to the energy of many.
+/// The factor by which the error tolerances of single steps add up in the energy of many.
 const STEPS: f64 = 1e3;
 
 fn total(world: &World) -> f64 {
@@ -56,7 +56,7 @@ fn case(random: &mut Random) -> Option<Result<(), String>> {
     let force = Force::Gravitation { constant: 1.0 };
     world.add_force(force).expect("a force");
     let (energy, momentum) = (total(&world), world.momentum());
-    // The greatest kinetic energy and momenta that there have been, at an impact too.
+    // The greatest kinetic energy and momenta so far, at impacts too.
     let (mut fastest, mut push) = (energy.abs(), 0.0_f64);
     let verdict = (|| {
         for at in 1..=(2.0 * rate) as u64 {
@@ -100,8 +100,8 @@ fn clumps_of_stars_keep_what_they_have() {
     judge(25, case);
 }
 
-/// Two stars at rest 1 m apart, which meet when they touch and part as they came; a method of a fixed step that
-/// finds no motion there says so, of whom, and what to do.
+/// Two stars at rest 1 m apart, which meet when they touch and separate as they came. A method with a fixed step that
+/// finds no motion there reports an error with the bodies and a remedy.
 #[test]
 fn stars_head_on_part_again_or_the_error_names_both() {
     for radius in [0.1, 1e-3, 1e-6] {

@@ -1,4 +1,4 @@
-//! Balls and cubes on floors under gravity, beside the cases of `cases::hard_cases::balls`.
+//! Balls and cubes on floors under gravity, in addition to the cases of `cases::hard_cases::balls`.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use sim_core::{Body, DVec3, METHODS, Settings, Vec3};
 
 use crate::worlds::{DT, run};
 
-/// A constant force and a weight are the same fall.
+/// A constant force and a weight cause the same fall.
 #[test]
 fn a_constant_force_makes_bodies_bounce_as_gravity_does() {
     for method in METHODS {
@@ -25,7 +25,7 @@ fn a_constant_force_makes_bodies_bounce_as_gravity_does() {
     }
 }
 
-/// Bodies that lie on something, with its surface at height 0.
+/// Bodies that lie on a surface at height 0.
 fn lying(floor_mesh: &Arc<sim_core::Mesh>, restitution: f64) -> Vec<(String, Body, Body)> {
     let cube = mesh_body(&cube(0.5), DVec3::new(0.25, 0.5, -0.125), DVec3::ZERO);
     let sphere = ball(0.5, 0.5 * DVec3::Y, DVec3::ZERO);
@@ -47,7 +47,7 @@ fn lying(floor_mesh: &Arc<sim_core::Mesh>, restitution: f64) -> Vec<(String, Bod
     all
 }
 
-/// For 1000 s under the default method, for 10 s under all others.
+/// For 1000 s with the default method, for 10 s with all others.
 #[test]
 fn what_lies_on_a_floor_does_not_move() {
     let slab = boxes(&[[Vec3::new(-8.0, -1.0, -8.0), Vec3::new(8.0, 0.0, 8.0)]]);
@@ -70,7 +70,7 @@ fn what_lies_on_a_floor_does_not_move() {
     }
 }
 
-/// What slides has no impacts, near or far, under any method.
+/// Sliding bodies have no impacts, near the origin or far from it, with any method.
 #[test]
 fn what_slides_down_a_slope_hits_nothing() {
     let slope = DVec3::new(0.2, 1.0, 0.1).normalize();
@@ -86,21 +86,21 @@ fn what_slides_down_a_slope_hits_nothing() {
             let impacts = run(&mut world, 600).len();
             let what = format!("{}, e = {restitution}", method.name);
             assert_eq!(impacts, 0, "{what}");
-            // It gathers speed as on a slope without friction, less half a step of it.
+            // It accelerates as on a slope without friction, minus half a step.
             let pull = GRAVITY * (DVec3::NEG_Y + slope.y * slope).length();
             let speed = world.velocity(1).length();
             assert!(
                 (speed / (600.0 / 64.0 * pull) - 1.0).abs() < 2e-3,
                 "{what}: {speed}"
             );
-            // It keeps apart by a part of its coordinates, which grow.
+            // Its gap is a fraction of its coordinates, which grow.
             let away = world.velocity(1).dot(slope).abs();
             assert!(away < 1e-9 + 1e-11 * far, "{what}: leaves at {away:e}");
         }
     }
 }
 
-/// A stack of cubes and a cube in a corner stay as they are.
+/// A stack of cubes and a cube in a corner remain unchanged.
 #[test]
 fn stacks_stand() {
     let cube = cube(0.5);
@@ -136,12 +136,12 @@ fn stacks_stand() {
     }
 }
 
-/// A ball thrown up to a ceiling or a ball, which it reaches with what speed is left.
+/// A ball is thrown up to a ceiling or another ball, and reaches it with little speed left.
 #[test]
 fn what_just_touches_at_its_turn_falls_back() {
     const HEIGHT: f64 = 4.0;
     let ball = |y: f64, speed: f64| ball(0.5, y * DVec3::Y, speed * DVec3::Y);
-    // By how much the other one is too low, m.
+    // The distance by which the ceiling is lower than the highest point, m.
     for depth in [0.0, 1e-12, 1e-6] {
         for dt in [2.0, 0.75, 2.0 / 3.0, 1.0 / 16.0, DT] {
             let ceiling = wall(DVec3::NEG_Y, (HEIGHT + 0.5 - depth) * DVec3::Y, DVec3::ZERO);
@@ -155,7 +155,7 @@ fn what_just_touches_at_its_turn_falls_back() {
                 run(&mut world, (1.5 / dt).ceil() as u64);
                 let t = world.time();
                 let exact = 8.0 * t - 4.0 * t * t;
-                // Turned back at the speed left there, it is early by twice the time to the turn.
+                // It is reflected with the remaining speed, so it is early by twice the time to the turning point.
                 let early = 2.0 * (depth / 4.0).sqrt();
                 let tolerance = 1e-6 + 1.1 * early * (8.0 * t - 8.0).abs();
                 let off = (world.position(0).y - exact).abs();
@@ -165,7 +165,7 @@ fn what_just_touches_at_its_turn_falls_back() {
     }
 }
 
-/// An impact at the end of a step gives back what any other one does.
+/// An impact at the end of a step restores the same speed as any other one.
 #[test]
 fn the_end_of_a_step_takes_no_speed() {
     for restitution in [0.1, 0.9, 1.0] {
@@ -188,8 +188,8 @@ fn the_end_of_a_step_takes_no_speed() {
     }
 }
 
-/// A ball that rolls off another one and is pushed back to it is met where it comes back, however
-/// near it was at the start.
+/// A ball that rolls off another one and is pushed back to it is detected at its return, however close it was at the
+/// start.
 #[test]
 fn what_leaves_at_once_and_comes_back_is_met_there() {
     let end = |gap: f64| {
@@ -203,7 +203,7 @@ fn what_leaves_at_once_and_comes_back_is_met_there() {
         assert!(run(&mut world, 1).len() > 2);
         (world.position(1), world.velocity(1))
     };
-    // Where it has left the ball below for good, it falls.
+    // It falls once it has left the ball below for good.
     let exact = end(1e-13);
     assert!(exact.0.length() > 1.0 && exact.1.y < -0.1);
     for gap in [1e-15, 2e-15, 1e-14] {

@@ -1,4 +1,4 @@
-//! Impacts where forces grow without bound: bodies that meet go through no centre, and gain nothing.
+//! Impacts under unbounded forces: bodies that collide do not pass through centres and gain no energy.
 
 use kit::bodies::{ball, immovable};
 use kit::random::Random;
@@ -21,8 +21,8 @@ fn energy(world: &World) -> f64 {
     world.kinetic_energy() + world.potential_energy()
 }
 
-/// Steps a world whose energy is kept, and how much it has gained or lost at most, of the greatest kinetic
-/// energy that it has had, at an impact too; or the error.
+/// Steps a world that conserves energy. Returns the greatest gain or loss of energy, relative to the greatest kinetic
+/// energy so far, at impacts too; or the error.
 fn drift(world: &mut World, steps: u32) -> Result<f64, String> {
     let start = energy(world);
     let (mut most, mut fastest) = (0.0_f64, start.abs());
@@ -43,7 +43,7 @@ fn drift(world: &mut World, steps: u32) -> Result<f64, String> {
     Ok(most / fastest)
 }
 
-/// 1/kg; 0 of a body that nothing moves.
+/// The inverse mass, 1/kg; 0 for an immovable body.
 fn inverse_mass(world: &World, body: usize) -> f64 {
     match world.kind(body).is_movable() {
         true => 1.0 / world.mass(body),
@@ -86,9 +86,9 @@ fn stars_that_fall_into_each_other_bounce_and_keep_their_energy() {
     }
 }
 
-/// Two stars on a parabola about each other whose nearest point is within the touching distance by a
-/// part: they touch slowly or fast along the line of their centres, and a hundred times faster across it. However
-/// soon forces seem to bring them back, they part as they came.
+/// Two stars on parabolic orbits about each other, whose nearest distance is less than the touching distance by a
+/// fraction. They touch with a small or large speed along the line of centres, and with a speed a hundred times larger
+/// across it. However strongly forces pull them back, they separate as they came.
 #[test]
 fn stars_that_graze_each_other_part_as_they_came() {
     let (radius, mass) = (1e-3_f64, [4.0_f64, 7.0]);
@@ -115,7 +115,7 @@ fn stars_that_graze_each_other_part_as_they_came() {
     }
 }
 
-/// A method of a fixed step that finds no motion through the centre is not asked for one.
+/// A method with a fixed step that finds no motion through the centre is not tested.
 #[test]
 fn implicit_methods_are_asked_for_no_motion_through_a_star() {
     for name in ["implicit-midpoint"] {
@@ -146,7 +146,7 @@ fn pairs_of_stars_keep_their_energy_through_many_impacts() {
         let radius = 10_f64.powf(-1.0 - 3.0 * random.unit());
         let mut vector = || random.vector();
         let (away, velocity) = (vector().normalize(), vector());
-        // So that the second passes the first, if at all, by about its radius.
+        // The second body passes the first, if at all, at about its radius.
         let velocity = 0.5 * velocity.normalize() * radius.sqrt();
         let (first, second) = (1.0 + random.unit(), 1.0 + random.unit());
         let stars = [
@@ -167,7 +167,7 @@ fn pairs_of_stars_keep_their_energy_through_many_impacts() {
     assert!(impacts > 40, "{impacts}");
 }
 
-/// A centre of attraction in a ball that stands still, hit from any side.
+/// A fixed centre of attraction within a ball, hit from any side.
 #[test]
 fn what_falls_onto_a_ball_about_a_centre_bounces_off_it() {
     let mut random = Random::linear(5);

@@ -1,4 +1,4 @@
-//! Many impacts one after the other, beside the cases of `cases::hard_cases::chains`.
+//! Many impacts in succession, in addition to the cases of `cases::hard_cases::chains`.
 
 use cases::hard_cases::chains::galperin;
 use kit::bodies::{ball, wall};
@@ -6,7 +6,7 @@ use sim_core::{Body, DVec3};
 
 use crate::worlds::{DT, run, world};
 
-/// The least loss at each impact changes nothing to speak of, however many there are in a step.
+/// A minimal loss at each impact has no noticeable effect, however many impacts a step has.
 #[test]
 fn blocks_that_lose_a_last_bit_count_as_well() {
     let mut world = galperin(3, 0.25);
@@ -20,7 +20,7 @@ fn blocks_that_lose_a_last_bit_count_as_well() {
     assert!((world.velocity(2).x - 1.0).abs() < 1e-3);
 }
 
-/// Gravity along the walls of a slot, or on all alike, has no part in impacts across it.
+/// Gravity along the walls of a slot, or equal gravity on all bodies, does not influence impacts across it.
 #[test]
 fn common_gravity_changes_no_impact() {
     let slot = [1.0, -1.0].map(|s| Body {

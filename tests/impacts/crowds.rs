@@ -1,4 +1,4 @@
-//! A hundred bodies in a closed box, beside the case of cubes for long; and heaps.
+//! A hundred bodies in a closed box, in addition to the long case with cubes; and heaps.
 
 use cases::scenes::{Form, GRAVITY, HALF, continuous, crowd, heap};
 use kit::bodies::{ball, immovable, mesh_body};
@@ -16,14 +16,14 @@ fn half_spaces() -> Vec<Body> {
     (0..6).map(|i| world.body(i).to_body()).collect()
 }
 
-/// A hundred bodies that move.
+/// A hundred moving bodies.
 fn movers(form: &Form) -> Vec<Body> {
     let (scene, _) = crowd(100, form);
     let world = continuous(&scene);
     scene.movable().map(|i| world.body(i).to_body()).collect()
 }
 
-/// A closed box as one mesh, around all.
+/// A closed box around all bodies, as one mesh.
 fn mesh_box() -> Vec<Body> {
     let half = Vec3::splat(HALF_BOX as f32);
     vec![immovable(mesh_body(
@@ -33,7 +33,7 @@ fn mesh_box() -> Vec<Body> {
     ))]
 }
 
-/// Runs for 10 s and returns what came out.
+/// Runs for 10 s and returns the final world.
 fn assert_kept(name: &str, mut bodies: Vec<Body>, movers: Vec<Body>) -> World {
     let walls = bodies.len();
     bodies.extend(movers);
@@ -138,7 +138,7 @@ fn heaps_settle_without_gain() {
     }
 }
 
-/// Two balls that meet, beside many that lie still: whoever else there is, each impact is one.
+/// Two balls collide beside many at rest: the others do not change the number of impacts.
 #[test]
 fn bodies_at_rest_double_nothing() {
     for others in [0, 20] {

@@ -1,4 +1,4 @@
-//! Bodies that are long along one axis: the time of an impact along another is as exact as without.
+//! Bodies that are long along one axis: the time of an impact along another axis is as exact as for short ones.
 
 use kit::bodies::{ball, immovable, mesh_body};
 use kit::meshes::{cube, cuboid};
@@ -8,14 +8,14 @@ use sim_core::{DVec3, METHODS, Settings, Vec3, World};
 
 use crate::worlds::{DT, ULP, run};
 
-/// A plate in the way of a bullet.
+/// A bullet that flies towards a plate.
 #[derive(Debug)]
 struct Shot {
     /// Axis of the motion.
     axis: usize,
     /// Half extents of the plate, m.
     half: Vec3,
-    /// From the bullet's centre to the plate's, m, and its speed, m/s.
+    /// The distance of the bullet's centre from the plate's, m, and its speed, m/s.
     distance: f64,
     speed: f64,
     /// Acceleration of the bullet along the plate, m/s².
@@ -23,7 +23,7 @@ struct Shot {
 }
 
 impl Shot {
-    /// Along two axes the plate is of any size from 1e-30 to 1e30 m.
+    /// Along two axes the plate has any size from 1e-30 to 1e30 m.
     fn random(random: &mut Random) -> Shot {
         let axis = (3.0 * random.unit()) as usize;
         let mut half = Vec3::ZERO;
@@ -48,7 +48,7 @@ impl Shot {
         world_of(settings, &[bullet, immovable(plate)])
     }
 
-    /// How late the first impact is, s, and how late it may be found.
+    /// The delay of the first impact, s, and the delay allowed.
     fn error(&self, world: &mut World) -> (f64, f64) {
         let gap = self.distance - 0.5 - f64::from(self.half[self.axis]);
         let exact = gap / self.speed;
@@ -74,7 +74,7 @@ fn a_plate_that_is_long_another_way_is_hit_in_time() {
     assert!(wrong.is_empty(), "{} wrong: {wrong:#?}", wrong.len());
 }
 
-/// On a way that bends along the plate, which the search goes along in chords.
+/// On a trajectory that curves along the plate; the search follows it in chords.
 #[test]
 fn a_plate_is_hit_in_time_on_a_way_that_bends() {
     let mut random = Random::linear(3);
@@ -101,7 +101,7 @@ fn a_plate_is_hit_in_time_on_a_way_that_bends() {
     assert!(wrong.is_empty(), "{} wrong: {wrong:#?}", wrong.len());
 }
 
-/// Between two plates, one of which is long, as between two that are not.
+/// Between two plates, one of them long, as between two short ones.
 #[test]
 fn a_bullet_goes_to_and_fro_between_plates_of_any_length() {
     for length in [3.0, 1e9, 1e15, 1e17, 1e30] {
@@ -113,7 +113,7 @@ fn a_bullet_goes_to_and_fro_between_plates_of_any_length() {
         let bodies = [plate(-5.0, length), plate(5.0, 3.0), bullet];
         let mut world = world_of(precise(DT), &bodies);
         let impacts = run(&mut world, 60);
-        // 9.499 m to and fro in a second.
+        // 9.499 m back and forth in a second.
         assert_eq!(impacts.len(), 105, "{length:e}");
         let last = impacts.last().expect("impacts");
         let room = 9.5 - 2.0 * f64::from(0.0005_f32);
@@ -123,7 +123,7 @@ fn a_bullet_goes_to_and_fro_between_plates_of_any_length() {
     }
 }
 
-/// Two balls of which one is as large as a planet meet where they meet.
+/// Two balls, one of them as large as a planet, meet at the exact time.
 #[test]
 fn a_small_ball_hits_a_large_one_in_time() {
     for radius in [1.0, 1e3, 1e6, 1e9] {

@@ -19,7 +19,7 @@ fn world(method: &'static Method, dt: f64, bodies: &[Body], force: Force) -> Wor
     world
 }
 
-/// A body of 1 kg on a spring of 1 N/m to the origin, let go at x = 1; a wall stops it at -1/2.
+/// A body of 1 kg on a spring of 1 N/m to the origin, released at x = 1 m; a wall stops it at -1/2 m.
 fn spring_and_wall(method: &'static Method, dt: f64, [wall, body]: [Body; 2]) -> World {
     let spring = Force::Anchor {
         body: 1,
@@ -32,7 +32,7 @@ fn spring_and_wall(method: &'static Method, dt: f64, [wall, body]: [Body; 2]) ->
     world(method, dt, &[wall, body], spring)
 }
 
-/// Walls whose surface is at -1/2 for their body.
+/// Walls with the surface at -1/2 m for their body.
 fn walls_and_bodies() -> [(&'static str, [Body; 2]); 3] {
     let plane = |x: f64| wall(DVec3::X, DVec3::X * x, DVec3::ZERO);
     let plate = cuboid(Vec3::new(0.125, 2.0, 2.0));
@@ -48,7 +48,7 @@ fn walls_and_bodies() -> [(&'static str, [Body; 2]); 3] {
     ]
 }
 
-/// Of an order that the shorter of two steps shows, or exact to rounding.
+/// Tests that two step lengths show the order, or that the result is exact to rounding.
 #[track_caller]
 fn assert_order(method: &Method, errors: [f64; 2], what: &str) {
     let [coarse, fine] = errors;
@@ -57,7 +57,7 @@ fn assert_order(method: &Method, errors: [f64; 2], what: &str) {
     assert!(as_claimed, "{} {what}: {coarse:e} {fine:e}", method.name);
 }
 
-/// x = cos t until cos t = -1/2, and again and again: impacts at 2π/3 + n 4π/3.
+/// x = cos t until cos t = -1/2, repeatedly: impacts at 2π/3 + n 4π/3.
 #[test]
 fn a_spring_sends_a_body_against_a_wall_as_often_as_it_should() {
     for (what, bodies) in walls_and_bodies() {
@@ -88,7 +88,7 @@ fn a_ball_bounces_in_time_under_every_method() {
     let gravity = Force::Gravity {
         acceleration: -GRAVITY * DVec3::Y,
     };
-    // A force of no effect sends the body through the method's own step.
+    // A force without effect makes the method step the body itself, instead of the closed form.
     let no_drag = Force::LinearDrag {
         body: None,
         coefficient: 0.0,
@@ -118,7 +118,7 @@ fn a_ball_bounces_in_time_under_every_method() {
     }
 }
 
-/// Two bodies on a spring, of which one hits a wall: the spring couples them through the impact.
+/// Two bodies on a spring, one of which hits a wall: the spring couples them through the impact.
 #[test]
 fn coupled_bodies_keep_their_energy_through_impacts() {
     for method in METHODS.into_iter().filter(|method| method.order >= 4) {

@@ -1,5 +1,5 @@
-//! A body that just touches a floor of several, beside the case of grazing; and trajectories that dip into another
-//! body and out again within a step.
+//! A body that just touches a floor made of several bodies, in addition to the case of grazing; and trajectories that
+//! dip into another body and out again within a step.
 
 use kit::bodies::{body, mesh_body};
 use kit::meshes::{cube, mesh};
@@ -9,7 +9,7 @@ use sim_core::{Body, BodyKind, DVec3, Force, Method, Settings, Shape, Vec3};
 
 use crate::worlds::{DT, run, world};
 
-/// A cube slides along a floor of four cubes, a hair above it, and is not stopped where they join.
+/// A cube slides along a floor of four cubes, slightly above it, and is not stopped at their joints.
 #[test]
 fn joints_of_a_floor_stop_nothing() {
     let tile = cube(0.5);
@@ -28,7 +28,7 @@ fn joints_of_a_floor_stop_nothing() {
     }
 }
 
-/// A tip that points down, at the origin.
+/// A tip at the origin that points down.
 fn tip() -> Shape {
     let vertices = vec![
         Vec3::ZERO,
@@ -40,7 +40,7 @@ fn tip() -> Shape {
     Shape::Mesh(mesh(vertices, triangles))
 }
 
-/// What is thrown up touches a tip for some milliseconds about its highest place, a micrometre deep or less, in a step
+/// A thrown body touches a tip for some milliseconds around its highest position, a micrometre deep or less, in a step
 /// of a tenth of a second. Each impact is found, at its time.
 #[test]
 fn what_dips_into_a_tip_within_a_step_hits_it() {
@@ -49,7 +49,7 @@ fn what_dips_into_a_tip_within_a_step_hits_it() {
     for case in 0..200_u32 {
         let form = &forms[case as usize % 2];
         let depth = 10_f64.powf(random.from(-10.0, -4.0));
-        // When it is highest, from the start of the only step.
+        // The time of the highest position, from the start of the only step.
         let (dt, highest) = (0.1, random.from(0.02, 0.08));
         let sideways = match form {
             Shape::Sphere { .. } => DVec3::ZERO,
@@ -71,7 +71,7 @@ fn what_dips_into_a_tip_within_a_step_hits_it() {
                 panic!("{case}: {} impacts at a depth of {depth:e}", impacts.len());
             };
             let time = highest - (2.0 * depth / GRAVITY).sqrt();
-            // Some roundings of the height, and what is left between a sphere and a mesh, move it by this.
+            // Some rounding errors of the height, and the gap between a sphere and a mesh, change the time by this.
             let rounding = 1e-13 / (2.0 * depth * GRAVITY).sqrt() + 1e-14;
             let late = impact.time - time;
             assert!(late.abs() < rounding, "{case}: {late:e} at {depth:e}");
@@ -79,14 +79,14 @@ fn what_dips_into_a_tip_within_a_step_hits_it() {
     }
 }
 
-/// The same where the force is no constant: a cube on a spring that turns back at the tip.
+/// The same for a varying force: a cube on a spring that reverses at the tip.
 #[test]
 fn what_a_spring_swings_into_a_tip_hits_it() {
     let mut random = Random::splitmix(8);
     for case in 0..20_u32 {
         let depth = 10_f64.powf(random.from(-8.0, -4.0));
         let (dt, highest) = (0.1, random.from(0.03, 0.07));
-        // It swings by 1 m about a place 1.5 m below the tip, at 3 rad/s.
+        // It oscillates with an amplitude of 1 m about a point 1.5 m below the tip, at 3 rad/s.
         let (rate, middle) = (3.0, -1.5 + depth);
         let phase: f64 = -rate * highest;
         let start = DVec3::new(0.0, middle + phase.cos(), 0.0);

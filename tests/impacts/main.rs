@@ -1,9 +1,8 @@
-//! Continuous collisions against exact outcomes: what is beside the hard cases of `cases`, to whose
-//! verdicts `crates/cases/tests/verdicts.rs` holds them.
+//! Continuous collisions against exact outcomes, in addition to the hard cases of `cases`, whose verdicts
+//! `crates/cases/tests/verdicts.rs` checks.
 //!
-//! Tolerances are those that doubles allow, written as formulas: `ULP` is the distance from 1 to
-//! the next double, 2u. Positions are sums over steps, so that a rounding a step is granted where
-//! they are compared with closed forms.
+//! Tolerances are the rounding errors of doubles, written as formulas: `ULP` is the distance from 1 to the next double,
+//! 2u. Positions are sums over steps, so one rounding per step is allowed when they are compared with closed forms.
 
 mod balls;
 mod centres;

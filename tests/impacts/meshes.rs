@@ -1,4 +1,4 @@
-//! Meshes on meshes, and through them, beside the cases of `cases::hard_cases::meshes`.
+//! Meshes on meshes, and through them, in addition to the cases of `cases::hard_cases::meshes`.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ fn assert_elastic_at_all_speeds_and_phases(first: &Arc<Mesh>, second: &Arc<Mesh>
 fn sheets_tori_and_stars_at_every_speed_and_phase() {
     let shapes = [sheet(0.0), sheet(0.125), torus(0.75, 0.25), star(1.0, 0.2)];
     for (i, first) in shapes.iter().enumerate() {
-        // Open ones that are the same come together everywhere at once: see the next test.
+        // Equal open meshes touch everywhere simultaneously: see the next test.
         let others = if first.is_closed() { i } else { i + 1 };
         for second in &shapes[others..] {
             assert_elastic_at_all_speeds_and_phases(first, second);
@@ -30,7 +30,7 @@ fn sheets_tori_and_stars_at_every_speed_and_phase() {
     }
 }
 
-/// Where one touches the other, all of it does.
+/// Equal open meshes touch everywhere at once.
 #[test]
 fn sheets_that_fit_each_other_do_not_pass() {
     for bend in [0.0, 0.1] {
@@ -39,8 +39,8 @@ fn sheets_that_fit_each_other_do_not_pass() {
     }
 }
 
-/// Earliest time, in parts of `motion`, at which the second mesh touches the first: every vertex
-/// against every face and every edge against every edge, as in the head of `touch.rs`.
+/// Earliest time, in fractions of `motion`, at which the second mesh touches the first: every vertex against every face
+/// and every edge against every edge, as described at the head of `touch.rs`.
 fn earliest(first: &Mesh, second: &Mesh, offset: DVec3, motion: DVec3) -> f64 {
     let mut earliest = f64::INFINITY;
     let mut vertices_in_faces = |mover: &Mesh, still: &Mesh, offset: DVec3, motion: DVec3| {
@@ -103,15 +103,14 @@ fn the_impact_is_when_the_earliest_features_touch() {
     }
 }
 
-/// A small cube passes below the cow's belly: to both sides of its lane, and above, the cow is in
-/// the way.
+/// A small cube passes below the cow's belly. On both sides of its path, and above, the cow blocks the way.
 #[test]
 fn a_cube_passes_between_the_legs_of_the_cow() {
     let (cow, cube) = (builtin("cow.obj"), cuboid(Vec3::splat(0.05)));
     let trees = [Bvh::build(&cow), Bvh::build(&cube)];
     let bounds = cow.bounds();
     let (low, size) = (bounds.min.as_dvec3(), 2.0 * bounds.half_extent());
-    // It is longer than it is wide.
+    // The cow is longer than it is wide.
     let (along, across) = match size.x > size.z {
         true => (DVec3::X, DVec3::Z),
         false => (DVec3::Z, DVec3::X),

@@ -1,4 +1,4 @@
-//! A body that meets two in overlap, beside the case of those two.
+//! A body that hits two overlapping ones, in addition to the case of the two alone.
 
 use kit::bodies::mesh_body;
 use kit::meshes::cube;
@@ -6,7 +6,7 @@ use sim_core::DVec3;
 
 use crate::worlds::{DT, run, world};
 
-/// A third body bounces off a pair in overlap as off anything.
+/// A third body bounces off an overlapping pair as off any other body.
 #[test]
 fn others_are_not_disturbed_by_a_pair_in_overlap() {
     let cube = cube(0.5);

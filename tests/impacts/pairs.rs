@@ -1,4 +1,4 @@
-//! Two bodies beside each other, beside the cases of two head on.
+//! Two bodies beside each other, in addition to the cases of two head on.
 
 use kit::bodies::mesh_body;
 use kit::meshes::cube;

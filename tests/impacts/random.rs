@@ -1,4 +1,4 @@
-//! Random shapes on random ways.
+//! Random shapes on random paths.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use sim_core::{Body, DVec3, Mesh, Shape, Vec3, World};
 
 use crate::worlds::{DT, run_apart, world};
 
-/// Triangles between random points of a coarse grid, where much is degenerate and touches exactly,
-/// or of a fine one, where nothing does. `None` if they make no mesh.
+/// Triangles between random points of a coarse grid, with many degenerate ones and exact contacts, or of a fine grid,
+/// without them. `None` if they form no mesh.
 fn soup() -> impl Strategy<Value = Option<Arc<Mesh>>> {
     let vertex = prop_oneof![
         (-2i8..=2, -2i8..=2, -2i8..=2).prop_map(|(x, y, z)| [x, y, z].map(|c| f32::from(c) / 2.0)),
@@ -33,7 +33,7 @@ fn shape() -> impl Strategy<Value = Option<Shape>> {
     ]
 }
 
-/// Coarse numbers bring exact ties, speeds go from rest to many bodies a step.
+/// Coarse numbers cause exact ties; speeds range from rest to many body lengths per step.
 fn vector(size: f64) -> impl Strategy<Value = DVec3> {
     let coarse = (-4i8..=4, -4i8..=4, -4i8..=4)
         .prop_map(move |(x, y, z)| [x, y, z].map(|c| f64::from(c) * size / 4.0));
@@ -55,18 +55,18 @@ fn body() -> impl Strategy<Value = Option<Body>> {
     })
 }
 
-/// A world in which nothing overlaps at the start, else `None`.
+/// A world without overlap at the start, otherwise `None`.
 fn apart(bodies: &[Option<Body>]) -> Option<World> {
     let bodies: Option<Vec<Body>> = bodies.iter().cloned().collect();
     let world = world(DT, &bodies?);
     world.overlapping().is_empty().then_some(world)
 }
 
-/// What a force-free elastic world must keep.
+/// The invariants of a force-free elastic world.
 struct Kept {
     energy: f64,
     momentum: DVec3,
-    /// Sum of all momenta's lengths.
+    /// Sum of the magnitudes of all momenta.
     scale: f64,
 }
 
@@ -87,7 +87,7 @@ impl Kept {
         (world.kinetic_energy() / self.energy - 1.0).abs()
     }
 
-    /// Change of the momentum, of the sum of momenta.
+    /// Change of the momentum, relative to the sum of the momenta.
     fn momentum_error(&self, world: &World) -> f64 {
         (world.momentum() - self.momentum).length() / self.scale
     }

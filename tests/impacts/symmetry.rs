@@ -1,4 +1,5 @@
-//! Worlds that must end alike, of other sizes, on other axes and in any order, beside the cases of
+//! Worlds that must end in equivalent states at other sizes, on other axes and in any order, in addition to the cases
+//! of
 //! `cases::hard_cases::symmetry`.
 
 use std::sync::Arc;
@@ -10,7 +11,7 @@ use sim_core::{Body, DVec3, Mesh, Shape, Vec3, World};
 
 use crate::worlds::{assert_close, bits, run, world};
 
-/// The same shape, its points and lengths as told.
+/// The shape with mapped points and lengths.
 fn shape_of(shape: &Shape, point: impl Fn(Vec3) -> Vec3, length: f64, is_mirror: bool) -> Shape {
     match shape {
         Shape::Mesh(mesh) => {
@@ -22,7 +23,7 @@ fn shape_of(shape: &Shape, point: impl Fn(Vec3) -> Vec3, length: f64, is_mirror:
         Shape::Sphere { radius } => Shape::Sphere {
             radius: radius * length,
         },
-        // Of any length, so that it may be mapped as a point.
+        // The normal may have any length, so it can be mapped as a point.
         Shape::HalfSpace { normal } => Shape::HalfSpace {
             normal: point(normal.as_vec3()).as_dvec3(),
         },
@@ -118,7 +119,7 @@ fn a_mirrored_world_ends_in_the_mirror_to_the_bit() {
     }
 }
 
-/// Sums of three products round in the order of the axes, so that a bit may differ: 1e-12.
+/// The rounding of sums of three products depends on the order of the axes, so results may differ by 1e-12.
 #[test]
 fn other_axes_change_nothing_but_rounding() {
     let permutations: [(Map, bool); 3] = [
@@ -157,7 +158,7 @@ fn the_order_of_bodies_changes_nothing_but_rounding() {
     }
 }
 
-/// Twice, in several threads at once, and going on from a copy.
+/// Twice, in several threads at once, and continued from a copy.
 #[test]
 fn runs_of_the_same_world_have_the_same_bits() {
     let [balls, cows, stars] = scenes().map(|(_, bodies)| bodies);

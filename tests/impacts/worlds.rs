@@ -1,10 +1,10 @@
-//! Worlds as the tests need them, and what they all must keep.
+//! Worlds for the tests, and their common invariants.
 
 use kit::worlds::{self, precise, world_of};
 use sim_core::collide::tree;
 use sim_core::{Body, Bvh, DVec3, Impact, World};
 
-/// From 1 to the next double.
+/// The distance from 1 to the next double.
 pub(crate) const ULP: f64 = f64::EPSILON;
 
 pub(crate) const DT: f64 = 1.0 / 60.0;
@@ -13,12 +13,12 @@ pub(crate) fn world(dt: f64, bodies: &[Body]) -> World {
     world_of(precise(dt), bodies)
 }
 
-/// Steps, and all impacts on the way.
+/// Makes steps, and returns all their impacts.
 pub(crate) fn run(world: &mut World, steps: u64) -> Vec<Impact> {
     worlds::run(world, steps).expect("a step")
 }
 
-/// Steps, and after each one makes sure that no two meshes meet.
+/// Makes steps, and checks after each one that no two meshes meet.
 pub(crate) fn run_apart(world: &mut World, steps: u64) -> Vec<Impact> {
     let trees: Vec<Option<Bvh>> = (0..world.len())
         .map(|i| world.mesh(i).map(|mesh| Bvh::build(mesh)))

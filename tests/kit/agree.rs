@@ -1,9 +1,9 @@
-//! Naive and BVH, at every level of vectors, agree.
+//! Agreement of naive and BVH, at every SIMD level.
 
 use sim_core::collide::{Level, Placement, naive, tree};
 use sim_core::{Bvh, Mesh};
 
-/// Panics unless both ways give the same answer and the same hits, to the bit; tells whether meshes meet.
+/// Panics unless both ways give the same answer and the same hits, bit for bit. Returns whether the meshes meet.
 #[track_caller]
 pub fn assert_same(first: &Mesh, second: &Mesh, at: impl Into<Placement>) -> bool {
     let at = at.into();

@@ -6,12 +6,12 @@ use sim_core::{Body, BodyKind, DVec3, Mesh, Shape};
 
 use crate::shapes::{self, half_space};
 
-/// A body of a shape at a place.
+/// A body of a shape at a position.
 pub fn at(shape: &Shape, position: DVec3) -> Body {
     body(shape, position, DVec3::ZERO)
 }
 
-/// A body of a shape at a place, on its way.
+/// A moving body of a shape at a position.
 pub fn body(shape: &Shape, position: DVec3, velocity: DVec3) -> Body {
     Body {
         shape: Some(shape.clone()),
@@ -21,17 +21,17 @@ pub fn body(shape: &Shape, position: DVec3, velocity: DVec3) -> Body {
     }
 }
 
-/// A ball, or a point, on its way.
+/// A moving ball, or a point.
 pub fn ball(radius: f64, position: DVec3, velocity: DVec3) -> Body {
     body(&shapes::ball(radius), position, velocity)
 }
 
-/// A body of a mesh, on its way.
+/// A moving body with a mesh.
 pub fn mesh_body(mesh: &Arc<Mesh>, position: DVec3, velocity: DVec3) -> Body {
     body(&Shape::Mesh(mesh.clone()), position, velocity)
 }
 
-/// The same body, which nothing moves.
+/// The same body, immovable.
 pub fn immovable(body: Body) -> Body {
     Body {
         kind: BodyKind::Kinematic,
@@ -39,7 +39,7 @@ pub fn immovable(body: Body) -> Body {
     }
 }
 
-/// A half-space that nothing moves, below a plane through a place, perhaps with a velocity of its own.
+/// An immovable half-space below a plane through a point, possibly with a velocity.
 pub fn wall(normal: DVec3, position: DVec3, velocity: DVec3) -> Body {
     immovable(body(&half_space(normal), position, velocity))
 }

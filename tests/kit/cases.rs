@@ -1,5 +1,5 @@
-//! What is tried with bytes of any kind, and what must hold: the same by chance in `cargo test` and
-//! guided by coverage in `fuzz/`. Each panics where something does not hold.
+//! Cases that interpret arbitrary bytes, and the invariants that they test: with random bytes in `cargo test`, and
+//! guided by coverage in `fuzz/`. Each case panics if an invariant is violated.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,10 +14,10 @@ use sim_core::{
 use crate::oracle::segment_meets_triangle;
 use crate::{hostile, meshes};
 
-/// A name and what is done with bytes.
+/// The name of a case and its function.
 pub type Case = (&'static str, fn(&[u8]));
 
-/// All of them.
+/// All cases.
 pub const CASES: [Case; 10] = [
     ("obj", |bytes| mesh("obj", bytes)),
     ("collada", |bytes| mesh("dae", bytes)),
@@ -31,13 +31,13 @@ pub const CASES: [Case; 10] = [
     ("turning", turning),
 ];
 
-/// Tries bytes in the case of a name.
+/// Runs the case of a name on some bytes.
 pub fn try_case(name: &str, bytes: &[u8]) {
     let case = CASES.into_iter().find(|case| case.0 == name);
     case.expect("a case of that name").1(bytes);
 }
 
-/// A file of a format: an error, or a mesh of numbers whose report can be told.
+/// A file of a format gives an error, or a mesh of finite numbers with a report.
 fn mesh(format: &str, bytes: &[u8]) {
     let format = FORMATS.iter().find(|known| known.name == format);
     let format = format.expect("a format of that name");
@@ -53,13 +53,13 @@ fn mesh(format: &str, bytes: &[u8]) {
     }
 }
 
-/// No message is long, or acts on a terminal.
+/// Tests that a message is short and free of control characters for a terminal.
 fn assert_message(message: &str) {
     assert!(message.len() < 1000, "{} bytes", message.len());
     assert!(!message.contains(shown::is_unsafe), "{message:?}");
 }
 
-/// The text of a scene.
+/// Bytes as the text of a scene.
 fn scene(bytes: &[u8]) {
     if let Ok(text) = std::str::from_utf8(bytes) {
         scene_text(text);
@@ -71,8 +71,8 @@ fn values(bytes: &[u8]) {
     scene_text(&hostile::text(&mut Source(bytes)));
 }
 
-/// An error with its line, or a scene that is the same after it has been written, that makes a world, and whose
-/// motion stays among the numbers in every mode.
+/// A scene text gives an error with its line, or a scene that is unchanged after it has been written and read, that
+/// makes a world, and whose motion stays finite in every mode.
 fn scene_text(text: &str) {
     let scene = match Scene::parse(text, Path::new("fuzz.toml")) {
         Ok(scene) => scene,
@@ -103,7 +103,7 @@ fn scene_text(text: &str) {
         for _ in 0..4 {
             if let Err(error) = world.step() {
                 assert_message(&error.to_string());
-                // That has taken long, and takes as long in the other modes.
+                // That has taken long, and would take as long in the other modes.
                 if matches!(
                     error,
                     StepError::TooMuchWork { .. } | StepError::TooManySteps { .. }
@@ -120,11 +120,11 @@ fn scene_text(text: &str) {
     }
 }
 
-/// Bodies of a world that is stepped here, and triangles of one that is searched naively.
+/// The most bodies of a world that is stepped here, and the most triangles of one that is searched naively.
 const MOST_BODIES: usize = 40;
 const MOST_NAIVE: usize = 1_000;
 
-/// A message names file and line, but for a step that stands nowhere.
+/// A message names file and line, except the one that the step is missing.
 fn assert_placed(message: &str, text: &str) {
     assert_message(message);
     let place = message.strip_prefix("fuzz.toml:").expect("the file");
@@ -141,7 +141,7 @@ fn assert_placed(message: &str, text: &str) {
     }
 }
 
-/// Numbers from bytes, 0 once there are none left.
+/// Numbers from bytes; 0 once there are none left.
 pub(crate) struct Source<'a>(pub(crate) &'a [u8]);
 
 impl Source<'_> {
@@ -153,12 +153,12 @@ impl Source<'_> {
         first
     }
 
-    /// A whole number less than a count of up to 65,536.
+    /// An integer less than a count of up to 65,536.
     pub(crate) fn below(&mut self, count: usize) -> usize {
         (usize::from(self.byte()) << 8 | usize::from(self.byte())) % count
     }
 
-    /// Mostly few values, so that features lie on each other; else of any size.
+    /// Mostly one of few values, so that features coincide; otherwise of any size.
     fn number(&mut self) -> f64 {
         let byte = self.byte();
         let small = f64::from(byte % 16) - 8.0;
@@ -191,7 +191,7 @@ impl Source<'_> {
     }
 }
 
-/// Whether an edge of a mesh at an offset meets a triangle of another at another, in rational numbers.
+/// Whether an edge of one mesh at an offset meets a triangle of another one at its offset, in rational arithmetic.
 fn edges_meet((a, at): (&Mesh, DVec3), (b, other): (&Mesh, DVec3)) -> bool {
     let corners = |mesh: &Mesh, face: &[u32; 3], at: DVec3| {
         face.map(|corner| mesh.vertices()[corner as usize].as_dvec3() + at)
@@ -207,7 +207,7 @@ fn edges_meet((a, at): (&Mesh, DVec3), (b, other): (&Mesh, DVec3)) -> bool {
     })
 }
 
-/// Two meshes somewhere: the trees, the naive search and rational arithmetic agree.
+/// Two meshes at any positions: the trees, the naive search and rational arithmetic agree.
 fn pair(bytes: &[u8]) {
     let mut source = Source(bytes);
     let (Some(a), Some(b)) = (source.mesh(), source.mesh()) else {
@@ -221,7 +221,7 @@ fn pair(bytes: &[u8]) {
     assert_eq!(found, exact, "{a:?} {b:?}");
 }
 
-/// Two meshes of which one moves: before the first contact they do not meet, and if there is none never.
+/// Two meshes, one of them moving: they do not meet before the first contact, or never if there is none.
 fn sweep(bytes: &[u8]) {
     let mut source = Source(bytes);
     let (Some(a), Some(b)) = (source.mesh(), source.mesh()) else {
@@ -244,8 +244,8 @@ fn sweep(bytes: &[u8]) {
         );
     }
     let rounding = 64.0 * f64::EPSILON * (size(offset) + size(motion) + largest);
-    // Where vertices are placed is rounded, so that only what is clearly before counts, and clearly meets: at
-    // offsets about it as well.
+    // Placed vertices are rounded, so only times clearly before the contact count, and meshes that clearly meet: at
+    // neighbouring offsets as well.
     let clearly_meet = |there: DVec3| {
         let near = [-rounding, 0.0, rounding];
         let mut about = near.iter().flat_map(|&x| {
@@ -264,8 +264,8 @@ fn sweep(bytes: &[u8]) {
     }
 }
 
-/// A world of a few bodies: after each step all is finite and apart, elastic impacts give no energy, and
-/// naive and BVH are the same to the bit.
+/// A world of a few bodies: after each step all states are finite and all bodies apart, elastic impacts add no energy,
+/// and naive and BVH agree bit for bit.
 fn step(bytes: &[u8]) {
     let mut source = Source(bytes);
     let settings = Settings {
@@ -301,7 +301,7 @@ fn step(bytes: &[u8]) {
             },
             ..Body::default()
         };
-        // Immovable bodies that move may give energy.
+        // Moving immovable bodies may add energy.
         let still = body.kind == BodyKind::Static;
         let velocity = if still { DVec3::ZERO } else { body.velocity };
         let _ = world.add(Body { velocity, ..body });
@@ -320,8 +320,9 @@ fn step(bytes: &[u8]) {
     }
 }
 
-/// The same of bodies that turn, some of them by an inertia that is told: after each step all is finite and apart.
-/// Elastic impacts, and in the discrete modes others, give no energy, and keep momentum where all bodies are dynamic.
+/// The same for turning bodies, some of them with a given inertia. After each step all states are finite and all bodies
+/// apart. Elastic impacts, and in the discrete modes others too, add no energy, and conserve momentum if all bodies are
+/// dynamic.
 fn turning(bytes: &[u8]) {
     let mut source = Source(bytes);
     let settings = Settings {
@@ -358,7 +359,7 @@ fn turning(bytes: &[u8]) {
     }
 }
 
-/// What bodies that no force moves keep, or lose, of their motion.
+/// The motion of bodies without forces: conserved, or lost.
 struct Kept {
     energy: f64,
     momentum: DVec3,
@@ -372,8 +373,8 @@ impl Kept {
         }
     }
 
-    /// To nine digits, of the largest terms where these cancel. What an impulse adds to an angular momentum is rounded as
-    /// its lever arm is, which is much energy where a needle spins about its axis.
+    /// To nine digits, relative to the largest terms if these cancel. The contribution of an impulse to an angular
+    /// momentum is rounded like its lever arm; for a needle that spins about its axis this is a large energy.
     fn check(&self, world: &World) {
         let now = Kept::of(world);
         let all = || (0..world.len()).filter(|&body| world.kind(body).is_movable());
@@ -383,7 +384,7 @@ impl Kept {
                 + world.angular_momentum(body).length()
         };
         let turning = all().map(|body| about(body) * world.spin(body).length());
-        // Contact that lasts may give some where another contact is met in the meantime.
+        // A persisting contact may add some energy if another contact begins in the meantime.
         let is_continuous = world.settings().collision == Collision::Continuous;
         let lasts = is_continuous && (0..world.len()).any(|body| world.restitution(body) < 1.0);
         let share = if lasts { 1e-3 } else { 1e-9 };
@@ -394,7 +395,7 @@ impl Kept {
             self.energy,
             now.energy
         );
-        // What does not turn takes for immovable what has met too much in a step.
+        // A body that does not rotate is treated as immovable after too many impacts in a step.
         let turns = |body| world.inertia(body).is_some();
         if all().count() < world.len() || lasts && !all().all(turns) {
             return;
@@ -406,7 +407,7 @@ impl Kept {
 }
 
 impl Source<'_> {
-    /// A ball, a box, a tetrahedron, triangles that enclose nothing, or a half-space, which turns if it can.
+    /// A ball, a box, a tetrahedron, an open set of triangles, or a half-space; a turning body if possible.
     fn turning_body(&mut self) -> Body {
         let kind = self.byte();
         let mass = 1.0 + f64::from(kind % 7);
@@ -441,7 +442,7 @@ impl Source<'_> {
             true => BodyKind::Static,
             false => BodyKind::Dynamic,
         };
-        // Immovable bodies that move may give energy.
+        // Moving immovable bodies may add energy.
         let moves = f64::from(kind == BodyKind::Dynamic);
         let inertia = match self.byte() % 3 {
             0 => {
@@ -471,7 +472,7 @@ impl Source<'_> {
         }
     }
 
-    /// Within some metres: bodies far apart never meet, and huge ones take long.
+    /// Within some metres: bodies far apart never meet, and huge ones are slow to test.
     fn near(&mut self) -> DVec3 {
         self.vector().clamp(DVec3::splat(-64.0), DVec3::splat(64.0))
     }

@@ -1,10 +1,10 @@
-//! Scenes of the gallery with values that mean no good.
+//! Scenes of the gallery with hostile values.
 
 use scene::SCENES;
 
 use crate::cases::Source;
 
-/// Numbers at the ends of what there is, and just beyond what is let in.
+/// Numbers at the limits of the allowed ranges, and just beyond.
 const NUMBERS: [&str; 32] = [
     "0",
     "-0",
@@ -40,7 +40,7 @@ const NUMBERS: [&str; 32] = [
     "-9223372036854775809",
 ];
 
-/// Values of other kinds, wrong wherever they stand but now and then.
+/// Values of other types, wrong in nearly every place.
 const VALUES: [&str; 24] = [
     "[]",
     "[[]]",
@@ -68,7 +68,7 @@ const VALUES: [&str; 24] = [
     "'''\n'''",
 ];
 
-/// Choices that every scene has.
+/// Settings that every scene has.
 const CHOICES: [&str; 16] = [
     "collision = \"naive\"",
     "collision = \"bvh\"",
@@ -88,7 +88,7 @@ const CHOICES: [&str; 16] = [
     "[[force]]",
 ];
 
-/// The text of a scene of the gallery, of few bodies, with some lines changed as bytes tell.
+/// The text of a gallery scene of few bodies, with some lines changed as the bytes determine.
 pub(crate) fn text(source: &mut Source<'_>) -> String {
     let known = |source: &mut Source<'_>| SCENES[source.below(SCENES.len())].text;
     let lines = |text: &'static str| {
@@ -108,7 +108,7 @@ pub(crate) fn text(source: &mut Source<'_>) -> String {
             6 => all.insert(place, here),
             7 => drop(all.remove(place)),
             8 => {
-                // A field of any body or force, which may be another one's here.
+                // A field of any body or force, possibly one that does not apply here.
                 let other: Vec<String> = lines(known(source)).collect();
                 let line = with_number(&other[source.below(other.len())], source);
                 all.insert(place, line);
@@ -128,7 +128,7 @@ pub(crate) fn text(source: &mut Source<'_>) -> String {
     all.join("\n")
 }
 
-/// A line as it is, or of copies with no more of them than are soon stepped.
+/// A line unchanged, or a line of copies with so few of them that steps are fast.
 fn few_copies(line: &str) -> String {
     match line.strip_prefix("copies = ").map(str::parse::<usize>) {
         Some(Ok(copies)) => format!("copies = {}", copies.min(4)),
@@ -136,7 +136,7 @@ fn few_copies(line: &str) -> String {
     }
 }
 
-/// A line with another number in the place of one of its value.
+/// A line with one number in its value replaced.
 fn with_number(line: &str, source: &mut Source<'_>) -> String {
     let is_between = |c: char| c == ' ' || c == ',' || c == '[' || c == ']';
     let value = line.find('=').map_or(line.len(), |at| at + 1);

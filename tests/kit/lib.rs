@@ -1,4 +1,4 @@
-//! What tests, cases and benchmarks share: numbers, shapes, bodies, worlds, and oracles.
+//! Numbers, shapes, bodies, worlds and oracles that tests, cases and benchmarks share.
 
 pub mod agree;
 pub mod bodies;

@@ -5,17 +5,17 @@ use std::sync::Arc;
 
 use sim_core::{DQuat, DVec3, Mesh, Vec3};
 
-/// A mesh of vertices and triangles that make one.
+/// A mesh from valid vertices and triangles.
 pub fn mesh(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Arc<Mesh> {
     Arc::new(Mesh::new(vertices, triangles).expect("a mesh"))
 }
 
-/// A mesh of the gallery, by its file.
+/// A mesh of the gallery, by its file name.
 pub fn builtin(name: &str) -> Arc<Mesh> {
     scene::mesh_file::builtin(name).expect("built in")
 }
 
-/// A mesh, stretched.
+/// A scaled mesh.
 pub fn scaled(mesh: &Mesh, scale: DVec3) -> Arc<Mesh> {
     Arc::new(mesh.transformed(DQuat::IDENTITY, scale).expect("a mesh"))
 }
@@ -26,7 +26,7 @@ pub fn boxes(corners: &[[Vec3; 2]]) -> Arc<Mesh> {
     let mut triangles = Vec::new();
     for &[low, high] in corners {
         let first = vertices.len() as u32;
-        // Bit k of a corner's number tells whether it is high along axis k.
+        // Bit k of a corner's number says whether it is at the upper end of axis k.
         vertices.extend((0..8).map(|i| {
             let pick = |axis: usize| [low, high][i >> axis & 1][axis];
             Vec3::new(pick(0), pick(1), pick(2))
@@ -46,18 +46,18 @@ pub fn boxes(corners: &[[Vec3; 2]]) -> Arc<Mesh> {
     mesh(vertices, triangles)
 }
 
-/// A box about the origin, by its half extents.
+/// A box centred at the origin, by its half extents.
 pub fn cuboid(half: impl Into<Vec3>) -> Arc<Mesh> {
     let half = half.into();
     boxes(&[[-half, half]])
 }
 
-/// A cube about the origin, by half its side.
+/// A cube centred at the origin, by half its edge.
 pub fn cube(half: f32) -> Arc<Mesh> {
     cuboid(Vec3::splat(half))
 }
 
-/// A grid of `n` by `n` quads, joined at its sides if it is closed; a place is two numbers from 0 to 1.
+/// A grid of `n` by `n` quads, joined at its sides if it is closed; a position is given by two parameters from 0 to 1.
 pub fn grid(n: u32, is_closed: bool, at: impl Fn(f32, f32) -> Vec3) -> Arc<Mesh> {
     let side = if is_closed { n } else { n + 1 };
     let place = |i: u32| i as f32 / n as f32;

@@ -1,7 +1,7 @@
-//! Contact in exact rational arithmetic: slow, plain, and by another way than the library.
+//! Contact in exact rational arithmetic: slow, simple, and by another method than the library's.
 //!
-//! The library asks for signs of orientations; here the segment is cut down by the triangle's
-//! plane and half-planes, and what is left of its parameter interval decides.
+//! The library tests signs of orientations. Here the segment is clipped by the triangle's plane and half-planes, and it
+//! meets the triangle if its parameter interval is not empty.
 
 use sim_core::DVec3;
 
@@ -19,7 +19,7 @@ fn is_zero(a: &Point) -> bool {
     a.iter().all(|x| *x == zero())
 }
 
-/// Parameters `s` of `p + s (q - p)` still in play.
+/// The remaining parameters `s` of `p + s (q - p)`.
 struct Interval {
     low: Q,
     high: Q,

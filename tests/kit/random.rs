@@ -1,12 +1,12 @@
-//! Numbers that look random and are the same on every run.
+//! Pseudorandom numbers that are the same on every run.
 
 use sim_core::DVec3;
 
-/// A sequence of 64-bit numbers, and what is made of them.
+/// A sequence of 64-bit numbers, and values derived from them.
 pub struct Random {
     state: u64,
     next: fn(&mut u64) -> u64,
-    /// Low bits that whole numbers leave out, as they repeat soonest.
+    /// The number of low bits that integers leave out, because these have the shortest periods.
     dropped: u32,
 }
 
@@ -33,7 +33,7 @@ impl Random {
         }
     }
 
-    /// A sequence of Marsaglia's (2003, "Xorshift RNGs").
+    /// A sequence by Marsaglia (2003, "Xorshift RNGs").
     pub fn xorshift(seed: u64, dropped: u32) -> Random {
         Random {
             state: seed,
@@ -68,22 +68,22 @@ impl Random {
         }
     }
 
-    /// The bits that whole numbers are made of.
+    /// The bits from which integers are made.
     pub fn bits(&mut self) -> u64 {
         (self.next)(&mut self.state) >> self.dropped
     }
 
-    /// A whole number less than a count.
+    /// An integer less than a count.
     pub fn below(&mut self, count: usize) -> usize {
         (self.bits() % count as u64) as usize
     }
 
-    /// A whole number between two, or one of them.
+    /// An integer between two limits, inclusive.
     pub fn whole(&mut self, low: i64, high: i64) -> i64 {
         low + self.below((high - low + 1) as usize) as i64
     }
 
-    /// Whether a number less than a count is 0.
+    /// True with the probability of one in `count`.
     pub fn one_in(&mut self, count: usize) -> bool {
         self.below(count) == 0
     }

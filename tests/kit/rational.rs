@@ -7,7 +7,7 @@ pub type Q = BigRational;
 /// A vector of rational numbers.
 pub type Point = [Q; 3];
 
-/// Exactly a number.
+/// The exact value of a number.
 pub fn rational(x: f64) -> Q {
     Q::from_float(x).expect("numbers are finite")
 }

@@ -9,17 +9,17 @@ pub fn ball(radius: f64) -> Shape {
     Shape::Sphere { radius }
 }
 
-/// What is below a plane.
+/// The half-space below a plane.
 pub fn half_space(normal: DVec3) -> Shape {
     Shape::HalfSpace { normal }
 }
 
-/// A mesh of vertices and triangles that make one.
+/// A mesh from valid vertices and triangles.
 pub fn mesh(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Shape {
     Shape::Mesh(meshes::mesh(vertices, triangles))
 }
 
-/// A box about the origin, by its half extents.
+/// A box centred at the origin, by its half extents.
 pub fn cuboid(half: impl Into<Vec3>) -> Shape {
     Shape::Mesh(meshes::cuboid(half))
 }
@@ -34,7 +34,7 @@ pub fn cow() -> Shape {
     Shape::Mesh(meshes::builtin("cow.obj"))
 }
 
-/// A mesh, stretched.
+/// A scaled mesh.
 pub fn scaled(shape: &Shape, scale: DVec3) -> Shape {
     Shape::Mesh(meshes::scaled(shape.mesh().expect("a mesh"), scale))
 }

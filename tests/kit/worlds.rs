@@ -6,7 +6,7 @@ use sim_core::{Body, Collision, DVec3, Force, Impact, Settings, Shape, StepError
 
 use crate::bodies::at;
 
-/// The acceleration of what falls, m/s².
+/// The acceleration of gravity, m/s².
 pub const GRAVITY: f64 = 9.81;
 
 /// A world of bodies.
@@ -19,7 +19,7 @@ pub fn world_of(settings: Settings, bodies: impl IntoIterator<Item = impl Borrow
 }
 
 /// Settings for impacts that are exact to rounding: the continuous mode and velocity Verlet, which is exact in free
-/// flight; the tolerance is for methods that control their error.
+/// flight. The tolerance is for methods with error control.
 pub fn precise(dt: f64) -> Settings {
     Settings {
         dt,
@@ -41,7 +41,7 @@ pub fn add_gravity(world: &mut World, acceleration: DVec3) {
         .expect("gravity");
 }
 
-/// Makes so many steps a second of what follows.
+/// Sets the number of steps per second.
 pub fn set_rate(world: &mut World, rate: f64) {
     let settings = Settings {
         dt: 1.0 / rate,
@@ -66,7 +66,7 @@ pub fn run(world: &mut World, steps: u64) -> Result<Vec<Impact>, StepError> {
     Ok(impacts)
 }
 
-/// Which shapes meet where bodies are now, by a world in which they are placed afresh.
+/// The pairs of shapes that meet at the present positions, determined by a new world.
 pub fn meeting(world: &World, settings: Settings) -> Vec<(usize, usize)> {
     let bodies = (0..world.len()).map(|i| Body {
         shape: world.shape(i).cloned(),
@@ -77,7 +77,7 @@ pub fn meeting(world: &World, settings: Settings) -> Vec<(usize, usize)> {
     world_of(settings, bodies).overlapping().to_vec()
 }
 
-/// Whether two shapes meet, the second one at an offset from the first.
+/// Whether two shapes meet; the second one is at an offset from the first.
 pub fn meet(first: &Shape, second: &Shape, offset: DVec3) -> bool {
     let pair = world([at(first, DVec3::ZERO), at(second, offset)]);
     !pair.overlapping().is_empty()

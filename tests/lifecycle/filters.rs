@@ -1,4 +1,4 @@
-//! Bodies that never collide are in each other's way in no mode.
+//! Bodies that never collide do not influence each other in any mode.
 
 use kit::bodies::{at, body, wall};
 use kit::shapes::{ball, cow, cube};
@@ -56,7 +56,7 @@ fn what_is_filtered_passes_and_what_is_not_bounces() {
                 if ignored {
                     world.ignore_pair(1, 0).expect("a pair");
                 }
-                // A few are looked at one by one, many through boxes.
+                // A few bodies are tested one by one, many through boxes.
                 for many in [false, true] {
                     let mut world = world.clone();
                     if many {
@@ -89,7 +89,7 @@ fn what_is_filtered_is_not_in_overlap_and_not_moved_out_of_it() {
         assert_eq!(world.separate(), Ok(vec![]));
         step(&mut world, 3);
         assert_eq!(world.position(1), 0.4 * DVec3::Y);
-        // And are again once they are heeded.
+        // They collide again once the pair is heeded.
         world.heed_pair(1, 0).expect("a pair");
         assert_eq!(world.overlapping(), [(0, 1)]);
         assert_eq!(world.separate().expect("room"), [0, 1]);

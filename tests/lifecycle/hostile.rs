@@ -1,4 +1,4 @@
-//! A world that is read is sound, or there is an error: never a panic, then or later.
+//! Reading a world gives a valid world or an error, and never a panic, then or later.
 
 use kit::random::Random;
 use serde_json::{Value, json};
@@ -6,10 +6,10 @@ use sim_core::{Collision, Settings, World};
 
 use super::snapshot::motley;
 
-/// Of so many worlds each is stepped: a step that is refused as too much work has done some before.
+/// The number of changed worlds that are stepped: even a step that is refused as too much work takes time.
 const STEPPED: usize = 60;
 
-/// Steps a world in every mode: each step ends, and well or with an error.
+/// Steps a world in every mode: each step ends, successfully or with an error.
 fn step_it(world: &World) {
     for collision in [Collision::Continuous, Collision::Bvh, Collision::Naive] {
         let mut world = world.clone();
@@ -30,7 +30,7 @@ fn step_it(world: &World) {
     }
 }
 
-/// Asks a world what may go wrong, and takes it apart.
+/// Calls the fallible functions of a world, and removes its bodies.
 fn use_it(mut world: World) {
     let _ = (world.state_hash(), world.contacts().count());
     assert!(world.bodies().all(|body| body.position.is_finite()));
@@ -41,7 +41,7 @@ fn use_it(mut world: World) {
     }
 }
 
-/// The places of all values.
+/// The paths of all values.
 fn places(value: &Value, here: &str, found: &mut Vec<String>) {
     found.push(here.to_owned());
     match value {
@@ -64,7 +64,7 @@ fn a_text_with_a_wrong_value_is_refused_or_sound() {
     let whole = serde_json::to_value(motley()).expect("a value");
     let mut all = Vec::new();
     places(&whole, "", &mut all);
-    // Vertices by the thousand are all the same.
+    // The thousands of vertices are all alike.
     let is_coordinate = |place: &String| place.starts_with("/shapes") && place.len() > 30;
     all.retain(|place| !is_coordinate(place));
     let (mut refused, mut random) = (0, Random::splitmix(5));

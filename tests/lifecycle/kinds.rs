@@ -1,4 +1,4 @@
-//! Dynamic, kinematic and static bodies, and impulses from outside.
+//! Dynamic, kinematic and static bodies, and external impulses.
 
 use kit::bodies::{at, body, wall};
 use kit::shapes::{ball, cube};

@@ -1,4 +1,4 @@
-//! Bodies that come, change and go; who they collide with; and worlds that are written and read.
+//! Bodies that are added, changed and removed; collision filters; and worlds that are written and read.
 
 mod filters;
 mod hostile;
@@ -11,7 +11,7 @@ use sim_core::{Collision, World};
 
 const MODES: [Collision; 3] = [Collision::Continuous, Collision::Bvh, Collision::Naive];
 
-/// Scenes in which the naive search takes minutes; the BVH has the same answers.
+/// Scenes for which the naive search takes minutes; the BVH gives the same answers.
 const SLOW: [&str; 3] = ["herd", "bin", "cows-turning"];
 
 /// Every scene of the gallery in every mode.

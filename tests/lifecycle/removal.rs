@@ -1,4 +1,4 @@
-//! What is left goes on as if the body had never been there.
+//! After a removal the others continue as if the body had never existed.
 
 use kit::bodies::{at, body, immovable, wall};
 use kit::shapes::{ball, cube};
@@ -7,11 +7,11 @@ use sim_core::{Body, BodyKind, Collision, DVec3, Force, Settings, World, WorldEr
 
 use super::{gallery, world_of};
 
-/// Steps before a body goes, and after.
+/// The number of steps before and after the removal.
 const BEFORE: u64 = 20;
 const AFTER: u64 = 20;
 
-/// Some bodies of so many: the ends and a few between.
+/// Some bodies of so many: the first, the last and a few between.
 fn some(bodies: usize) -> impl Iterator<Item = usize> {
     let places = [0, 1, 2, bodies / 3, bodies / 2, bodies.saturating_sub(1)];
     let mut places: Vec<usize> = places.into_iter().filter(|&i| i < bodies).collect();
@@ -27,7 +27,7 @@ fn a_body_that_goes_before_the_first_step_was_never_there() {
         for gone in some(scene.bodies.len()) {
             let mut world = world_of(&scene, mode);
             let handles: Vec<_> = (0..world.len()).map(|i| world.handle(i)).collect();
-            // Of what turns that is where its centre of mass is, and not its origin as in the scene.
+            // For a turning body this is the position of its centre of mass, not of its origin as in the scene.
             let there = world.position(gone);
             let removed = world.remove(gone).expect("it is there");
             assert_eq!(removed.position, there);
@@ -51,7 +51,7 @@ fn a_body_that_goes_before_the_first_step_was_never_there() {
     assert!(compared > 200, "{compared}");
 }
 
-/// Whether a body has had nothing to do with any other so far, and no force reaches it that reaches others.
+/// Whether a body has not interacted with any other so far, and no force on it acts on others.
 fn is_alone(world: &World, body: usize, touched: &[bool]) -> bool {
     !touched[body]
         && world.forces().iter().all(|force| match force {

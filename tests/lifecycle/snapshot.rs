@@ -1,4 +1,4 @@
-//! A world that is written and read goes on to the bit.
+//! A world that is written and read continues bit for bit.
 
 use kit::bodies::{at, immovable, wall};
 use kit::shapes::{ball, cube, cuboid};
@@ -10,7 +10,7 @@ use sim_core::{
 
 use super::{gallery, world_of};
 
-/// The step at which worlds are written, and the one to which they go on.
+/// The step at which worlds are written, and the last step.
 const WRITTEN: u64 = 37;
 const LAST: u64 = 100;
 
@@ -24,7 +24,7 @@ fn through_bytes(world: &World) -> World {
     postcard::from_bytes(&bytes).expect("a world")
 }
 
-/// Every way in which a world can be had again.
+/// Every way to copy a world.
 fn again(world: &World) -> [(&'static str, World); 3] {
     [
         ("a copy", world.clone()),
@@ -82,7 +82,7 @@ fn heaps_go_on_to_the_bit_from_any_step() {
                 other.step().expect("a step");
                 assert_eq!(other.state_hash(), world.state_hash(), "{name} {number}");
             }
-            // One of them goes through all of the steps, each time read anew.
+            // One of the copies is written and read again at every step.
             if let Some(other) = others.first_mut() {
                 *other = through_bytes(other);
             }
@@ -90,7 +90,7 @@ fn heaps_go_on_to_the_bit_from_any_step() {
     }
 }
 
-/// Of everything that a world can have some.
+/// A world with at least one of everything that a world can have.
 pub(crate) fn motley() -> World {
     let floor = Body {
         kind: BodyKind::Static,
@@ -171,7 +171,7 @@ fn all_that_a_world_has_goes_on_and_handles_stay() {
     for number in 0..60 {
         let mut others = again(&world);
         if number == 20 {
-            // Removed from all of them alike.
+            // Removed from all copies alike.
             world.remove(2).expect("it is there");
             for (_, other) in &mut others {
                 other.remove(2).expect("it is there");
@@ -226,7 +226,7 @@ fn how_bodies_turn_goes_on_to_the_bit_in_every_mode() {
                 assert_eq!(other.impacts(), world.impacts());
             }
         }
-        // What turns has met something.
+        // The turning bodies have collided.
         let turned = |body: usize| world.turns(body) && world.velocity(body) != DVec3::ZERO;
         assert!((0..world.len()).any(turned));
     }
@@ -285,7 +285,7 @@ fn parts_are_written_and_read_alone() {
     let read: Body = serde_json::from_str(&text).expect("a body");
     assert_eq!(read, body);
     assert_eq!(read.position.y.to_bits(), (-0.0_f64).to_bits());
-    // What is left out is as by default.
+    // Absent fields have their defaults.
     let read: Body = serde_json::from_str(r#"{"kind": "Static"}"#).expect("a body");
     assert_eq!(read.kind, BodyKind::Static);
     for method in METHODS {

@@ -1,4 +1,4 @@
-//! Contacts at the borders of faces and at the start: what blocks and what slips past.
+//! Contacts at the borders of faces and at the start: blocking ones and passing ones.
 
 use super::moving_oracle::assert_rounded_down;
 use super::moving_oracle::inputs::lattice_vector;
@@ -15,7 +15,7 @@ fn what_touches_at_the_start_touches_at_once_or_parts() {
     let bvh = |m: &Mesh| Bvh::build(m);
     let diamond = |axis| {
         let turn = DQuat::from_axis_angle(axis, std::f64::consts::FRAC_PI_4);
-        // Edges in front, rounded to the same distance wherever they point.
+        // Edges in front, rounded to the same distance in every direction.
         cube.transformed(turn, DVec3::splat(std::f64::consts::FRAC_1_SQRT_2))
             .expect("a mesh")
     };
@@ -90,7 +90,7 @@ fn what_touches_at_the_start_touches_at_once_or_parts() {
     }
 }
 
-/// Along a face there is an impact and no entering contact, past a hair's breadth neither.
+/// Motion along a face has a contact but no entering one; just past the face there is none.
 #[test]
 fn sliding_is_an_impact_and_no_contact() {
     let cube = Bvh::build(&builtin("cube.obj"));
@@ -109,7 +109,7 @@ fn sliding_is_an_impact_and_no_contact() {
     assert_eq!((touch.time, touch.normal), (0.5, DVec3::Y));
 }
 
-/// When the insides of two boxes with these half extents begin to overlap, and along which axes.
+/// The time at which the interiors of two boxes with these half extents begin to overlap, and along which axes.
 fn boxes_overlap(reach: DVec3, offset: DVec3, motion: DVec3) -> Option<(Q, Vec<usize>)> {
     let zero = || rational(0.0);
     let (mut enter, mut leave, mut axes) = (None, None, vec![]);
@@ -137,13 +137,13 @@ fn boxes_overlap(reach: DVec3, offset: DVec3, motion: DVec3) -> Option<(Q, Vec<u
     (enter < leave && enter <= rational(1.0) && leave > zero()).then_some((enter, axes))
 }
 
-/// A breadth that placed vertices keep.
+/// The smallest gap that placed vertices represent.
 const HAIR: f64 = 1.0 / (1_u64 << 40) as f64;
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// Boxes that touch more often than not block each other only where their insides would overlap.
+    /// Boxes that mostly touch block each other only if their interiors would overlap.
     #[test]
     fn boxes_slip_past_each_other(
         sizes in prop::array::uniform3((1..=2i32, 1..=2i32)),
@@ -161,7 +161,7 @@ proptest! {
         let overlap = boxes_overlap(0.5 * (one + other), offset, motion);
         let touch = first_touch(&a, &b, offset, motion);
         match overlap {
-            // In each other from the start.
+            // They overlap from the start.
             Some((time, _)) if time < rational(0.0) => {}
             None => prop_assert_eq!(touch, None),
             Some((time, axes)) => {
@@ -174,7 +174,7 @@ proptest! {
     }
 }
 
-/// Cubes flush with each other, beside and on their way past.
+/// Cubes with coplanar faces, side by side and passing each other.
 #[test]
 fn flush_cubes_slide_past_each_other() {
     let cube = Bvh::build(&builtin("cube.obj"));
@@ -193,7 +193,7 @@ fn flush_cubes_slide_past_each_other() {
     }
     let pressed = touch(v(1.0, 0.0, 0.0), v(-1e-9, 1.0, 0.0)).expect("pressed on");
     assert_eq!((pressed.time, pressed.normal), (0.0, DVec3::X));
-    // A hair within the way of the other one.
+    // Slightly within the path of the other one.
     let ahead = touch(v(1.0, -3.0, 0.0), v(-1e-9, 4.0, 0.0)).expect("in the way");
     assert_eq!((ahead.time, ahead.normal), (0.5, DVec3::NEG_Y));
 }

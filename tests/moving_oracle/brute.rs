@@ -12,13 +12,13 @@ pub(crate) fn placed(mesh: &Mesh, offset: DVec3) -> Vec<[DVec3; 3]> {
 /// First times over all features of all pairs of triangles.
 #[derive(Default)]
 pub(crate) struct First {
-    /// Of all.
+    /// The first contact of all features.
     pub(crate) impact: Option<Q>,
-    /// Of those with a plane that the motion leads through.
+    /// The first contact of features with a plane that the motion crosses.
     pub(crate) across: Option<Q>,
-    /// Of those but edges that meet at an end.
+    /// The first contact, without edges that meet at an end.
     pub(crate) inside: Option<Q>,
-    /// Of those but vertices at the border of a face: nothing slips past these.
+    /// The first contact, without vertices at the border of a face: it always blocks.
     pub(crate) sure: Option<Q>,
 }
 

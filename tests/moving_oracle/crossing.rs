@@ -1,5 +1,5 @@
-//! First contacts of meshes on a lattice: whether surfaces cross right after, in whole numbers, and
-//! whether they slip past each other where one is moved a little.
+//! First contacts of meshes on a lattice: whether surfaces cross right after, in integers, and whether they slip past
+//! each other if one is moved slightly.
 
 use kit::meshes::{builtin, scaled};
 use kit::random::Random;
@@ -10,7 +10,7 @@ use sim_core::{Bvh, DVec3, Mesh, Vec3};
 type Point = [i64; 3];
 type Triangle = [Point; 3];
 
-/// A mesh with whole coordinates, few and small.
+/// A mesh with few, small integer coordinates.
 #[derive(Clone, Debug)]
 struct Lattice {
     vertices: Vec<Point>,
@@ -36,13 +36,13 @@ fn det(u: [i128; 3], v: [i128; 3], w: [i128; 3]) -> i128 {
         + u[2] * (v[0] * w[1] - v[1] * w[0])
 }
 
-/// On which side of a plane through three points a fourth one is.
+/// The side of a plane through three points on which a fourth one lies.
 fn side([a, b, c]: [[i128; 3]; 3], d: [i128; 3]) -> i128 {
     let from = |p: [i128; 3]| [0, 1, 2].map(|i| p[i] - d[i]);
     det(from(a), from(b), from(c)).signum()
 }
 
-/// Whether an edge of one triangle passes through the inside of the other one.
+/// Whether an edge of one triangle passes through the interior of the other one.
 fn cross(s: [[i128; 3]; 3], t: [[i128; 3]; 3]) -> bool {
     let one = |s: [[i128; 3]; 3], t: [[i128; 3]; 3]| {
         (0..3).any(|i| {
@@ -82,8 +82,8 @@ struct Pair {
 #[derive(Clone, Copy, Debug)]
 struct Fraction(i128, i128);
 
-/// Times of contact are quotients of determinants, no more than `MOST` in these meshes, so that
-/// two of them are closer than `1 / MOST²` only where they are the same.
+/// Times of contact are quotients of determinants, which are at most `MOST` for these meshes, so two different times
+/// differ by at least `1 / MOST²`.
 const MOST: i64 = 1200;
 const SOON: Fraction = Fraction(1, 1 << 22);
 
@@ -124,7 +124,7 @@ impl Pair {
         first.iter().any(|&s| second.iter().any(|&t| cross(s, t)))
     }
 
-    /// Where vertices of either mesh are in triangles of the other one, each point once.
+    /// The points where vertices of either mesh are in triangles of the other one, without duplicates.
     fn vertices_touch_at(&self, time: Fraction) -> Vec<[i128; 3]> {
         let [first, second] = self.at(time);
         let mut points = vec![];
@@ -138,7 +138,7 @@ impl Pair {
         points
     }
 
-    /// `None` where there is nothing to find out.
+    /// `None` if there is nothing to test.
     fn check(&self) -> Option<Result<(), String>> {
         let [first, second] = [&self.first, &self.second].map(Lattice::mesh);
         let (first, second) = (Bvh::build(&first?), Bvh::build(&second?));
@@ -176,7 +176,7 @@ impl Pair {
         if !is_found && self.cross_at(exact.plus(SOON)) {
             return Err(format!("crosses after {exact:?}, {touch:?}"));
         }
-        // Later ones, after sliding.
+        // Later contacts, after sliding.
         let until = touch.map_or(1.0, |touch| touch.time);
         let is_later = |k: &i64| (*k as f64) / 32.0 > time && (*k as f64) / 32.0 < until;
         let later = (0..=32).filter(is_later);
@@ -195,7 +195,7 @@ impl Pair {
         });
         match (is_found, slips) {
             (true, true) => Err(format!("slips past at {exact:?}, {touch:?}")),
-            // Past one point to one side, and past another one to the other side.
+            // Past one point on one side, and past another one on the other side.
             (false, false) if self.vertices_touch_at(exact).len() > 1 => Ok(()),
             (false, false) => Err(format!("does not slip past at {exact:?}, {touch:?}")),
             _ => Ok(()),
@@ -205,12 +205,12 @@ impl Pair {
 
 const SIDEWAYS: u32 = 24;
 
-/// A place next to the origin.
+/// A lattice point next to the origin.
 fn point(random: &mut Random) -> Point {
     [0; 3].map(|_| random.whole(-1, 1))
 }
 
-/// Triangles around a vertex, some up and some down, and closed below if so wanted.
+/// Triangles around a vertex, some upwards and some downwards, optionally closed below.
 fn saddle(random: &mut Random) -> Lattice {
     let ring = [
         [1, 0],
@@ -224,7 +224,7 @@ fn saddle(random: &mut Random) -> Lattice {
     ];
     let mut vertices = vec![[0; 3]];
     for (i, [x, y]) in ring.into_iter().enumerate() {
-        // Straight ones and some of the slanted ones.
+        // The straight ones and some of the slanted ones.
         if i % 2 == 0 || random.below(3) == 0 {
             vertices.push([x, y, random.whole(-1, 1)]);
         }
@@ -251,7 +251,7 @@ fn saddle(random: &mut Random) -> Lattice {
     }
 }
 
-/// A sheet in a plane along `way`, with an edge or a corner ahead.
+/// A sheet in a plane along `way`, with an edge or a corner in front.
 fn sheet(random: &mut Random, way: Point) -> Lattice {
     let along = loop {
         let along = point(random);
@@ -275,7 +275,7 @@ fn sheet(random: &mut Random, way: Point) -> Lattice {
             vertices: vec![at(from, 0), at(to, 0), at(to, 1), at(from, 1)],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
         },
-        // Two, at an angle, with an edge ahead that has a corner.
+        // Two, at an angle, with a front edge that has a corner.
         _ => Lattice {
             vertices: vec![at(from, lag), [0; 3], at(to, lag), at(0, 2)],
             triangles: vec![[0, 1, 3], [1, 2, 3]],
@@ -343,7 +343,7 @@ fn pair(random: &mut Random) -> Pair {
     }
 }
 
-/// Of many pairs that touch more often than not at vertices and edges.
+/// Tests many pairs that mostly touch at vertices and edges.
 #[test]
 fn first_touches_are_where_surfaces_come_to_cross() {
     let count = std::env::var("PAIRS").map_or(10_000, |count| count.parse().expect("a number"));
@@ -378,8 +378,8 @@ fn lattice(vertices: &[Point], triangles: &[[u32; 3]]) -> Lattice {
     }
 }
 
-/// A sheet that comes down in its own plane, edge first, on the vertex between two heights and two
-/// valleys, open and closed: all that touches is edges.
+/// A sheet that descends in its own plane, edge first, on the vertex between two ridges and two valleys, open and
+/// closed: only edges touch.
 #[test]
 fn a_sheet_does_not_fall_through_a_saddle() {
     let vertices = [
@@ -408,7 +408,7 @@ fn a_sheet_does_not_fall_through_a_saddle() {
             let touch = first_touch(&b, &a, -from, -down).expect("in the way");
             assert_eq!(touch.time, 0.25);
             assert!(touch.normal.z < -0.5, "{touch:?}");
-            // Put there, or with the crossing behind it.
+            // Placed there, or moved past the crossing.
             let at_once = first_touch(&a, &b, DVec3::ZERO, down).expect("in the way");
             assert_eq!(at_once.time, 0.0);
             assert_eq!(first_touch(&a, &b, DVec3::ZERO, -down), None);
@@ -416,7 +416,7 @@ fn a_sheet_does_not_fall_through_a_saddle() {
     }
 }
 
-/// A corner that comes to a wall from within, on the border between the wall's triangles.
+/// A corner that reaches a wall from inside, on the border between the wall's triangles.
 #[test]
 fn what_is_inside_a_shell_does_not_leave_between_triangles() {
     let shell = scaled(&builtin("cube.obj"), DVec3::splat(8.0));

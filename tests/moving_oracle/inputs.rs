@@ -1,11 +1,11 @@
-//! Points and meshes that touch more often than not, and any.
+//! Points and meshes that mostly touch, and arbitrary ones.
 
 use kit::inputs::{hard_coordinate, soup};
 use proptest::prelude::*;
 use sim_core::{DVec3, Mesh, Vec3};
 
-/// Points that touch, coincide and lie in planes and lines more often than not: a small lattice, some
-/// of it moved by an ulp, scaled by a power of two and moved far away; and a motion likewise.
+/// Points that mostly touch, coincide or lie in common planes and lines: on a small lattice, some of them moved by an
+/// ulp, scaled by a power of two and moved far away; with a motion of the same kind.
 pub(crate) fn hard_points<const N: usize>() -> impl Strategy<Value = ([DVec3; N], DVec3)> {
     let coordinate = (0..4i32, -1..=1i32);
     let points = prop::array::uniform::<_, N>(prop::array::uniform3(coordinate));
@@ -26,7 +26,7 @@ pub(crate) fn hard_points<const N: usize>() -> impl Strategy<Value = ([DVec3; N]
     )
 }
 
-/// Any points and any motion, long enough to meet something.
+/// Arbitrary points with an arbitrary motion, long enough to meet something.
 pub(crate) fn any_points<const N: usize>() -> impl Strategy<Value = ([DVec3; N], DVec3)> {
     let points = prop::array::uniform::<_, N>(prop::array::uniform3(-1.0..1.0f64));
     (points, prop::array::uniform3(-3.0..3.0f64))

@@ -1,7 +1,7 @@
-//! First times of contact in exact rational arithmetic: slow, plain, and by another way than the
-//! library.
+//! First times of contact in exact rational arithmetic: slow, simple, and by another method than the library's.
 //!
-//! A moving point is held against a convex polygon by cutting down its interval of times, one linear
+//! For a moving point and a convex polygon, the interval of times is clipped by one linear condition after the other.
+//! Two edges are equivalent to one point and the parallelogram of their differences.
 //! condition after the other. Two edges are one point against the parallelogram of their differences.
 
 pub(crate) mod brute;
@@ -19,7 +19,7 @@ fn add(a: &Point, b: &Point) -> Point {
     [0, 1, 2].map(|i| &a[i] + &b[i])
 }
 
-/// Times from 0 to 1 that are left.
+/// The remaining times from 0 to 1.
 struct Times {
     from: Q,
     to: Q,
@@ -33,7 +33,7 @@ impl Times {
         }
     }
 
-    /// Keeps those with `at_start + t rate >= 0`.
+    /// Keeps the times with `at_start + t rate >= 0`.
     fn keep(&mut self, at_start: &Q, rate: &Q) {
         if *rate > zero() {
             self.from = self.from.clone().max(-at_start / rate);
@@ -44,7 +44,7 @@ impl Times {
         }
     }
 
-    /// Keeps those with `at_start + t rate = 0`.
+    /// Keeps the times with `at_start + t rate = 0`.
     fn keep_zero(&mut self, at_start: &Q, rate: &Q) {
         self.keep(at_start, rate);
         self.keep(&-at_start, &-rate);
@@ -55,7 +55,7 @@ impl Times {
     }
 }
 
-/// When a moving point first meets a segment.
+/// The time at which a moving point first meets a segment.
 fn in_segment(p: &Point, motion: &Point, a: &Point, b: &Point) -> Option<Q> {
     let (along, from) = (sub(b, a), sub(p, a));
     let mut times = Times::all();
@@ -71,7 +71,7 @@ fn in_segment(p: &Point, motion: &Point, a: &Point, b: &Point) -> Option<Q> {
     times.first()
 }
 
-/// When a moving point first meets a convex polygon, whose corners may lie on one line.
+/// The time at which a moving point first meets a convex polygon, whose corners may be collinear.
 fn in_polygon(p: &Point, motion: &Point, corners: &[Point]) -> Option<Q> {
     let normal = cross(
         &sub(&corners[1], &corners[0]),
@@ -109,7 +109,7 @@ pub(crate) fn edge_meets_edge([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], motion: DV
     in_polygon(&c, &point(motion), &corners)
 }
 
-/// Whether the motion leads through the plane of two vectors.
+/// Whether the motion crosses the plane of two vectors.
 pub(crate) fn is_across(u: [DVec3; 2], v: [DVec3; 2], motion: DVec3) -> bool {
     let along = |[from, to]: [DVec3; 2]| sub(&point(to), &point(from));
     dot(&cross(&along(u), &along(v)), &point(motion)) != zero()

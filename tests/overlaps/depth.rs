@@ -1,4 +1,4 @@
-//! How deep bodies are in each other, against closed forms.
+//! The depths of overlaps, against closed forms.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use sim_core::{Body, DQuat, DVec3, Shape, Turn, Vec3, World};
 
 use crate::{WEIGHT, touching};
 
-/// The only overlap of a world of two.
+/// The only overlap of a world with two bodies.
 fn only(world: &World) -> sim_core::Overlap {
     let overlaps = world.overlaps();
     assert_eq!(overlaps.len(), 1, "{overlaps:?}");
@@ -114,7 +114,7 @@ impl SelectOne for glam::BVec3 {
     }
 }
 
-/// A way along the face or edge that is nearest in a direction.
+/// The path along the face or edge nearest to a direction.
 fn free_way(out: DVec3) -> DVec3 {
     DVec3::select(out.cmpeq(DVec3::ZERO), DVec3::ONE, DVec3::ZERO)
 }
@@ -130,7 +130,7 @@ fn a_depth_parts_and_less_does_not() {
         let offset = (touching(first, second, direction) - depth) * direction;
         let overlaps = world([at(first, DVec3::ZERO), at(second, offset)]).overlaps();
         let Some(overlap) = overlaps.first() else {
-            // Between what is hollow it may be apart.
+            // Between hollow bodies there may be positions without contact.
             continue;
         };
         let by = |part: f64| offset + (part * overlap.depth) * overlap.normal;
@@ -150,7 +150,7 @@ fn what_touches_by_rounding_is_no_overlap() {
     for _ in 0..400 {
         let normal = random.direction();
         let place = 10.0 * random.vector();
-        // Meant to touch, by numbers that are rounded.
+        // Constructed to touch, with rounded numbers.
         let bodies = [
             immovable(at(&half_space(normal), place)),
             at(
@@ -169,7 +169,7 @@ fn what_touches_by_rounding_is_no_overlap() {
         }
     }
     assert!(met > 50 && met < balls, "{met} of {balls}");
-    // And what is deeper is one.
+    // A deeper position is an overlap.
     let body = at(&ball(0.5), DVec3::Y * (0.5 - 1e-6));
     let world = world([immovable(at(&half_space(DVec3::Y), DVec3::ZERO)), body]);
     let flush = world.flush(0, 1);
@@ -208,7 +208,7 @@ fn turning_bodies_in_one_place_are_told() {
     let Shape::Mesh(one) = cow() else {
         unreachable!()
     };
-    // Two parts that do not hang together.
+    // Two components in one mesh.
     let beside = one.vertices().iter().map(|&v| v + Vec3::new(3.0, 0.0, 0.0));
     let vertices = one.vertices().iter().copied().chain(beside);
     let more = one.vertices().len() as u32;

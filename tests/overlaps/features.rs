@@ -7,7 +7,7 @@ use sim_core::{ContactFeature, DVec3, Feature, RestingContact, Touching, World};
 
 use crate::WEIGHT;
 
-/// The contacts of a world after a few steps, and what touches in each.
+/// The contacts of a world after a few steps, and the touching features of each.
 fn touching(mut world: World) -> Vec<(RestingContact, Vec<Touching>)> {
     add_gravity(&mut world, WEIGHT);
     for _ in 0..5 {
@@ -65,7 +65,7 @@ fn a_cube_stands_on_the_corners_of_its_face() {
                 .is_some_and(|shape| shape.mesh().is_some());
             let touching = only(world(pair));
             has_points(&touching, &corners);
-            // Those of its lower side.
+            // The vertices of its lower side.
             let vertices = touching.iter().map(|touch| match touch.feature {
                 ContactFeature::Meshes(Feature::VertexFace { vertex, .. })
                     if is_mesh && is_first =>
@@ -89,7 +89,7 @@ fn a_cube_stands_on_the_corners_of_its_face() {
 
 #[test]
 fn faces_that_lie_across_each_other_touch_where_their_edges_cross_and_in_corners() {
-    // Bars across each other.
+    // Crossed bars.
     let lower = immovable(at(&cuboid([2.0, 0.5, 0.25]), DVec3::ZERO));
     let bar = at(&cuboid([0.25, 0.5, 2.0]), DVec3::Y);
     let touching = only(world([lower.clone(), bar]));
@@ -143,7 +143,7 @@ fn what_is_round_touches_a_face_an_edge_or_a_corner() {
         };
         let face = touched(DVec3::new(0.1, 0.5, 0.2), DVec3::Y);
         assert!(matches!(face, ContactFeature::Face(_)), "{face:?}");
-        // Over the diagonal of a side, which is no edge.
+        // On the diagonal of a side, which is not an edge.
         let face = touched(DVec3::new(0.0, 0.5, 0.0), DVec3::Y);
         assert!(matches!(face, ContactFeature::Face(_)), "{face:?}");
         let edge = touched(
@@ -184,7 +184,7 @@ fn each_contact_of_a_corner_has_its_own_features() {
             assert!(along.abs() < 1e-9, "{touch:?}");
         }
     }
-    // And an overlap has none that are known.
+    // The features of an overlap are not known.
     let mut pair = world([
         at(&cuboid([0.5; 3]), DVec3::ZERO),
         at(&cuboid([0.5; 3]), 0.5 * DVec3::X),

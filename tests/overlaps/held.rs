@@ -1,4 +1,4 @@
-//! What is put into the world in overlap is held: it gets no deeper, and energy does not rise.
+//! Bodies placed in overlap are held together: the overlap gets no deeper, and energy does not rise.
 
 use kit::bodies::{at, immovable};
 use kit::random::Random;
@@ -8,13 +8,13 @@ use sim_core::{Body, BodyKind, DVec3, Shape, World};
 
 use crate::{WEIGHT, touching};
 
-/// Steps, and after each looks that no overlap is deeper than it was at the start, nor a new one there,
-/// and that the energy is not more.
+/// Makes steps, and checks after each that no overlap is deeper than at the start, that there is no new one, and that
+/// the energy has not grown.
 fn assert_held(world: &mut World, steps: u64, what: &str) {
     let starts = world.overlaps();
     let energy = |world: &World| world.kinetic_energy() + world.potential_energy();
     let (first, mut moved) = (energy(world), 0.0_f64);
-    // What is no overlap is moved apart where it is placed, by no more than rounding, against gravity too.
+    // Touching bodies that do not overlap are moved apart initially, by no more than rounding, even against gravity.
     let lifted = match starts.is_empty() {
         true => 3.0 * 9.81 * world.flush(0, 1) * movable_mass(world),
         false => 0.0,
@@ -44,13 +44,13 @@ fn assert_held(world: &mut World, steps: u64, what: &str) {
     }
 }
 
-/// The mass of all that can move, kg.
+/// The mass of all movable bodies, kg.
 fn movable_mass(world: &World) -> f64 {
     let movable = world.bodies().filter(|body| body.kind.is_movable());
     movable.map(|body| body.mass).sum()
 }
 
-/// Two shapes in each other by some depth along a direction.
+/// Two shapes that overlap by some depth along a direction.
 fn pair(first: &Shape, second: &Shape, direction: DVec3, depth: f64) -> [Body; 2] {
     let offset = (touching(first, second, direction) - depth) * direction;
     [at(first, DVec3::ZERO), at(second, offset)]

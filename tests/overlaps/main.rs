@@ -1,4 +1,4 @@
-//! Bodies in each other: how deep they are, that they get no deeper, and that they can be moved apart.
+//! Overlapping bodies: their depth, that it does not grow, and that they can be moved apart.
 
 mod depth;
 mod features;
@@ -8,12 +8,12 @@ mod separate;
 use kit::worlds::meet;
 use sim_core::{DVec3, Shape};
 
-/// The weight of all, m/s².
+/// Gravity on all bodies, m/s².
 const WEIGHT: DVec3 = DVec3::new(0.0, -9.81, 0.0);
 
-/// The least distance along a direction from which on two shapes are apart, within 1e-13 of the size.
+/// The least distance along a direction beyond which two shapes are apart, within 1e-13 of the size.
 fn touching(first: &Shape, second: &Shape, direction: DVec3) -> f64 {
-    // Within the way they may be apart as well, as a mesh is hollow.
+    // At smaller distances they may be apart too, because a mesh is hollow.
     let mut high = 64.0;
     while !meet(first, second, high * direction) {
         high *= 0.95;

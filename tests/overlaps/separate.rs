@@ -1,4 +1,4 @@
-//! Bodies in overlap are moved out of each other, and nothing overlaps afterwards.
+//! Overlapping bodies are moved apart, and nothing overlaps afterwards.
 
 use kit::bodies::{at, immovable};
 use kit::random::Random;
@@ -89,7 +89,7 @@ fn two_share_the_way_by_their_masses() {
 fn chains_and_heaps_are_moved_apart() {
     for shape in [ball(0.5), cuboid([0.5; 3])] {
         let floor = immovable(at(&half_space(DVec3::Y), DVec3::ZERO));
-        // Each in the next one, and the lowest in the floor.
+        // Each overlaps the next one, and the lowest overlaps the floor.
         let chain = (0..20).map(|k| at(&shape, DVec3::Y * (0.2 + 0.7 * f64::from(k))));
         let mut chain = world(core::iter::once(floor.clone()).chain(chain));
         assert_eq!(separated(&mut chain, "chain").len(), 20);
@@ -106,7 +106,7 @@ fn chains_and_heaps_are_moved_apart() {
         let mut heap = world(core::iter::once(floor).chain(heap.collect::<Vec<_>>()));
         assert!(heap.overlapping().len() > 100);
         separated(&mut heap, "heap");
-        // Nobody is thrown about.
+        // No body is moved far.
         for body in 1..heap.len() {
             assert!(
                 heap.position(body).length() < 8.0,
@@ -120,7 +120,7 @@ fn chains_and_heaps_are_moved_apart() {
             assert_eq!(heap.overlapping(), []);
         }
     }
-    // All in one place.
+    // All at one position.
     let mut crowd = world((0..12).map(|_| at(&ball(0.5), DVec3::ONE)));
     separated(&mut crowd, "all in one place");
     let mut herd =
@@ -188,13 +188,13 @@ fn what_fits_nowhere_is_told_and_nothing_is_moved() {
         assert!(error.to_string().contains("body 0 does not fit"), "{error}");
         assert_eq!(world.state_hash(), before);
         assert_eq!(world.overlaps().len(), 3);
-        // It goes on all the same.
+        // The world can be stepped nevertheless.
         add_gravity(&mut world, WEIGHT);
         for _ in 0..30 {
             world.step().expect("a step");
         }
     }
-    // A box of half-spaces that is full.
+    // A full box of half-spaces.
     let walls = DVec3::AXES.iter().flat_map(|&n| [n, -n]);
     let walls = walls.map(|n| immovable(at(&half_space(n), -0.6 * n)));
     let balls = [at(&ball(0.5), DVec3::ZERO), at(&ball(0.5), 0.1 * DVec3::X)];

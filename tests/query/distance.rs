@@ -1,4 +1,4 @@
-//! Distances of meshes: of two triangles against rational arithmetic, of many against those of two.
+//! Distances of meshes: of two triangles against rational arithmetic, of many against those of pairs.
 
 use kit::meshes::{builtin, cube, grid, mesh};
 use kit::rational::{Q, rational, zero};
@@ -8,7 +8,7 @@ use sim_core::{Bvh, DQuat, DVec3, Mesh, Vec3};
 
 use crate::oracle::{Triangle, distance_square};
 
-/// What the documentation promises, in sizes of the triangles and their distance.
+/// The documented error, relative to the sizes of the triangles and their distance.
 const ERROR: f64 = 16.0 * 0.5 * f64::EPSILON;
 
 fn at(tree: &Bvh, position: DVec3) -> Placed<'_> {
@@ -23,7 +23,7 @@ fn triangle(corners: [Vec3; 3]) -> Bvh {
     Bvh::build(&mesh(corners.to_vec(), vec![[0, 1, 2]]))
 }
 
-/// Corners as they are placed.
+/// The corners after placement.
 fn placed(corners: [Vec3; 3], offset: DVec3) -> Triangle {
     corners.map(|v| v.as_dvec3() + offset)
 }
@@ -34,11 +34,12 @@ fn size(s: Triangle) -> f64 {
         .max(s[2].distance(s[0]))
 }
 
-/// Holds the distance of two triangles to the exact one, and its points and parts to the distance.
+/// Compares the distance of two triangles with the exact one, and its points and features with the distance.
 fn check(first: [Vec3; 3], second: [Vec3; 3], offset: DVec3) -> Result<bool, TestCaseError> {
     let (one, other) = (triangle(first), triangle(second));
     let found = between(&one, &other, offset);
-    // Of two meshes the one that is lower is asked first, and the other one's vertices are placed.
+    // The frame is that of the mesh with the lexicographically lower position; the other one's vertices are placed in
+    // it.
     let (x, y, z) = offset.into();
     let (s, t) = match (x, y, z) < (0.0, 0.0, 0.0) {
         true => (placed(first, -offset), placed(second, DVec3::ZERO)),
@@ -73,7 +74,7 @@ fn check(first: [Vec3; 3], second: [Vec3; 3], offset: DVec3) -> Result<bool, Tes
         for (part, (corners, point)) in found.parts.iter().zip([(first, p), (second, q - offset)]) {
             let [a, b, c] = corners.map(|v| v.as_dvec3());
             let ends = [[a, b], [b, c], [c, a]];
-            // The point lies on the part.
+            // The point lies on the feature.
             let aside = match part.expect("parts are told") {
                 Part::Vertex(k) => point.distance([a, b, c][k as usize]),
                 Part::Edge(k) => {
@@ -91,7 +92,7 @@ fn check(first: [Vec3; 3], second: [Vec3; 3], offset: DVec3) -> Result<bool, Tes
     Ok(found.distance > 0.0)
 }
 
-/// On a lattice: parallel faces and edges, corners over edges, faces in one plane, needles, points.
+/// On a lattice: parallel faces and edges, corners over edges, coplanar faces, needles, points.
 fn lattice() -> impl Strategy<Value = [Vec3; 3]> {
     let corner = || prop::array::uniform3(-3_i8..=3).prop_map(|p| Vec3::from(p.map(f32::from)));
     prop::array::uniform3(corner())
@@ -101,7 +102,7 @@ fn anywhere() -> impl Strategy<Value = [Vec3; 3]> {
     prop::array::uniform3(prop::array::uniform3(-1.0_f32..1.0).prop_map(Vec3::from))
 }
 
-/// Long and thin, down to the roundings of its corners, and nearly along x.
+/// Long and thin, down to the rounding of its corners, and nearly along x.
 fn needle() -> impl Strategy<Value = [Vec3; 3]> {
     (anywhere(), -24_i32..0, -24_i32..0).prop_map(|(corners, thin, aside)| {
         let [a, b, c] = corners;
@@ -141,7 +142,7 @@ proptest! {
     ) {
         let proper = |[a, b, c]: [Vec3; 3]| a != b && b != c && c != a;
         prop_assume!(proper(first) && proper(second));
-        // From 1e-6 to 1e6, of one size or not.
+        // From 1e-6 to 1e6, with equal sizes or not.
         let scales = [2.0_f32.powi(scale), 2.0_f32.powi(if other % 2 == 0 { scale } else { other })];
         let first = first.map(|v| scales[0] * v);
         let second = second.map(|v| scales[1] * v);
@@ -152,7 +153,7 @@ proptest! {
 proptest! {
     #![proptest_config(config(200))]
 
-    /// Trees leave nothing out: as near as the nearest of all pairs of triangles.
+    /// Trees skip nothing: the distance is the least of all pairs of triangles.
     #[test]
     fn meshes_are_as_far_apart_as_their_nearest_triangles(
         shapes in prop::array::uniform2(0_usize..4),
@@ -179,7 +180,7 @@ proptest! {
         let slack = 2.0 * ERROR * (4.0 * scale + found.distance);
         prop_assert!((found.distance - nearest).abs() <= slack, "{found:?} {nearest}");
         prop_assert_eq!(found.distance == 0.0, nearest == 0.0);
-        // A point of one is no farther from the other.
+        // The distance of a point of one mesh to the other is no greater.
         let [p, _] = found.points;
         let point = Placed::sphere(0.0, p).expect("a point");
         let second = Bvh::build(&second);
@@ -235,7 +236,7 @@ fn cubes_face_edge_and_corner_on_are_as_far_apart_as_their_corners_say() {
     }
 }
 
-/// Many ties: every triangle of one is as near as any other.
+/// Many ties: every triangle of one has the same distance.
 #[test]
 fn parallel_sheets_are_one_metre_apart() {
     let sheet = |n| Bvh::build(&grid(n, false, |x, z| Vec3::new(x, 0.0, z)));

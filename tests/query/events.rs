@@ -141,7 +141,7 @@ fn what_is_lifted_ends_and_what_is_listed_late_persists() {
     assert!(world.contact_events().is_empty() && world.contacts().count() > 0);
 }
 
-/// A ball without restitution that lands gets what it has lost and what holds it.
+/// A ball without restitution that lands gets an impulse for its lost speed and one against gravity.
 #[test]
 fn impulses_are_what_momentum_lacks() {
     for restitution in [0.0, 0.5, 1.0] {
@@ -177,7 +177,8 @@ fn impulses_are_what_momentum_lacks() {
     }
 }
 
-/// As many contacts have begun and not ended as there are, in each mode; and steps are the same as unlisted.
+/// The number of begun contacts minus that of ended ones is the number of contacts, in each mode; and listing does not
+/// change steps.
 #[test]
 fn what_has_begun_and_not_ended_is_in_contact() {
     let mut seen = [0; 3];
@@ -185,7 +186,7 @@ fn what_has_begun_and_not_ended_is_in_contact() {
         for collision in [Collision::Continuous, Collision::Bvh] {
             let mut scene = entry.scene().expect("a gallery scene");
             scene.collision = collision;
-            // The discrete modes turn nothing.
+            // The discrete modes rotate no bodies.
             let turns = scene.bodies.iter().any(|body| body.turn.is_some());
             if turns && collision != Collision::Continuous {
                 continue;
@@ -231,7 +232,7 @@ fn what_has_begun_and_not_ended_is_in_contact() {
     assert!(seen.iter().all(|&count| count > 500), "{seen:?}");
 }
 
-/// A step that fails changes no events, and leaves none behind.
+/// A failed step neither changes events nor leaves new ones.
 #[test]
 fn a_step_that_fails_lists_nothing() {
     let squeezed = [

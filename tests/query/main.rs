@@ -1,4 +1,4 @@
-//! Questions about shapes and worlds, against slower ways to the same answers.
+//! Queries about shapes and worlds, against slower methods.
 
 mod distance;
 mod events;

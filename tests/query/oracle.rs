@@ -35,7 +35,7 @@ fn square(p: &Point) -> Q {
     dot(p, p)
 }
 
-/// From a point to a segment, its ends included.
+/// From a point to a segment, including its ends.
 fn to_edge(p: &Point, a: &Point, b: &Point) -> Option<Q> {
     let (along, way) = (sub(b, a), sub(p, a));
     let part = dot(&way, &along);
@@ -47,7 +47,7 @@ fn to_edge(p: &Point, a: &Point, b: &Point) -> Option<Q> {
     Some(square(&cross(&way, &along)) / length)
 }
 
-/// From a point to the inner part of a face.
+/// From a point to the interior of a face.
 fn to_face(p: &Point, corners: &[Point; 3]) -> Option<Q> {
     let [a, b, c] = corners;
     let normal = cross(&sub(b, a), &sub(c, a));
@@ -61,7 +61,7 @@ fn to_face(p: &Point, corners: &[Point; 3]) -> Option<Q> {
     })
 }
 
-/// Of the inner parts of two segments that pass each other.
+/// Between the interiors of two skew segments.
 fn of_edges([a, b]: [&Point; 2], [c, d]: [&Point; 2]) -> Option<Q> {
     let (u, v, r) = (sub(b, a), sub(d, c), sub(c, a));
     let normal = cross(&u, &v);

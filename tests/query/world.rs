@@ -1,4 +1,4 @@
-//! Questions about all bodies of a world, against a loop over them.
+//! Queries about all bodies of a world, against a loop over them.
 
 use kit::bodies::{at, immovable, wall};
 use kit::random::Random;
@@ -11,7 +11,7 @@ fn vector(random: &mut Random, most: f64) -> DVec3 {
     DVec3::from([(); 3].map(|()| random.from(-most, most)))
 }
 
-/// The best of all bodies by a measure, of equal ones the lowest.
+/// The best of all bodies by a measure; among equal ones, the lowest index.
 fn best(
     world: &World,
     ask: impl Fn(Placed<'_>) -> Option<Hit>,
@@ -26,7 +26,7 @@ fn is_left_out(body: usize) -> bool {
     body % 17 == 3
 }
 
-/// Holds the answers of a world to those of a loop, and counts those that are not "nothing".
+/// Compares the answers of a world with those of a loop, and counts the hits.
 fn compare(world: &World, random: &mut Random) -> [usize; 4] {
     let among = |body: usize| !is_left_out(body);
     let mut found = [0; 4];
@@ -81,7 +81,7 @@ fn compare(world: &World, random: &mut Random) -> [usize; 4] {
     found
 }
 
-/// A body of any kind somewhere, on a lattice where several are as near.
+/// A body of any kind at a random position, on a lattice with several bodies at equal distances.
 fn some_body(random: &mut Random, round: usize) -> Body {
     let lattice = vector(random, 10.0).round();
     let place = if random.one_in(2) {
@@ -118,7 +118,7 @@ fn worlds_answer_as_a_loop_over_their_bodies_does() {
     for round in 0..12 {
         let count = [0, 1, 20, 33, 200, 700][round % 6];
         let mut world = world((0..count).map(|_| some_body(&mut random, round)));
-        // What has moved, been placed or added is where it is now, also right after a question.
+        // Moved, placed and added bodies are found at their new positions, even right after a query.
         for change in 0..5 {
             if world.is_empty() {
                 assert_eq!(world.cast_ray(DVec3::ZERO, DVec3::X, |_| true), Ok(None));
@@ -159,7 +159,7 @@ fn worlds_refuse_what_is_no_number() {
     assert!(world.nearest(bad, |_| true).is_err());
 }
 
-/// Of a hundred thousand cubes a ray, a place and a point look at few.
+/// Among a hundred thousand cubes, queries with a ray, a position or a point test only a few.
 #[test]
 fn what_is_asked_of_many_bodies_takes_few_of_them() {
     let cube = cube();
@@ -172,7 +172,7 @@ fn what_is_asked_of_many_bodies_takes_few_of_them() {
     };
     let mut hits = 0;
     for round in 0..40 {
-        // The first few questions loop over all boxes.
+        // The first few queries loop over all boxes.
         let is_few = |most: usize| assert!(round < 4 || asked.replace(0) < most, "{round}");
         asked.set(0);
         let from = DVec3::new(-5.0, 0.1 * f64::from(round) + 20.3, 30.2);

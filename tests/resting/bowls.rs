@@ -1,4 +1,4 @@
-//! Balls that swing and circle in bowls of flat triangles, beside the pendulum.
+//! Balls that swing and circle in bowls of flat triangles, compared with the pendulum.
 
 use std::f64::consts::TAU;
 
@@ -12,10 +12,10 @@ use crate::scenes::conical_pendulum;
 
 const BOWL: f64 = 2.0;
 const RADIUS: f64 = 0.25;
-/// Of the pendulum.
+/// The length of the pendulum, m.
 const LENGTH: f64 = BOWL - RADIUS;
 
-/// A part of a sphere about the origin, open at the top, of triangles between its rings.
+/// A part of a sphere about the origin, open at the top, with triangles between its rings.
 fn bowl(sides: u32) -> Shape {
     let open = 1.2;
     let rings = (f64::from(sides) * open / TAU).ceil() as u32;
@@ -40,7 +40,7 @@ fn bowl(sides: u32) -> Shape {
     mesh(vertices, triangles)
 }
 
-/// A ball that touches the bowl at an angle from its lowest point, with a velocity across.
+/// A ball that touches the bowl at an angle from its lowest point, with a velocity across the slope.
 fn in_bowl(sides: u32, angle: f64, across: f64, restitution: f64) -> World {
     let shape = bowl(sides);
     let tree = Bvh::build(shape.mesh().expect("it is one"));
@@ -65,14 +65,14 @@ fn in_bowl(sides: u32, angle: f64, across: f64, restitution: f64) -> World {
     world
 }
 
-/// From the lowest point.
+/// The energy relative to the lowest point.
 fn energy(world: &World) -> f64 {
     let height = world.position(1).y + LENGTH;
     0.5 * world.velocity(1).length_squared() + GRAVITY * height
 }
 
-/// Runs for a time, and returns the part of the energy that is lost and the greatest rise in a step, as a part
-/// of it; `look` is told time and place after each step.
+/// Runs for a time. Returns the fraction of the energy that is lost, and the greatest rise in a step as a fraction of
+/// the energy; `look` receives time and position after each step.
 fn run(world: &mut World, time: f64, mut look: impl FnMut(f64, DVec3)) -> (f64, f64) {
     let start = energy(world);
     let (mut last, mut rise) = (start, 0.0_f64);
@@ -87,8 +87,8 @@ fn run(world: &mut World, time: f64, mut look: impl FnMut(f64, DVec3)) -> (f64, 
     (1.0 - last / start, rise)
 }
 
-/// At each edge from one flat triangle to the next what is not elastic loses the part of its motion across:
-/// a part of the energy that falls with their number. None of it is lost on the triangles themselves.
+/// At each edge between flat triangles an inelastic ball loses the component of its motion across: a fraction of the
+/// energy that decreases with the number of edges. On the triangles themselves nothing is lost.
 #[test]
 fn balls_circle_in_bowls_as_on_a_pendulum() {
     let angle: f64 = 0.5;
@@ -119,8 +119,8 @@ fn balls_circle_in_bowls_as_on_a_pendulum() {
     assert!(lost[0] < 0.2 && lost[1] < 0.7 * lost[0], "{lost:?}");
 }
 
-/// Through the lowest point, where a ball is on several flat triangles within a step: it rises on the other side
-/// nearly as high.
+/// Through the lowest point, where a ball crosses several flat triangles in a step: it rises on the other side to
+/// nearly the same height.
 #[test]
 fn balls_swing_through_the_lowest_point_of_a_bowl() {
     let angle: f64 = 0.6;

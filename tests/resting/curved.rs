@@ -1,4 +1,4 @@
-//! Motion over curved surfaces without friction: energy, where a body leaves, and how long a bowl takes.
+//! Motion over curved surfaces without friction: the energy, the point where a body leaves, and the period in a bowl.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -19,8 +19,8 @@ fn energy(world: &World, body: usize) -> f64 {
     0.5 * world.velocity(body).length_squared() + GRAVITY * world.position(body).y
 }
 
-/// A ball on top of a ball, pushed off: the speed along x that it keeps once it has left, m/s, and what
-/// energy it has gained in a step at most and lost in all until then, of `g R`.
+/// A ball on top of a ball is pushed off. Returns the speed along x after it has left, m/s, and the greatest gain of
+/// energy in a step and the total loss until then, relative to `g R`.
 fn leave(rate: f64) -> (f64, f64, f64) {
     let mut world = at_rate(rate);
     let radius = 1.5;
@@ -49,14 +49,15 @@ fn leave(rate: f64) -> (f64, f64, f64) {
     }
 }
 
-/// The horizontal speed, m/s, with which something leaves a circle of a radius, m, on whose top it has had a speed:
-/// it leaves at `cos a = 2/3 + v²/(3 g R)` with `√(g R cos a)`.
+/// The horizontal speed, m/s, with which a body leaves a circle of a radius, m, if its speed on top is `speed`: it
+/// leaves at
+/// `cos a = 2/3 + v²/(3 g R)` with the speed `√(g R cos a)`.
 fn speed_off_a_ball(speed: f64, radius: f64) -> f64 {
     let cosine = 2.0 / 3.0 + speed * speed / (3.0 * GRAVITY * radius);
     (GRAVITY * radius * cosine).sqrt() * cosine
 }
 
-/// Of the first order in the step.
+/// The error is of the first order in the step.
 #[test]
 fn a_ball_leaves_a_ball_where_it_must() {
     let exact = speed_off_a_ball(0.3, 1.5);
@@ -72,7 +73,7 @@ fn a_ball_leaves_a_ball_where_it_must() {
     }
 }
 
-/// A cube that slides over the edge of a ramp's top falls from there.
+/// A cube slides over the edge at a ramp's top and falls from there.
 #[test]
 fn a_ramp_gives_a_body_the_speed_of_its_height() {
     for slope in [0.25_f64, 0.5, 1.0, 2.0] {
@@ -97,7 +98,7 @@ fn a_ramp_gives_a_body_the_speed_of_its_height() {
             world.step().expect("a step");
             assert!(world.time() < 10.0, "{slope}: stuck");
         }
-        // The floor takes what is across it.
+        // The floor absorbs the velocity component across it.
         let speed = (2.0 * GRAVITY * height).sqrt() * normal.y;
         let error = (world.velocity(2).x - speed).abs();
         assert!(error < 1e-9, "{slope}: {error:e}");
@@ -105,7 +106,7 @@ fn a_ramp_gives_a_body_the_speed_of_its_height() {
     }
 }
 
-/// A bowl of triangles: one outline of a sphere's lower half, for a small ball.
+/// A bowl of triangles, the lower half of a sphere, for a small ball.
 fn in_bowl(rate: f64, sides: u32) -> World {
     let mut world = at_rate(rate);
     let outline: Vec<[f64; 2]> = (0..=sides / 4)
@@ -120,12 +121,12 @@ fn in_bowl(rate: f64, sides: u32) -> World {
     world
 }
 
-/// To and fro in a bowl, and round it: no energy comes, and the period is that of the pendulum.
+/// To and fro in a bowl, and around it: the energy does not grow, and the period is that of the pendulum.
 #[test]
 fn balls_circle_in_a_bowl() {
     let mut world = in_bowl(240.0, 96);
     let (radius, length) = (0.25, 1.75);
-    // Put in where it touches, at a small height, with the speed that keeps it there.
+    // Placed in contact, at a small height, with the speed that keeps it there.
     let angle = 0.4_f64;
     let at = length * DVec3::new(angle.sin(), -angle.cos(), 0.0);
     let (speed, period) = conical_pendulum(length, angle);
@@ -152,12 +153,12 @@ fn balls_circle_in_a_bowl() {
         last = angle;
         assert!(at.length() < length + 1e-3, "{at}: through the bowl");
     }
-    // Facets take some speed at each of their edges.
+    // The facets take some speed at each of their edges.
     assert!(turned.abs() > 1.5 * PI, "{turned}");
     assert!(world.position(1).y < -1.0);
 }
 
-/// Off a cube's edge: what slides over it with a speed goes on as a stone that is thrown.
+/// Off a cube's edge: a body that slides over it continues as a projectile.
 #[test]
 fn off_an_edge_a_ball_flies_or_rolls_over_it() {
     for rate in [60.0, 1000.0] {
@@ -181,7 +182,7 @@ fn off_an_edge_a_ball_flies_or_rolls_over_it() {
             }
             let at = world.position(1);
             if flies {
-                // Faster than the edge bends its way: v² > g r.
+                // Faster than the edge can curve its path: v² > g r.
                 let time = world.time() - until;
                 let x = 0.5 + speed * time;
                 let y = radius - 0.5 * GRAVITY * time * time;

@@ -1,4 +1,4 @@
-//! Coulomb friction of bodies that translate.
+//! Coulomb friction of bodies that only translate.
 
 use cases::scenes::{landing_way, sliding_way};
 use kit::shapes::{ball, cube};
@@ -48,7 +48,7 @@ fn what_slides_comes_to_rest_where_it_must() {
                     world.set_restitution(0, restitution).expect("a floor");
                     step(&mut world, 120);
                     let at = world.position(1) - 0.5 * DVec3::Y;
-                    // First-order methods hold the velocity of half a step before or after.
+                    // First-order methods have the velocity of half a step before or after.
                     let tolerance = match method.order {
                         1 => 0.51 * speed / 60.0,
                         _ => 1e-12,
@@ -125,7 +125,7 @@ fn a_slope_holds_below_its_threshold_and_not_above() {
 
 #[test]
 fn sliding_across_a_slope_converges_to_second_order() {
-    // Turns downhill all the while: no closed form, so against itself.
+    // It turns downhill all the time. There is no closed form, so it is compared with itself.
     let end = |rate: f64| {
         let (normal, _) = slope_of(0.5);
         let mut world = world(rk4());
@@ -234,7 +234,7 @@ fn bounces_rub_in_proportion_to_what_they_press() {
         while impacts.is_empty() {
             world.step_reporting(&mut impacts).expect("a step");
         }
-        // Both slide at 5 m/s: friction takes the coefficient's part of what turns the fall round.
+        // Both slide at 5 m/s: the friction impulse is the coefficient times the normal impulse that reverses the fall.
         let lost = (friction * (1.0 + restitution) * impacts[0].speeds.0).min(5.0);
         let sliding = DVec3::new(3.0, 0.0, 4.0) * (1.0 - lost / 5.0);
         let velocity = world.velocity(1);
@@ -261,7 +261,8 @@ fn what_is_smooth_or_free_is_not_rubbed() {
     }
 }
 
-/// Pushed, at any scale and rate: it stands up to its friction, and beyond moves by what is left.
+/// Pushed, at any scale and rate: it stays at rest up to the limit of friction, and is accelerated by the excess
+/// beyond.
 #[test]
 fn what_is_pushed_moves_by_what_friction_leaves() {
     let mut pushes = 0;
@@ -296,7 +297,7 @@ fn what_is_pushed_moves_by_what_friction_leaves() {
     assert_eq!(pushes, 27);
 }
 
-/// Off the edge of a table: as fast as friction has left it, and down from where its rear edge leaves.
+/// Off the edge of a table: with the speed that friction has left, and down from where its rear edge leaves.
 #[test]
 fn what_slides_off_an_edge_falls_from_there() {
     let (friction, speed, way): (f64, f64, f64) = (0.3, 3.0, 1.2);
@@ -308,7 +309,7 @@ fn what_slides_off_an_edge_falls_from_there() {
             restitution: 0.0,
             ..Body::default()
         };
-        // Two cubes are a table that is long enough.
+        // Two cubes form a table that is long enough.
         for x in [-1.0, 0.0] {
             let table = Body {
                 position: x * DVec3::X,
@@ -334,7 +335,7 @@ fn what_slides_off_an_edge_falls_from_there() {
     }
 }
 
-/// The contacts that a world lists carry what lies on them, also while it sleeps.
+/// The listed contacts of a world carry the weight of the bodies on them, even during sleep.
 #[test]
 fn contacts_carry_what_lies_on_them() {
     let (normal, _) = slope_of(0.3);
@@ -365,8 +366,8 @@ fn contacts_carry_what_lies_on_them() {
     }
 }
 
-/// A landing takes the coefficient times its impulse from the sliding, and what is left of that is a slide
-/// like any other: a single body that has landed once is no heap.
+/// A landing reduces the sliding momentum by the coefficient times its impulse, and the rest is a normal slide: a
+/// single body that has landed once is no heap.
 #[test]
 fn what_lands_slides_to_its_exact_end() {
     let (friction, speed) = (0.4, 3.0);

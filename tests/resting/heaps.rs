@@ -1,4 +1,4 @@
-//! Heaps and stacks settle, stand, overlap nowhere and gain no energy.
+//! Heaps and stacks settle, stand, have no overlaps and gain no energy.
 
 use kit::random::Random;
 use kit::shapes::{ball, cube};
@@ -16,7 +16,7 @@ fn energy(world: &World) -> f64 {
     movable.map(of).sum()
 }
 
-/// Balls of radius 0.25 m, above each other in a bin that is a little wider than two of them.
+/// Balls of radius 0.25 m, above each other in a bin that is slightly wider than two of them.
 fn bin(balls: usize, restitution: f64, friction: f64, seed: u64) -> World {
     let mut world = world(rk4());
     let half = 0.6;
@@ -109,7 +109,7 @@ fn heaps_settle_without_overlap_or_gain() {
             }
         }
         assert!(settled.is_some(), "{name}: not at rest after 20 s");
-        // It stays so, to the bit.
+        // It stays so, bit for bit.
         let hash: Vec<DVec3> = (5..world.len()).map(|body| world.position(body)).collect();
         step(&mut world, 50);
         for (body, at) in (5..world.len()).zip(hash) {
@@ -157,7 +157,7 @@ fn what_bundling_costs_is_told() {
         assert!(world.steps() < 1200, "{most:?}");
     }
     assert!(most.energy > 0.0 && most.distance > 0.0, "{most:?}");
-    // Nothing that flies or rests is bundled.
+    // No flying or resting body is bundled.
     while (5..world.len()).any(|body| world.velocity(body) != DVec3::ZERO) {
         step(&mut world, 1);
     }
@@ -166,8 +166,8 @@ fn what_bundling_costs_is_told() {
     assert_eq!((after.bodies, after.energy, after.distance), (0, 0.0, 0.0));
 }
 
-/// The distance by which contacts are closed ahead of their time or kept from flying, by its mean over the
-/// steps in which a heap settles, at least halves with the step, and energy is taken as before.
+/// The mean distance by which contacts are closed ahead of their time or kept from flying, over the steps in which a
+/// heap settles, at least halves with the step, and the dissipation is as before.
 #[test]
 fn what_bundling_costs_shrinks_with_the_step() {
     let mut figures = Vec::new();

@@ -1,4 +1,4 @@
-//! Wedges, cones and funnels: what is put into them settles, and then costs nothing.
+//! Wedges, cones and funnels: bodies in them settle, and then cost nothing.
 
 use kit::meshes::{self, builtin};
 use kit::random::Random;
@@ -9,7 +9,7 @@ use sim_core::{Body, Bvh, DVec3, Shape, Vec3, World};
 use crate::meshes::turned;
 use crate::scenes::{fixed, rk4, world};
 
-/// A groove along z with walls of a slope, open at its ends, deep enough for what is put in.
+/// A groove along z with walls of a slope, open at its ends, deep enough for the bodies.
 fn wedge(slope: f32) -> Shape {
     let (wide, long) = (2.0, 4.0);
     let ring = |z: f32| {
@@ -39,7 +39,7 @@ fn small_cow() -> Shape {
     Shape::Mesh(meshes::scaled(&cow, DVec3::splat(0.4 / size)))
 }
 
-/// Steps until a body has come to rest, with the exact test at each; and then it stays, to the bit.
+/// Steps until a body has come to rest, with the exact test at each step; then it stays at rest, bit for bit.
 fn settle(world: &mut World, seconds: f64) -> Result<(), String> {
     let body = world.len() - 1;
     let hollow = Bvh::build(world.mesh(0).expect("a hollow"));
@@ -64,7 +64,7 @@ fn settle(world: &mut World, seconds: f64) -> Result<(), String> {
             true => still + 1,
             false => 0,
         };
-        // Turning back is no rest.
+        // A reversal of the motion is no rest.
         if still == 3 {
             rest = Some(count);
             break;
@@ -72,7 +72,7 @@ fn settle(world: &mut World, seconds: f64) -> Result<(), String> {
     }
     if rest.is_none() {
         let speed = world.velocity(body).length();
-        // What friction holds may go on to be lifted to its gap.
+        // A body held by friction may still be lifted to its gap.
         return match world.friction(body) > 0.0 && speed < 1e-10 {
             true => Ok(()),
             false => Err(format!("moves at {speed:e} m/s")),
@@ -107,8 +107,8 @@ fn put_into(hollow: &Shape, shape: &Shape, at: DVec3, restitution: f64, friction
     world
 }
 
-/// Across a groove what has no friction goes to and fro for ever if it gives everything back; else it
-/// settles. Along the groove nothing stops it.
+/// Across a groove a frictionless elastic body moves to and fro for ever; an inelastic one settles. Along the groove
+/// nothing stops it.
 #[test]
 fn bodies_settle_in_wedges_and_funnels() {
     let shapes = [

@@ -1,4 +1,4 @@
-//! Slides over surfaces that are level, whatever triangles and bodies they are made of.
+//! Slides over level surfaces, for any triangles and bodies that form them.
 
 use kit::random::Random;
 use kit::shapes::{ball, cube, mesh, scaled};
@@ -8,10 +8,10 @@ use sim_core::{Body, DVec3, METHODS, Settings, Shape, Vec3, World};
 use crate::meshes::{fan, grid};
 use crate::scenes::{fixed, rk4, world};
 
-/// What slides, with how far it reaches down.
+/// The sliding bodies, each with its extent downwards.
 fn sliders(size: f64) -> [(&'static str, Shape, f64); 3] {
     let edge = scaled(&cube(), DVec3::splat(size));
-    // On one vertex.
+    // It stands on one vertex.
     let half = 0.5 * size as f32;
     let corners = [[0, -1, 0], [1, 1, 0], [-1, 1, 1], [-1, 1, -1]];
     let corners = corners.map(|c| half * Vec3::from_array(c.map(|x: i8| f32::from(x))));
@@ -36,14 +36,14 @@ fn slider(shape: &Shape, position: DVec3, velocity: DVec3) -> Body {
     }
 }
 
-/// Slides the last body of a world, which has to keep its velocity to the bit all the time.
+/// Slides the last body of a world, whose velocity must stay constant bit for bit.
 fn slides_on(world: &mut World, steps: u32) -> Result<(), String> {
     let body = world.len() - 1;
     let velocity = world.velocity(body);
     for count in 0..steps {
         world.step().map_err(|error| error.to_string())?;
         let mut off = world.velocity(body) - velocity;
-        // It is lifted to its gap, some 1e-12 of what there is, where that has become less.
+        // It is lifted to its gap, some 1e-12 of its coordinates, if the gap has become smaller.
         if off.y.abs() < 1e-9 * world.position(body).length() {
             off.y = 0.0;
         }
@@ -57,7 +57,7 @@ fn slides_on(world: &mut World, steps: u32) -> Result<(), String> {
     Ok(())
 }
 
-/// What went wrong in how many slides.
+/// The errors, and the number of slides.
 #[derive(Default)]
 struct Tally {
     slides: usize,
@@ -120,7 +120,7 @@ fn seams_of_tiles_stop_nothing() {
                     for tile in &floor {
                         world.add(tile.clone()).expect("a tile");
                     }
-                    // What stands on a corner does not start on one of tiles.
+                    // A body that stands on a corner does not start on a corner of the tiles.
                     let aside = if name == "top" { 0.01 } else { 0.0 };
                     let at = DVec3::new(-0.5, reach, aside - 0.5 * way.z.signum());
                     world.add(slider(&shape, at, way)).expect("a slider");
@@ -161,7 +161,7 @@ fn vertices_of_many_triangles_stop_nothing() {
     tally.check(3 * 3 * 3 * 4);
 }
 
-/// At places and sizes that are no short numbers.
+/// At positions and sizes that are no short numbers.
 #[test]
 fn floors_of_many_triangles_stop_nothing() {
     let mut random = Random::splitmix(5);
@@ -187,7 +187,7 @@ fn floors_of_many_triangles_stop_nothing() {
     tally.check(5 * 2 * 3 * 2);
 }
 
-/// A tile that stands out by a millionth of what slides over it is a wall.
+/// A tile that is higher by a millionth of the sliding body's size is a wall.
 #[test]
 fn a_ledge_is_a_wall() {
     for method in METHODS {
@@ -218,8 +218,8 @@ fn a_ledge_is_a_wall() {
     }
 }
 
-/// Tops of tiles that are level but for the rounding of their vertices and places, at any scale: speeds
-/// are those of falls from the height of a tile.
+/// Tops of tiles that are level up to the rounding of their vertices and positions, at any scale: speeds are those of
+/// falls from the height of a tile.
 #[test]
 fn ledges_of_rounding_are_none() {
     let mut random = Random::splitmix(9);
@@ -228,7 +228,7 @@ fn ledges_of_rounding_are_none() {
         let unit = (GRAVITY * scale).sqrt();
         for (name, shape, reach) in sliders(0.5 * scale) {
             for (speed, restitution) in [(0.4, 0.0), (0.05, 0.0), (0.4, 0.5), (0.4, 1.0)] {
-                // A tip that is slow may fall beside a ledge while it is lifted.
+                // A slow tip may fall beside a ledge while it is lifted.
                 if name == "top" && speed < 0.1 {
                     continue;
                 }

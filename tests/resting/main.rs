@@ -1,5 +1,5 @@
-//! What lies, slides, rubs, stacks and heaps: contacts that last, against closed forms, and without
-//! overlap or gain of energy where there is none.
+//! Bodies that rest, slide, rub, stack and form heaps: persisting contacts, against closed forms, and without overlap
+//! or spurious gain of energy.
 
 mod bowls;
 mod curved;

@@ -1,4 +1,4 @@
-//! Floors and hollows made of triangles.
+//! Floors and hollows of triangles.
 
 use std::f64::consts::TAU;
 
@@ -6,8 +6,8 @@ use kit::random::Random;
 use kit::shapes::mesh;
 use sim_core::{DVec3, Shape, Vec3};
 
-/// A level grid of cells in the plane y = 0, about its origin, with its inner vertices put aside by
-/// part of a cell, and with its diagonals either way.
+/// A level grid of cells in the plane y = 0, centred at its origin. Its inner vertices are displaced by a fraction of a
+/// cell, and its diagonals have either direction.
 pub(crate) fn grid((along, across): (u32, u32), size: [f64; 2], random: &mut Random) -> Shape {
     let mut vertices = Vec::new();
     for i in 0..=along {
@@ -40,7 +40,7 @@ pub(crate) fn grid((along, across): (u32, u32), size: [f64; 2], random: &mut Ran
     mesh(vertices, triangles)
 }
 
-/// A level disc of triangles that share the vertex in its middle.
+/// A level disc of triangles that share the vertex at its centre.
 pub(crate) fn fan(triangles: u32, radius: f64) -> Shape {
     let mut vertices = vec![Vec3::ZERO];
     vertices.extend((0..triangles).map(|i| {
@@ -51,8 +51,8 @@ pub(crate) fn fan(triangles: u32, radius: f64) -> Shape {
     mesh(vertices, rim.collect())
 }
 
-/// A surface of revolution about the y axis, open or closed at its ends: by points (radius, height) of
-/// its outline. Where a radius is 0 there is one vertex. Seen from the axis its triangles turn left.
+/// A surface of revolution about the y axis, open or closed at its ends, given by points (radius, height) of its
+/// outline. Where a radius is 0 there is one vertex. Seen from the axis its triangles are counter-clockwise.
 pub(crate) fn turned(outline: &[[f64; 2]], sides: u32) -> Shape {
     let mut vertices = Vec::new();
     let mut rings: Vec<Vec<u32>> = Vec::new();

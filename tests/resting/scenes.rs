@@ -1,4 +1,4 @@
-//! Floors, what lies on them, and closed forms of motion in bowls.
+//! Floors, bodies on them, and closed forms of motion in bowls.
 
 use std::f64::consts::TAU;
 
@@ -28,7 +28,7 @@ pub(crate) fn conical_pendulum(length: f64, angle: f64) -> (f64, f64) {
     (speed, TAU * length * angle.sin() / speed)
 }
 
-/// A body that nothing moves.
+/// An immovable body.
 pub(crate) fn fixed(shape: &Shape, position: DVec3) -> Body {
     Body {
         restitution: 0.0,
@@ -36,7 +36,7 @@ pub(crate) fn fixed(shape: &Shape, position: DVec3) -> Body {
     }
 }
 
-/// A half-space that nothing moves, below a plane through a place.
+/// An immovable half-space below a plane through a point.
 pub(crate) fn ground(normal: DVec3, position: DVec3) -> Body {
     fixed(&half_space(normal), position)
 }

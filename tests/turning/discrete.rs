@@ -1,5 +1,5 @@
-//! The discrete modes with bodies that turn: impulses with arms, and back to where the step began, as turned
-//! there.
+//! The discrete modes with turning bodies: impulses with lever arms, and bodies moved back to their positions and
+//! rotations at the start of the step.
 
 use kit::{bodies, random::Random, shapes, worlds};
 use sim_core::{
@@ -43,7 +43,7 @@ fn room(half: f64) -> Vec<Body> {
         .collect()
 }
 
-/// Cows, channels and cubes that turn in a room, some by far more than half a turn a step, and balls.
+/// Cows, channels and cubes that rotate in a room, some by far more than half a turn per step, and balls.
 fn crowd(seed: u64, collision: Collision, is_closed: bool, first: &Shape) -> World {
     let mut random = Random::splitmix(seed);
     let all = [
@@ -75,7 +75,7 @@ fn crowd(seed: u64, collision: Collision, is_closed: bool, first: &Shape) -> Wor
     worlds::world_of(settings(collision, 1.0 / 60.0), bodies)
 }
 
-/// Pairs of meshes that meet, each edge against each triangle, by a placement made here.
+/// Pairs of meshes that meet, each edge against each triangle, with an independent placement.
 fn meeting_meshes(world: &World) -> Vec<(usize, usize)> {
     let pairs = (0..world.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
     pairs
@@ -122,7 +122,7 @@ fn no_two_meet_after_a_step_and_energy_and_momentum_stay() {
         for step in 0..240 {
             worlds::step(&mut world, 1);
             assert_eq!(world.meeting(), [], "{seed}, step {step}");
-            // By all edges and triangles of cows that takes seconds.
+            // The test of all edges and triangles of cows takes seconds.
             if is_dense(&world) == (step % 80 == 79) {
                 assert_eq!(meeting_meshes(&world), [], "{seed}, step {step}");
             }

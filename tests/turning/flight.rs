@@ -1,11 +1,11 @@
-//! Free flight and flight under a constant torque: numbers from closed forms, 17 digits each.
+//! Free flight and flight under a constant torque, against numbers from closed forms, with 17 digits each.
 
 use kit::elliptic::Racket;
 use kit::{bodies, random::Random, shapes, worlds};
 use sim_core::rotation::{Flight, FlightError, spin};
 use sim_core::{DQuat, DVec3, Turn};
 
-/// A rotation and its angular velocity in the body after a time, in one flight.
+/// The rotation and the angular velocity in the body frame after a time, in one flight.
 fn flown(moments: DVec3, start: DVec3, t: f64) -> (DQuat, DVec3) {
     let flight =
         Flight::new(moments, DQuat::IDENTITY, moments * start, DVec3::ZERO, t).expect("a flight");
@@ -15,7 +15,7 @@ fn flown(moments: DVec3, start: DVec3, t: f64) -> (DQuat, DVec3) {
     (pose.rotation, pose.rotation.inverse() * pose.spin)
 }
 
-/// How far two rotations are from each other, which have two quaternions each.
+/// The distance of two rotations, each of which has two quaternions.
 fn apart(a: DQuat, [w, x, y, z]: [f64; 4]) -> f64 {
     let b = DQuat::from_xyzw(x, y, z, w);
     (a - b).length().min((a + b).length())
@@ -33,7 +33,7 @@ fn a_cube_turns_evenly() {
         -0.140_668_635_539_263_12,
     ];
     assert!(apart(rotation, exact) < 1e-15, "{}", apart(rotation, exact));
-    // In steps, the momentum and with it the spin stays to the bit.
+    // In steps, the angular momentum and thus the spin stay constant bit for bit.
     let momentum = moments * start;
     let mut rotation = DQuat::IDENTITY;
     for _ in 0..600 {
@@ -56,7 +56,7 @@ fn two_equal_moments_precess() {
         0.000_184_159_285_515_399_96,
         -0.043_215_252_476_580_513,
     ];
-    // About each of the axes, and by the series that knows nothing of it.
+    // About each of the axes, and by the series, which has no special case for it.
     let (rotation, _) = flown(moments, start, 10.0);
     assert!(apart(rotation, exact) < 2e-14);
     let cycle = |v: DVec3| DVec3::new(v.z, v.x, v.y);
@@ -70,7 +70,7 @@ fn two_equal_moments_precess() {
 
 #[test]
 fn a_plate_wobbles_twice_as_fast_as_it_turns() {
-    // Its axis is 5 degrees from the momentum, and comes back to it at 2 ω₃ / cos 5°.
+    // Its axis is 5 degrees from the angular momentum, and precesses about it at 2 ω₃ / cos 5°.
     let moments = DVec3::new(1.0, 1.0, 2.0);
     let tilt = 5_f64.to_radians();
     let start = DVec3::new(2.0 * 10.0 * tilt.tan(), 0.0, 10.0);
@@ -95,7 +95,7 @@ fn a_racket_turns_over() {
         0.988_080_576_012_807_6,
         0.089_436_710_036_014_36,
     );
-    // What rounding does at the start grows as exp(p t), p = 0.577.
+    // The initial rounding error grows as exp(p t), p = 0.577.
     assert!((own.abs() - exact.abs()).length() < 2e-14, "{own}");
     let turned = [
         -0.799_050_815_645_447_5,
@@ -132,7 +132,7 @@ fn a_racket_turns_over_when_the_elliptic_integral_says() {
             "{small}: {}",
             racket.flip()
         );
-        // The component about the middle axis is 0 in the middle of a flip.
+        // The component about the intermediate axis is 0 in the middle of a flip.
         let start = DVec3::new(0.0, 1.0, small);
         let (_, half) = flown(RACKET, start, 0.5 * flip);
         let slope = racket.at(0.5 * flip + 1e-3).y - racket.at(0.5 * flip - 1e-3).y;
@@ -184,7 +184,7 @@ fn the_separatrix_is_followed() {
         let (rotation, own) = flown(RACKET, DVec3::new(1.0, 0.0, p), t);
         let sech = 1.0 / (p * t).cosh();
         let exact = DVec3::new(sech, (p * t).tanh(), sech * p);
-        // Rounding of 1/√3 at the start grows as exp(p t), and so does that of the way.
+        // The rounding error of 1/√3 at the start grows as exp(p t), and so do those of the path.
         assert!((own - exact).length() < 4e-14, "{t}: {}", own - exact);
         if t == 5.0 {
             let turned = [
@@ -225,7 +225,7 @@ fn a_million_steps_keep_energy_and_momentum() {
 }
 
 fn random_start(random: &mut Random) -> (DVec3, DQuat, DVec3) {
-    // Moments of a body, as sums of squares.
+    // Valid moments of a body, as sums of squares.
     let spread = DVec3::new(
         random.from(0.01, 1.0),
         random.from(0.01, 1.0),
@@ -250,7 +250,7 @@ fn frames_time_and_scale_are_no_matter() {
         let end = Flight::new(moments, rotation, momentum, torque, t)
             .expect("a flight")
             .at(t);
-        // Turned as a whole.
+        // The whole flight is rotated.
         let turn = DQuat::from_scaled_axis(3.0 * random.vector());
         let turned = Flight::new(moments, turn * rotation, turn * momentum, turn * torque, t)
             .expect("a flight")
@@ -260,7 +260,7 @@ fn frames_time_and_scale_are_no_matter() {
             "{case}"
         );
         assert!((turned.spin - turn * end.spin).length() < 1e-12, "{case}");
-        // Back in time, both ways to ask for it.
+        // Backwards in time, in both ways.
         let back = Flight::new(moments, end.rotation, end.momentum, torque, -t)
             .expect("a flight")
             .at(-t);
@@ -269,7 +269,7 @@ fn frames_time_and_scale_are_no_matter() {
             .expect("a flight")
             .at(t);
         assert!((back.rotation - rotation).length() < 2e-13, "{case}");
-        // Lengths by 2^k, times by 2^j: to the bit.
+        // Lengths scaled by 2^k, times by 2^j: equal bit for bit.
         for (k, j) in [(40, 0), (-30, 0), (0, 12), (7, -10)] {
             let (size, pace) = (2_f64.powi(2 * k), 2_f64.powi(j));
             let flight = Flight::new(
@@ -281,7 +281,7 @@ fn frames_time_and_scale_are_no_matter() {
             )
             .expect("a flight");
             let scaled = flight.at(pace * t);
-            // √a is a rate only where powers are even.
+            // √a scales as a rate only if powers are even.
             if j % 2 == 0 {
                 assert_eq!(scaled.rotation, end.rotation, "{case}: {k} {j}");
                 assert_eq!(scaled.spin * pace, end.spin, "{case}: {k} {j}");
@@ -335,7 +335,7 @@ fn a_hundred_turns_in_a_step_are_a_hundred_turns() {
         let (rotation, _) = flown(moments, turns * DVec3::Z, 1.0);
         assert!(apart(rotation, [quarter.w, quarter.x, quarter.y, quarter.z]) < 2e-13);
     }
-    // And where it tumbles, as in steps that are ten thousand times as short.
+    // For a tumbling body, compared with steps that are ten thousand times shorter.
     let moments = DVec3::new(0.4, 0.7, 0.9);
     let start = DVec3::new(200.0, 500.0, -300.0);
     let (rotation, _) = flown(moments, start, 1.0);
@@ -359,7 +359,7 @@ fn derivatives_stay_within_their_bounds() {
         match case % 5 {
             1 => moments = DVec3::splat(moments.x),
             2 => moments.y = moments.x,
-            // A plate and a needle are on the border of what is a body.
+            // A plate and a needle are the limits of valid moments.
             3 => moments.z = moments.x + moments.y,
             4 => moments = DVec3::new(1e-6, 1.0, 1.0 + 1e-6 * random.unit()),
             _ => (),
@@ -372,7 +372,7 @@ fn derivatives_stay_within_their_bounds() {
         let flight = Flight::new(moments, rotation, momentum, torque, t).expect("a flight");
         let bounds = flight.bounds(&flight.at(0.0), t);
         let h = 1e-4 * t;
-        // What rounding of a rotation does to the spin, over the time between two of them.
+        // The effect of the rounding of a rotation on the spin, divided by the time between two of them.
         let noise = 1e-15 * momentum.length() / moments.min_element() / h;
         for i in 0..50 {
             let now = t * (0.01 + 0.98 * f64::from(i) / 50.0);
@@ -389,7 +389,7 @@ fn derivatives_stay_within_their_bounds() {
                 third.length() <= bounds.third * (1.0 + 1e-4) + noise * (1.0 + bounds.spin),
                 "{case}: {third}"
             );
-            // What is told of the spin is its derivative.
+            // The reported spin is the derivative of the rotation.
             let slope = (flight.at(now + h).spin - flight.at(now - h).spin) / (2.0 * h);
             let off = (slope - pose.acceleration).length();
             assert!(off <= 1e-2 * h * bounds.third + noise, "{case}: {off}");
@@ -397,8 +397,8 @@ fn derivatives_stay_within_their_bounds() {
     }
 }
 
-/// A body that tumbles fast is followed for forty radians at a time, which changes neither where it is at the end of a step
-/// nor its impacts; beyond ten thousand radians a step is refused.
+/// The flight of a rapidly tumbling body is computed in parts of forty radians, which changes neither its state at the
+/// end of a step nor its impacts. Beyond ten thousand radians a step is refused.
 #[test]
 fn a_body_that_tumbles_fast_may_have_many_impacts_in_a_step() {
     let half = DVec3::new(0.1, 0.2, 0.3);
@@ -471,7 +471,7 @@ fn what_cannot_be_followed_is_an_error() {
         new(tumbles, torque, duration),
         Err(FlightError::TooFar { duration })
     );
-    // About an axis it may turn as often as it likes.
+    // About a principal axis it may rotate any number of times.
     assert_eq!(new(tumbles.x * DVec3::X, DVec3::ZERO, duration), Ok(()));
     assert!(new(1e-300 * tumbles, 1e-300 * torque, 1.0).is_ok());
 }

@@ -3,7 +3,7 @@
 use kit::{bodies, random::Random, shapes, worlds};
 use sim_core::{Body, DQuat, DVec3, Settings, Shape, Turn, World};
 
-/// A body that turns from rest as its shape is.
+/// A turning body, initially without spin or rotation.
 fn turning(shape: &Shape, position: DVec3, velocity: DVec3) -> Body {
     Body {
         turn: Some(Turn::default()),
@@ -77,8 +77,8 @@ fn a_box_hit_at_both_ends_at_once_does_not_turn() {
 
 #[test]
 fn a_cube_that_falls_on_an_edge_turns_as_the_closed_form_says() {
-    // V and ω of a cube of side 1 and 1 kg that falls at 2 m/s, its centre so many degrees off the vertical
-    // over its edge: with the arm r = sin θ/√2 the impulse is (1 + e) 2/(1 + 6 r²).
+    // V and ω of a cube of edge 1 m and 1 kg that falls at 2 m/s, its centre so many degrees off the vertical over its
+    // edge: with the arm r = sin θ/√2 the impulse is (1 + e) 2/(1 + 6 r²).
     for (degrees, restitution) in [(15.0_f64, 1.0), (15.0, 0.5), (30.0, 1.0), (1.0, 0.25)] {
         let theta = degrees.to_radians();
         let mut floor = bodies::wall(DVec3::Y, DVec3::ZERO, DVec3::ZERO);
@@ -94,7 +94,7 @@ fn a_cube_that_falls_on_an_edge_turns_as_the_closed_form_says() {
         let impulse = 2.0 * (1.0 + restitution) / (1.0 + 6.0 * arm * arm);
         let first = world.last_impact().unwrap();
         assert!((first.impulse - impulse).abs() < 1e-14);
-        // Only if the one corner that is left does not hit within the step.
+        // Only if the opposite corner does not hit within the step.
         if world.impacts() == 1 {
             assert!((world.velocity(1).y - (impulse - 2.0)).abs() < 1e-13);
             assert!((world.spin(1).z.abs() - 6.0 * arm * impulse).abs() < 1e-13);
@@ -158,7 +158,7 @@ fn elastic_crowds_keep_energy_and_momentum_and_share_it_with_turning() {
 
 #[test]
 fn what_is_free_keeps_momentum_and_energy_through_impacts() {
-    // Two cows that turn and meet in empty space: nothing else can take or give.
+    // Two rotating cows collide in empty space: nothing else can add or remove momentum or energy.
     let cow = shapes::cow();
     let mut random = Random::splitmix(8);
     let mut met = 0;

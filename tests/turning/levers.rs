@@ -1,21 +1,21 @@
-//! Forces at points of bodies that turn: tops and pendulums against closed forms, under every method.
+//! Forces at points of turning bodies: tops and pendulums against closed forms, with every method.
 
 use kit::{bodies, shapes, worlds};
 use sim_core::{
     Body, DQuat, DVec3, Force, Inertia, METHODS, Method, Settings, StepError, Turn, World,
 };
 
-/// Of symmetric tops: moments about the axis (the third one) and across it, kg m².
+/// Moments of symmetric tops about the axis (the third one) and across it, kg m².
 const ALONG: f64 = 0.5;
 const ACROSS: f64 = 1.0;
 
-/// Turns the third axis upwards.
+/// The rotation of the third axis to the vertical.
 fn upright() -> DQuat {
     DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2)
 }
 
-/// A top without a pivot: a force of 2 N down half a metre from its centre of mass along its axis, which is tilted
-/// towards x by an angle, rad, with an angular velocity in the body, rad/s.
+/// A top without a pivot: a force of 2 N acts downwards at half a metre from its centre of mass along its axis. The
+/// axis is tilted towards x by an angle, rad; the angular velocity is in the body frame, rad/s.
 fn top(method: &'static Method, dt: f64, tilt: f64, spin: DVec3) -> World {
     let settings = Settings {
         method,
@@ -27,7 +27,7 @@ fn top(method: &'static Method, dt: f64, tilt: f64, spin: DVec3) -> World {
     let moments = DVec3::new(ACROSS, ACROSS, ALONG);
     let body = Body {
         mass: 3.0,
-        // It would fly off else.
+        // It balances the force at the point; otherwise the top would fly off.
         force: 2.0 * DVec3::Y,
         turn: Some(Turn {
             rotation,
@@ -47,7 +47,7 @@ fn top(method: &'static Method, dt: f64, tilt: f64, spin: DVec3) -> World {
     world
 }
 
-/// Where the axis of a top points.
+/// The direction of a top's axis.
 fn axis(world: &World) -> DVec3 {
     world.rotation(0) * DVec3::Z
 }
@@ -57,11 +57,11 @@ fn energy(world: &World) -> f64 {
     world.kinetic_energy() + world.potential_energy()
 }
 
-/// Of the top that nods: how long it takes from its highest to its highest, s, and by what angle it goes about then.
+/// The period of the nodding top, from one highest position to the next, s, and the angle of precession in that time.
 const NOD: f64 = 2.278_301_997_688_738;
 const PRECESSION: f64 = 0.786_521_243_768_659;
 
-/// How a top stands after a time, in some steps.
+/// The top after a time, in some steps.
 fn after(method: &'static Method, time: f64, steps: u64) -> World {
     let mut world = top(
         method,
@@ -131,7 +131,7 @@ fn what_is_symplectic_keeps_the_energy_of_a_top() {
     for method in METHODS.into_iter().filter(|method| method.symplectic) {
         let mut world = top(method, 1.0 / 60.0, 60_f64.to_radians(), 6.0 * DVec3::Z);
         let start = energy(&world);
-        // It swings about the start and does not drift: as much in the first minute as in the tenth.
+        // The energy oscillates about its initial value without drift: as much in the first minute as in the tenth.
         let most = |world: &mut World| {
             let mut most = 0.0_f64;
             for _ in 0..3600 {
@@ -167,7 +167,7 @@ fn what_is_reversible_goes_back_on_a_top() {
     }
 }
 
-/// A push of nothing turns nothing, but lets the method step the rotation.
+/// A zero push causes no rotation, but makes the method step the rotation.
 #[test]
 fn what_flies_freely_keeps_its_angular_momentum_under_kicks_and_the_midpoint_rule() {
     for method in METHODS.into_iter().filter(|method| method.symplectic) {
@@ -196,7 +196,7 @@ fn what_flies_freely_keeps_its_angular_momentum_under_kicks_and_the_midpoint_rul
     }
 }
 
-/// With no spin the top is a pendulum about its centre of mass: periods of the elliptic integral, 17 digits.
+/// Without spin the top is a pendulum about its centre of mass: periods from the elliptic integral, 17 digits.
 #[test]
 fn a_pendulum_swings_with_its_period() {
     let method = Method::named("symplectic-8").expect("a method");
@@ -205,7 +205,7 @@ fn a_pendulum_swings_with_its_period() {
         (90.0, 7.416_298_709_205_487_7),
         (170.0, 15.326_967_999_136_585),
     ] {
-        // From the lowest point, which is where the force points.
+        // From the lowest position, which is the direction of the force.
         let tilt = 180_f64.to_radians() - f64::to_radians(angle);
         for steps in [400, 1000] {
             let mut world = top(method, period / steps as f64, tilt, DVec3::ZERO);
@@ -220,10 +220,10 @@ fn a_pendulum_swings_with_its_period() {
 
 #[test]
 fn a_top_at_the_right_spin_goes_about_evenly() {
-    // At 60 degrees it does so at either of two speeds (Lagrange): A Ω² cos - C n Ω + F r = 0.
+    // At 60 degrees it precesses steadily at either of two speeds (Lagrange): A Ω² cos - C n Ω + F r = 0.
     let tilt = 60_f64.to_radians();
     for rate in [0.354_248_688_935_409_4, 5.645_751_311_064_591] {
-        // With C n = 3: a spin of 6 along the axis, that of going about included.
+        // With C n = 3: a spin of 6 rad/s along the axis, including that of the precession.
         let across = rate * tilt.sin();
         let spin = DVec3::new(-across, 0.0, 6.0);
         let method = Method::named("symplectic-8").expect("a method");
@@ -278,7 +278,7 @@ fn a_step_of_half_a_turn_is_refused_or_flown() {
     }
 }
 
-/// Two bricks that springs at their corners tie together, thrown and spinning.
+/// Two bricks connected by springs at their corners, thrown and spinning.
 fn tied(method: &'static Method, dt: f64) -> World {
     let settings = Settings {
         method,
@@ -323,7 +323,7 @@ fn springs_at_points_exchange_momentum_and_energy_only() {
         worlds::step(&mut world, 3000);
         let moved = (world.momentum() - momentum).length();
         assert!(moved < 1e-11, "{}: {moved:e} kg m/s", method.name);
-        // What drifts and kicks keep to rounding is of the order of the method elsewhere.
+        // Drifts and kicks conserve it to rounding; other methods have an error of their order.
         let turned = (world.angular_momentum_about(DVec3::ZERO) - angular).length();
         let gained = (energy(&world) - start).abs();
         let (most_turned, most_gained) = match method.name {
@@ -366,7 +366,7 @@ fn dampers_at_points_take_energy_and_no_momentum() {
 #[test]
 fn a_point_of_a_body_that_does_not_turn_is_beside_its_position() {
     for method in METHODS {
-        // The same swing, tied at the position or beside it.
+        // The same oscillation, attached at the position or beside it.
         let swing = |point: Option<DVec3>| {
             let settings = Settings {
                 method,
@@ -417,7 +417,7 @@ fn forces_and_torques_are_told_as_they_act() {
     }
 }
 
-/// A body that nothing moves and that spins carries what is tied to its rim.
+/// A spinning immovable body carries the body attached to its rim.
 #[test]
 fn a_turntable_carries_what_is_tied_to_its_rim() {
     for method in METHODS {
@@ -460,7 +460,7 @@ fn a_turntable_carries_what_is_tied_to_its_rim() {
     }
 }
 
-/// Steps, of which none may bring energy or let bodies meet.
+/// Makes steps, and checks that none adds energy or lets bodies meet.
 fn watch(world: &mut World, steps: u64, most: f64) -> f64 {
     let mut gained = 0.0_f64;
     for step in 0..steps {
@@ -473,7 +473,7 @@ fn watch(world: &mut World, steps: u64, most: f64) -> f64 {
     gained
 }
 
-/// A brick that hangs from the end of a stiff spring on a corner, and swings against a wall.
+/// A brick that hangs by a corner from a stiff spring, and swings against a wall.
 #[test]
 fn a_pendulum_bounces_off_a_wall() {
     for method in METHODS.into_iter().filter(|method| method.order > 1) {
@@ -526,7 +526,7 @@ fn a_pendulum_bounces_off_a_wall() {
     }
 }
 
-/// A brick on the floor that a spring at its corner pulls up and along: it tips, drags and swings; under every method.
+/// A brick on the floor that a spring at its corner pulls up and along: it tips, drags and swings, with every method.
 #[test]
 fn a_brick_is_dragged_over_the_floor_by_its_corner() {
     for method in METHODS {
@@ -568,7 +568,8 @@ fn a_brick_is_dragged_over_the_floor_by_its_corner() {
     }
 }
 
-/// Two bricks that lie on a smooth floor pull at each other by their corners: what one gains along it the other loses.
+/// Two bricks on a smooth floor attract each other by springs at their corners: their momenta along the floor are
+/// opposite.
 #[test]
 fn bricks_on_the_floor_pull_each_other_by_their_corners() {
     for method in METHODS {

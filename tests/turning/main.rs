@@ -1,4 +1,4 @@
-//! Bodies that turn, against closed forms.
+//! Turning bodies, against closed forms.
 
 mod discrete;
 mod flight;

@@ -1,4 +1,4 @@
-//! Turning bodies that are placed in each other: how deep they are, and moved apart.
+//! Turning bodies placed in overlap: their depths, and moving them apart.
 
 use kit::{bodies, random::Random, shapes, worlds};
 use sim_core::{Body, Collision, DQuat, DVec3, Settings, Shape, Turn};
@@ -18,7 +18,7 @@ fn turned(shape: &Shape, position: DVec3, rotation: DQuat) -> Body {
 fn depths_are_those_of_shapes_as_they_are_turned() {
     let cube = shapes::cuboid([0.5; 3]);
     let floor = bodies::wall(DVec3::Y, DVec3::ZERO, DVec3::ZERO);
-    // On an edge, its middle half a metre up.
+    // On an edge, with its centre half a metre above the floor.
     let on_edge = turned(
         &cube,
         0.5 * DVec3::Y,
@@ -37,7 +37,7 @@ fn depths_are_those_of_shapes_as_they_are_turned() {
         assert_eq!(overlap.normal.y, if is_first { -1.0 } else { 1.0 });
         assert!(overlap.is_least);
     }
-    // Two turned alike, one beside the other along their x axis.
+    // Two bodies with the same rotation, one beside the other along their x axis.
     let mut random = Random::splitmix(4);
     for _ in 0..20 {
         let rotation = DQuat::from_axis_angle(random.direction(), random.from(0.0, 3.0));
@@ -53,14 +53,14 @@ fn depths_are_those_of_shapes_as_they_are_turned() {
         assert!((overlap.depth - 0.25).abs() < 1e-9, "{overlap:?}");
         assert!((overlap.normal - rotation * DVec3::X).length() < 1e-9);
     }
-    // What has its centre of mass elsewhere than its origin, into a ball.
+    // A body whose centre of mass is not its origin, in overlap with a ball.
     let cow = turned(&shapes::cow(), DVec3::ZERO, DQuat::from_rotation_x(0.3));
     let ball = bodies::at(&shapes::ball(0.5), DVec3::new(0.0, 0.7, 0.0));
     let mut world = worlds::world([cow, ball]);
     let [overlap] = world.overlaps()[..] else {
         panic!("they overlap");
     };
-    // Moved by it they touch, and are apart a little farther.
+    // Moved by the depth they touch, and slightly farther they are apart.
     let place = world.position(1);
     for (part, meets) in [(1.0 - 1e-9, true), (1.0 + 1e-9, false)] {
         let there = place + part * overlap.depth * overlap.normal;

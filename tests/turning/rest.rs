@@ -1,4 +1,4 @@
-//! Turning bodies that lie, slide, stack, tip and fall: what anybody does first.
+//! Turning bodies that rest, slide, stack, tip and fall: the first scenes that a user tries.
 
 use kit::{bodies, random::Random, shapes, worlds};
 use sim_core::{
@@ -40,14 +40,14 @@ fn energy(world: &World) -> f64 {
             .sum::<f64>()
 }
 
-/// Steps, of which none may bring energy or let bodies meet.
+/// Makes steps, and checks that none adds energy or lets bodies meet.
 fn watch(world: &mut World, steps: u64) {
     for step in 0..steps {
         let before = energy(world);
         worlds::step(world, 1);
         let gained = energy(world) - before;
         let size = world.kinetic_energy() + world.len() as f64 * G;
-        // Once, bodies that touch get the room at which they are kept.
+        // Once, touching bodies are moved to the gap at which they are kept.
         assert!(gained < 1e-12 * size, "step {step}: {gained:e} J");
         assert_eq!(world.meeting(), [], "step {step}");
     }
@@ -77,7 +77,7 @@ fn what_is_dropped_comes_to_lie_on_a_face() {
 
 #[test]
 fn what_is_dropped_spinning_tips_over_and_spins_on_where_it_lies() {
-    // Nothing turns a body about the vertical on a smooth floor: that part of its spin stays.
+    // On a smooth floor no torque acts about the vertical: that component of the spin stays constant.
     for (spin, restitution) in [
         (DVec3::new(3.0, 4.0, 0.0), 0.0),
         (DVec3::new(3.0, 4.0, 0.0), 0.3),
@@ -128,7 +128,7 @@ fn a_heap_of_turning_cubes_comes_to_lie() {
     }
     println!("gained {gained:e} J of {start} J in all steps that gain");
     assert!(gained < 1e-4 * start, "{gained:e} J of {start} J");
-    // Four on the floor and four on those.
+    // Four on the floor and four on top of them.
     let lowest = 8.0 * G * 0.5;
     assert!(
         (energy(&world) / lowest - 1.0).abs() < 0.02,
@@ -210,11 +210,12 @@ fn a_lift_carries_what_lies_on_it() {
     assert!((world.velocity(1).y - 1.0).abs() < 1e-6);
 }
 
-/// Constant forces push on where a contact opens by turning: they gave up to a tenth of all energy in a step, and a
-/// multiple of it where bodies turn by radians in one. Now they are sought for a time in which they give none.
+/// Regression: constant forces also acted where a contact opens by rotation. They added up to a tenth of all energy in
+/// a step, and a multiple of it for bodies that rotate by radians in a step. Now a time is sought in which they add
+/// none.
 #[test]
 fn what_tips_over_another_gains_no_energy() {
-    // In the 36th at 20 Hz an edge is left on which a box lay.
+    // In the 36th run at 20 Hz a box leaves the edge on which it lay.
     let runs =
         std::env::var("COWBELL_TURNING_RUNS").map_or(40, |runs| runs.parse().expect("a number"));
     let mut stepped = 0_u32;
@@ -256,8 +257,8 @@ fn what_tips_over_another_gains_no_energy() {
     assert_eq!(stepped, 750 * runs);
 }
 
-/// A box that falls over on its edge without friction, until its next edge comes down: what it loses on the way shrinks
-/// with the step.
+/// A box that falls over its edge without friction, until its next edge comes down: the loss of energy on the way
+/// shrinks with the step.
 #[test]
 fn what_falls_over_loses_little_energy() {
     let lost = [60.0, 240.0, 960.0].map(|rate| {
@@ -291,8 +292,8 @@ fn what_falls_over_loses_little_energy() {
     assert!(lost[2] >= 0.0, "{lost:?}");
 }
 
-/// Four stacks of two, which slide off each other: one that touched a wall and two others stayed tilted in the air, as
-/// it could not be moved apart from all of them.
+/// Regression: four stacks of two, which slide off each other. One that touched a wall and two others stayed tilted in
+/// the air, because it could not be moved apart from all of them.
 #[test]
 fn cubes_that_slide_off_each_other_in_a_bin_come_to_lie() {
     let wall = |normal: DVec3| Body {
@@ -358,12 +359,12 @@ fn a_free_body_keeps_what_it_has_in_any_world() {
     worlds::step(&mut world, 20_000);
     assert_eq!(world.angular_momentum(0), momentum);
     assert!((world.turning_energy() / energy - 1.0).abs() < 1e-13);
-    // A pose is between those of the last two steps.
+    // A pose is interpolated between those of the last two steps.
     let (place, rotation) = world.interpolated_pose(0, 1.0);
     assert_eq!(place, world.origin(0));
     assert!(rotation.angle_between(world.rotation(0)) < 1e-7);
     assert!(world.interpolated_pose(0, 0.5).1.is_normalized());
-    // What turns is part of the state.
+    // Rotation and spin are part of the state.
     let mut other = worlds::world([&body]);
     let before = other.state_hash();
     other.set_spin(0, 2.0 * spin).unwrap();
@@ -401,7 +402,7 @@ fn what_cannot_turn_is_refused_by_name() {
         assert!(world.add(with(cube.clone(), turn)).is_err());
     }
     assert!(world.is_empty());
-    // With an inertia of its own a point turns.
+    // With an inertia of its own a point can rotate.
     let inertia = Inertia::new(DVec3::ONE, DQuat::IDENTITY, DVec3::ZERO).unwrap();
     let turn = Turn {
         inertia: Some(inertia),
@@ -416,7 +417,7 @@ fn what_cannot_turn_is_refused_by_name() {
         world.set_spin(2, DVec3::X),
         Err(WorldError::DoesNotTurn { body: 2 })
     );
-    // A mass brings its inertia along.
+    // A change of mass scales the inertia.
     world.set_spin(1, DVec3::Y).unwrap();
     let (before, spin) = (world.turning_energy(), world.spin(1));
     world.set_mass(1, 3.0).unwrap();
@@ -428,8 +429,8 @@ fn what_cannot_turn_is_refused_by_name() {
     );
 }
 
-/// Bricks that springs pull into each other, or that fly into each other, in steps so long that they meet in each more
-/// often than is followed: those stop, and keep what they have and what hits them.
+/// Bricks pulled into each other by springs, or thrown at each other, with steps so long that they have more impacts in
+/// each than are followed: those bodies stop, and keep their momentum and that of the bodies that hit them.
 #[test]
 fn what_meets_too_often_in_a_step_loses_no_momentum() {
     let mut impacts = 0;

@@ -1,4 +1,4 @@
-//! Times of impact of shapes that turn, from closed forms, and against the exact test at many times.
+//! Times of impact of turning shapes, from closed forms, and against the exact test at many times.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use sim_core::collide::{Placement, naive, tree};
 use sim_core::rotation::Flight;
 use sim_core::{Bvh, DQuat, DVec3, Mesh, Vec3};
 
-/// A shape with what it needs to move.
+/// A shape with its motion.
 struct Mover {
     figure: Solid,
     position: DVec3,
@@ -48,7 +48,7 @@ impl Mover {
         Mover::new(Solid::Mesh(mesh.clone(), tree), position, velocity)
     }
 
-    /// Turning at a spin, for a duration, as a body of these moments.
+    /// Rotates with a spin for a duration, as a body with these moments.
     fn turning(self, moments: DVec3, rotation: DQuat, spin: DVec3, duration: f64) -> Mover {
         let momentum = rotation * (moments * (rotation.inverse() * spin));
         Mover {
@@ -59,7 +59,7 @@ impl Mover {
         }
     }
 
-    /// As a cube does.
+    /// Rotates as a cube does, with equal moments.
     fn spinning(self, spin: DVec3, duration: f64) -> Mover {
         self.turning(DVec3::ONE, DQuat::IDENTITY, spin, duration)
     }
@@ -83,12 +83,12 @@ impl Mover {
     }
 }
 
-/// Whether a search has ended before it was told.
+/// Whether a search has ended before the time it was given.
 fn is_cut(touch: Option<TurningTouch>) -> bool {
     touch.is_some_and(|touch| touch.distance > touch.near)
 }
 
-/// What is found, which must be the same with the two the other way round, and near.
+/// The result of a search. Exchanging the two shapes must give nearly the same result.
 fn found(a: &Mover, b: &Mover, duration: f64) -> (Option<TurningTouch>, Effort) {
     let (touch, effort) = first_contact_counted(&a.moving(), &b.moving(), duration);
     let (other, _) = first_contact_counted(&b.moving(), &a.moving(), duration);
@@ -107,7 +107,7 @@ fn found(a: &Mover, b: &Mover, duration: f64) -> (Option<TurningTouch>, Effort) 
     (touch, effort)
 }
 
-/// Whether meshes meet at a time, by the exact test: of all edges with all triangles, or by trees where these are many.
+/// Whether meshes meet at a time, by the exact test: of all edges with all triangles, or by trees if there are many.
 fn meet(a: &Mover, b: &Mover, t: f64) -> bool {
     let (Solid::Mesh(first, tree), Solid::Mesh(second, other)) = (&a.figure, &b.figure) else {
         panic!("meshes")
@@ -127,7 +127,7 @@ fn wall(normal: DVec3, position: DVec3) -> Mover {
     Mover::new(Solid::HalfSpace(normal), position, DVec3::ZERO)
 }
 
-/// A rod along x that is a segment: its triangles have no width.
+/// A rod along x that is a segment: its triangles have zero width.
 fn rod(half: f32) -> Arc<Mesh> {
     let x = Vec3::X * half;
     kit::meshes::mesh(vec![-x, Vec3::ZERO, x], vec![[0, 1, 2]])
@@ -210,7 +210,7 @@ fn a_rod_grazes_a_wall() {
         let (rod, floor) = coming(d, 1.0, 2.0);
         check("B6", &rod, &floor, 2.0, (exact, bar));
     }
-    // Past by 1e-12 and not, up to half a turn later.
+    // Missed by 1e-12 and not, up to half a turn later.
     for (beside, hits) in [(1e-12, false), (-1e-12, true)] {
         let (rod, floor) = coming(graze + beside, 1.0, 1.2);
         assert_eq!(found(&rod, &floor, 1.2).0.is_some(), hits, "{beside}");
@@ -272,7 +272,7 @@ fn a_propeller_hits_or_lets_pass() {
         let arrival = 0.5 * duration;
         let place = DVec3::new(0.75, 0.0, speed * arrival);
         let ball = Mover::new(Solid::Ball(radius), place, -speed * DVec3::Z);
-        // The angle from the blade to the ball as that passes.
+        // The angle from the blade to the ball as the ball passes.
         let there = (start + spin * arrival).rem_euclid(PI);
         let beside = there.min(PI - there);
         let (touch, _) = found(&flight, &ball, duration);
@@ -380,7 +380,7 @@ fn channel() -> Arc<Mesh> {
     ])
 }
 
-/// Some triangles that share nothing.
+/// Some triangles without shared vertices.
 fn scattered(random: &mut Random) -> Arc<Mesh> {
     let triangles: Vec<_> = (0..12)
         .map(|_| {
@@ -394,7 +394,7 @@ fn scattered(random: &mut Random) -> Arc<Mesh> {
     Arc::new(soup(&triangles))
 }
 
-/// `COWBELL_TURNING_RUNS` sets how many pairs are tried, and `COWBELL_TURNING_SEED` which.
+/// `COWBELL_TURNING_RUNS` sets the number of pairs, and `COWBELL_TURNING_SEED` their seed.
 #[test]
 fn turning_meshes_are_never_late_and_never_wrong() {
     let number = |name: &str| {
@@ -430,7 +430,7 @@ fn turning_meshes_are_never_late_and_never_wrong() {
             let rotation = DQuat::from_scaled_axis(3.0 * random.vector());
             mover.turning(moments, rotation, spin * random.vector(), duration)
         });
-        // As far away as they come in part of the time, or at random nearer.
+        // As far away as they move in part of the time, or at a random smaller distance.
         let way = random.direction();
         let distance = random.from(0.3, 3.0) + random.unit() * speed * duration;
         pair[1].position = distance * way + 0.3 * random.vector();
@@ -457,7 +457,7 @@ fn turning_meshes_are_never_late_and_never_wrong() {
             cut += 1;
         } else if let Some(touch) = touch {
             hits += 1;
-            // Soon after they cross, but for grazes.
+            // Soon after they cross, except for grazing contacts.
             let later = [1e-12, 1e-10, 1e-8, 1e-6].map(|part| touch.time + part * duration);
             crossing += u64::from(later.iter().any(|&t| meet(a, b, t)));
         }
@@ -538,7 +538,7 @@ fn what_turns_above_a_floor_touches_it_when_its_lowest_corner_does() {
 
 #[test]
 fn a_quarter_turn_is_seen_whole() {
-    // A door closes onto a post, which stands in the middle of its way: at the end it is beyond.
+    // A door closes onto a post, which stands in the middle of its path: at the end the door is beyond it.
     let door = Mover {
         centre: DVec3::new(-1.0, 0.0, 0.0),
         ..Mover::mesh(&cuboid(Vec3::new(1.0, 0.5, 0.01)), DVec3::ZERO, DVec3::ZERO)

@@ -1,4 +1,4 @@
-//! Energy and momentum over a long time, in worlds as a program steps them.
+//! Drift of energy and momentum over a long time, in worlds stepped as by a program.
 
 use std::f64::consts::PI;
 
@@ -12,26 +12,26 @@ pub const STEPS: usize = 1000;
 /// Eccentricity of the orbit.
 pub const ECCENTRICITY: f64 = 0.6;
 
-/// What a method does to the invariants of a planet's motion.
+/// The errors of a method in the invariants of a planet's motion.
 #[derive(Debug)]
 pub struct Drift {
-    /// One for each orbit done.
+    /// The errors of each completed orbit.
     pub orbits: Vec<Orbit>,
-    /// Why there are not more.
+    /// The reason why there are no more orbits, if there is one.
     pub failure: Option<String>,
 }
 
 /// The greatest relative errors within an orbit.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Orbit {
-    /// Kinetic and potential.
+    /// The error of the sum of kinetic and potential energy.
     pub energy: f64,
-    /// About the centre.
+    /// The error of the angular momentum about the centre.
     pub angular_momentum: f64,
 }
 
 impl Drift {
-    /// Growth of the energy error per orbit: the slope of a straight line through all orbits.
+    /// Growth of the energy error per orbit: the slope of a least-squares line through all orbits.
     pub fn energy_slope(&self) -> f64 {
         let n = self.orbits.len() as f64;
         let middle = 0.5 * (n - 1.0);
@@ -54,7 +54,7 @@ fn settings(method: &'static Method, dt: f64) -> Settings {
     }
 }
 
-/// Follows a planet for some orbits.
+/// Steps a planet for some orbits.
 pub fn orbits(method: &'static Method, count: usize) -> Drift {
     let mut drift = Drift {
         orbits: Vec::new(),

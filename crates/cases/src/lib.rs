@@ -1,8 +1,8 @@
-//! What has a known outcome, each defined once: problems of dynamics, hard cases, and scenes of
-//! bodies that meet, lie, slide and turn; and who is tried on them, ours and peers.
+//! Cases with a known outcome, each defined once: problems of dynamics, hard cases, and scenes of bodies that collide,
+//! rest, slide and rotate; and the engines and solvers that are tried on them, ours and peers.
 //!
-//! Tests assert every verdict, the report tabulates the same ones, benchmarks time them. The peers
-//! are optional dependencies, each a feature of its name.
+//! Tests assert every verdict, the report tabulates the same verdicts, benchmarks time the cases. The peers are
+//! optional dependencies, each a feature of its name.
 
 pub mod drift;
 pub mod hard_cases;

@@ -2,7 +2,7 @@
 
 use sim_core::{Body, DVec3, Force, Method, Settings, StepError, World, WorldError};
 
-/// A method at a step, where an adaptive one errs by rounding.
+/// Settings of a method and a step; the error of adaptive methods is at rounding level.
 pub fn settings(method: &'static Method, dt: f64) -> Settings {
     Settings {
         dt,
@@ -28,7 +28,7 @@ pub fn under(
     Ok(world)
 }
 
-/// A spring from the first body to the origin, with a damper.
+/// A spring with a damper from the first body to the origin.
 pub fn spring_to_origin(stiffness: f64, damping: f64) -> Force {
     Force::Anchor {
         body: 0,
@@ -45,7 +45,7 @@ pub fn step(world: &mut World, steps: u64) -> Result<(), StepError> {
     (0..steps).try_for_each(|_| world.step())
 }
 
-/// The largest stable `dt` that an error names.
+/// The largest stable `dt` named in an error.
 pub fn named_limit(error: &StepError) -> Option<f64> {
     match *error {
         StepError::Unstable { stable_dt, .. } => Some(stable_dt),

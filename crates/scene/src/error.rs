@@ -1,4 +1,4 @@
-//! What can be wrong with a scene.
+//! The errors of scenes.
 
 use std::io;
 use std::path::PathBuf;
@@ -8,21 +8,21 @@ use thiserror::Error;
 use crate::gallery::SCENES;
 use crate::{MeshFileError, shown};
 
-/// Why there is no scene, or no world from it. The message names file, line, body and field as
-/// far as they are known, and the remedy.
+/// The reason why there is no scene, or no world made from it. The message names the file, line, body and field as far
+/// as they are known, and the remedy.
 #[derive(Debug, Error)]
 pub enum SceneError {
-    /// Neither a gallery scene nor a scene file.
+    /// The name is neither a gallery scene nor a scene file.
     #[error(
         "there is no scene `{}`: give the path of a .toml file, of a mesh, or one of {}",
         shown::name(name),
         gallery()
     )]
     Unknown {
-        /// What was asked for.
+        /// The name or path that the user gave.
         name: String,
     },
-    /// The mesh file that was to be a scene of its own is refused.
+    /// The mesh file that was given as a scene cannot be loaded.
     #[error(transparent)]
     Mesh(Box<MeshFileError>),
     /// The scene file cannot be read.
@@ -30,7 +30,7 @@ pub enum SceneError {
     Read {
         /// The file.
         path: PathBuf,
-        /// The system's answer.
+        /// The error of the operating system.
         error: io::Error,
     },
     /// The file is larger than any sensible scene.
@@ -41,9 +41,9 @@ pub enum SceneError {
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// Its size.
+        /// Its size, bytes.
         bytes: u64,
-        /// The most that is read.
+        /// The largest size that is read, bytes.
         most: u64,
     },
     /// The scene file cannot be written.
@@ -51,10 +51,10 @@ pub enum SceneError {
     Write {
         /// The file.
         path: PathBuf,
-        /// The system's answer.
+        /// The error of the operating system.
         error: io::Error,
     },
-    /// The scene file says something wrong.
+    /// The scene file has an error.
     #[error(
         "{}{}: {}{}",
         shown::path(file), line_suffix(*line), subject(body, field), shown::part(what)
@@ -68,10 +68,10 @@ pub enum SceneError {
         body: Option<String>,
         /// Name of the field.
         field: Option<String>,
-        /// What is wrong and what to do about it.
+        /// The error and its remedy.
         what: String,
     },
-    /// The scene, changed in memory, makes no world.
+    /// The scene was changed in memory, and no world can be made from it.
     #[error(
         "scene `{}`: {}{}",
         shown::name(scene),
@@ -85,7 +85,7 @@ pub enum SceneError {
         body: Option<String>,
         /// Name of the field.
         field: Option<String>,
-        /// What is wrong and what to do about it.
+        /// The error and its remedy.
         what: String,
     },
 }

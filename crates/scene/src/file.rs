@@ -1,4 +1,4 @@
-//! Files from a path that may be anything: read with a limit, and written whole or not at all.
+//! Reads and writes files at arbitrary paths: reads with a size limit, writes a whole file or nothing.
 
 use std::ffi::OsStr;
 use std::fmt;
@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 
 use tempfile::Builder;
 
-/// Why a file is not read.
+/// The reason why a file is not read.
 #[derive(Debug)]
 pub enum Refusal {
-    /// The system's answer, or what the file is instead.
+    /// The error of the operating system, or an error that names the kind of the file.
     Io(io::Error),
-    /// It has more bytes than allowed: so many, as far as that is known.
+    /// The file is larger than the limit. The number is its size in bytes, as far as it is known.
     TooLarge(u64),
 }
 
@@ -26,19 +26,19 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// All bytes of a regular file of at most `most` bytes. A pipe or a device could take for ever.
+/// All bytes of a regular file of at most `most` bytes. Reading a pipe or a device could block forever.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, Refusal> {
-    // Opening a pipe waits for its writer, so the path is looked at before.
+    // Opening a pipe blocks until it has a writer, so the type of the file is checked before.
     regular(&fs::metadata(path).map_err(Refusal::Io)?, most)?;
     let file = File::open(path).map_err(Refusal::Io)?;
     let metadata = file.metadata().map_err(Refusal::Io)?;
     regular(&metadata, most)?;
-    // What the kernel makes while it is read has no length, passes for a file, and may wait for ever.
+    // The kernel generates some files while they are read. They have length 0, count as regular and can block forever.
     if metadata.len() == 0 {
         return Ok(Vec::new());
     }
     let mut bytes = Vec::new();
-    // It may grow while it is read.
+    // The file can grow while it is read.
     let mut limited = file.take(most + 1);
     limited.read_to_end(&mut bytes).map_err(Refusal::Io)?;
     match bytes.len() as u64 {
@@ -59,10 +59,10 @@ fn regular(metadata: &fs::Metadata, most: u64) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Writes a file whole: beside its place first, and then by a rename, so that a full disk or a crash
-/// leaves the old file as it was. What is no regular file, such as a device, is written in place.
+/// Writes a whole file: first to a temporary file beside it, which is then renamed, so that a full disk or a crash
+/// leaves the old file unchanged. A file that is not regular, such as a device, is written in place.
 ///
-/// A link stays, and the file it leads to is replaced; an old file's permissions stay.
+/// A symbolic link stays, and the file to which it points is replaced. The permissions of an old file are kept.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let target = match fs::canonicalize(path) {
         Ok(target) => target,
@@ -75,13 +75,13 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         device.write_all(bytes)?;
         return device.flush();
     }
-    // Renaming would get around the protection of a read-only file.
+    // A rename would ignore the write protection of a read-only file.
     if old.is_some() {
         File::options().write(true).open(&target)?;
     }
     let name = target.file_name().unwrap_or(OsStr::new("file"));
     let mut prefix = OsStr::new(".").to_owned();
-    // Names of files have a limit of their own.
+    // The length of file names is limited.
     prefix.push(if name.len() < 100 {
         name
     } else {

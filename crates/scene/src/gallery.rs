@@ -152,12 +152,12 @@ pub struct GalleryScene {
 }
 
 impl GalleryScene {
-    /// Its title for people, as the scene file has it.
+    /// The title, from the scene file.
     pub fn title(&self) -> &'static str {
         self.quoted("title").unwrap_or(self.name)
     }
 
-    /// What it shows, as the scene file has it.
+    /// The description, from the scene file.
     pub fn about(&self) -> &'static str {
         self.quoted("about").unwrap_or_default()
     }
@@ -168,7 +168,7 @@ impl GalleryScene {
         line.split('"').nth(1)
     }
 
-    /// The scene, from built-in meshes only: no file is opened.
+    /// Loads the scene; it has built-in meshes only, so no file is opened.
     pub fn scene(&self) -> Result<Scene, SceneError> {
         scene_file::parse(self.text, Path::new(self.name), MeshSource::builtin_only())
     }

@@ -1,5 +1,4 @@
-//! Scenes: descriptions of bodies in text files, and the way from them to a running
-//! [`World`](sim_core::World).
+//! Scenes: descriptions of bodies in text files, from which a [`World`](sim_core::World) is made.
 //!
 //! [`Scene::load`] takes the name of a scene of the gallery ([`SCENES`]) or the path of a
 //! `.toml` file; [`mesh_file::load`] reads the mesh files in [`mesh_file::FORMATS`].

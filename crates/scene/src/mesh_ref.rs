@@ -1,4 +1,4 @@
-//! The mesh of a body: what the scene file calls it, and the mesh itself.
+//! The mesh of a body: its name in the scene file, and the mesh itself.
 
 use std::fmt;
 use std::path::{self, Path, PathBuf};
@@ -8,7 +8,7 @@ use sim_core::Mesh;
 
 use crate::mesh_file::{self, MeshFileError, MeshReport};
 
-/// A mesh by its name in the scene, loaded: neither rotated nor scaled.
+/// A loaded mesh with its name in the scene. It is neither rotated nor scaled.
 #[derive(Clone)]
 pub struct MeshRef {
     name: String,
@@ -26,12 +26,12 @@ impl MeshRef {
         })
     }
 
-    /// A mesh from a file, which becomes its name.
+    /// Loads a mesh from a file; its name is the path.
     pub fn load(path: &Path) -> Result<MeshRef, MeshFileError> {
         MeshRef::named(path.to_string_lossy().into_owned(), path)
     }
 
-    /// The same, with what is to be known of what was read.
+    /// Like [`load`](Self::load), with the figures of the mesh.
     pub fn load_reporting(path: &Path) -> Result<(MeshRef, MeshReport), MeshFileError> {
         let loaded = mesh_file::load(path)?;
         let report = loaded.report();
@@ -43,7 +43,7 @@ impl MeshRef {
         Ok((mesh, report))
     }
 
-    /// A mesh from a file under the name that a scene file uses for it.
+    /// Loads a mesh from a file and gives it the name that a scene file uses.
     pub(crate) fn named(name: String, path: &Path) -> Result<MeshRef, MeshFileError> {
         let loaded = mesh_file::load(path)?;
         Ok(MeshRef {
@@ -53,12 +53,12 @@ impl MeshRef {
         })
     }
 
-    /// What the scene file calls the mesh: a path as written there, or a built-in name.
+    /// The name of the mesh in the scene file: a path as written there, or a built-in name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The file it came from; `None` for a built-in mesh.
+    /// The file of the mesh; `None` for a built-in mesh.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
@@ -77,7 +77,7 @@ impl MeshRef {
     }
 }
 
-/// Of the same file, however that is called, or the same built-in mesh; and as it is in there.
+/// Equal are meshes with the same contents, of the same file under any name or of the same built-in mesh.
 impl PartialEq for MeshRef {
     fn eq(&self, other: &MeshRef) -> bool {
         let same_place = match (&self.path, &other.path) {
@@ -89,7 +89,7 @@ impl PartialEq for MeshRef {
     }
 }
 
-/// The name alone: a mesh is too much to look at.
+/// Prints the name alone, because a mesh is too long.
 impl fmt::Debug for MeshRef {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.debug_tuple("MeshRef").field(&self.name).finish()

@@ -15,28 +15,28 @@ use crate::{Format, MeshFileError, MeshRef, SceneError, shown};
 /// The largest scene file that is read, in bytes.
 const MAX_BYTES: u64 = 1 << 26;
 
-/// The description of a world: its bodies and how time passes in it.
+/// The description of a world: its bodies, forces, method and step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Name in the gallery, or of the file without its extension.
     pub name: String,
     /// Title for people.
     pub title: String,
-    /// A few sentences on what to look for; may be empty.
+    /// A few sentences on what the scene shows; may be empty.
     pub about: String,
     /// Step in seconds, from 1e-9 to 1e3.
     pub dt: f64,
-    /// How bodies move.
+    /// The integration method.
     pub method: &'static Method,
-    /// How collisions are searched for.
+    /// The collision mode.
     pub collision: Collision,
-    /// Error that adaptive methods may make in a step, from 1e-15 to 1.
+    /// Error tolerance of adaptive methods in a step, from 1e-15 to 1.
     pub tolerance: f64,
-    /// When what it shows is over, s, above 0: there a window holds still once.
+    /// The time at which the demonstration is over, s, above 0. A window pauses there once.
     pub ends: Option<f64>,
     /// The bodies in the order of the file; may be empty.
     pub bodies: Vec<SceneBody>,
-    /// Forces beside the constant ones of the bodies, which they name by their place in `bodies`.
+    /// Forces other than the constant ones of the bodies. They refer to bodies by their index in `bodies`.
     pub forces: Vec<Force>,
 }
 
@@ -45,49 +45,49 @@ pub struct Scene {
 pub struct SceneBody {
     /// Name, unique in the scene.
     pub name: String,
-    /// What it is.
+    /// The shape.
     pub shape: SceneShape,
     /// Position of the shape's origin in metres.
     pub position: DVec3,
-    /// Turns of a mesh about x, then y, then z, the axes of the world, in degrees; of a body that turns,
-    /// at the start. Other shapes have none.
+    /// Rotations of a mesh about x, then y, then z, the axes of the world, in degrees; for a turning body, at the
+    /// start. Other shapes have none.
     pub rotation: DVec3,
     /// Scale along the mesh's own axes, before the rotation; not 0. Other shapes have none.
     pub scale: DVec3,
-    /// Velocity in metres per second; of a body that turns, of its centre of mass.
+    /// Velocity in metres per second; for a turning body, of its centre of mass.
     pub velocity: DVec3,
     /// Constant force in newtons.
     pub force: DVec3,
-    /// Whether nothing moves it: it stands still or keeps its velocity, as half-spaces of a scene file
-    /// always do.
+    /// Whether the body is immovable: it stands still or keeps its velocity. Half-spaces of a scene file are always
+    /// immovable.
     pub immovable: bool,
-    /// Mass in kilograms, above 0; it counts while the body is movable, and files hold it then.
+    /// Mass in kilograms, above 0. It is used, and written to files, only while the body is movable.
     pub mass: f64,
-    /// Part of the approaching speed with which it leaves an impact, 0 to 1.
+    /// Coefficient of restitution, 0 to 1: the part of the approach speed with which the body leaves an impact.
     pub restitution: f64,
-    /// Coefficient of friction, from 0 (smooth) to infinity (never slips); of two bodies the
-    /// geometric mean counts ([`sim_core::Body::friction`]).
+    /// Coefficient of friction, from 0 (smooth) to infinity (never slips). A contact uses the geometric mean of the two
+    /// bodies' coefficients ([`sim_core::Body::friction`]).
     pub friction: f64,
-    /// The names of the groups that it is in; `None`: in all, of all names.
+    /// The names of the groups of the body; `None`: all groups, of all names.
     pub groups: Option<Vec<String>>,
-    /// The names of the groups that it collides with; `None`: with all. Two bodies collide if each is in
-    /// a group with which the other one does.
+    /// The names of the groups with which the body collides; `None`: all. Two bodies collide if each is in a group with
+    /// which the other collides.
     pub collides_with: Option<Vec<String>>,
-    /// How it turns, if it does.
+    /// The rotational properties of a turning body; `None` for a body that does not rotate.
     pub turn: Option<SceneTurn>,
     /// Colour as sRGB-encoded red, green and blue from 0 to 1, if the scene chooses one.
     pub colour: Option<[f32; 3]>,
 }
 
-/// How a body of a scene turns.
+/// The rotational properties of a turning body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SceneTurn {
     /// Angular velocity at the start, about the axes of the world, in radians per second.
     pub spin: DVec3,
     /// Constant torque about the axes of the world, in newton metres.
     pub torque: DVec3,
-    /// Moments of inertia about the axes of the scaled mesh, kg m², with the centre of mass at its
-    /// origin. `None` takes those of a solid body, about the centre of its volume.
+    /// Moments of inertia about the axes of the scaled mesh, kg m², with the centre of mass at its origin. `None`
+    /// computes them for a homogeneous solid, about the centre of its volume.
     pub inertia: Option<DVec3>,
 }
 
@@ -96,20 +96,20 @@ pub struct SceneTurn {
 pub enum SceneShape {
     /// A mesh, before rotation and scale.
     Mesh(MeshRef),
-    /// A ball about the position.
+    /// A sphere with its centre at the position.
     Sphere {
         /// Its radius in metres.
         radius: f64,
     },
-    /// Everything behind a plane through the position: a floor or a wall.
+    /// All points behind a plane through the position: a floor or a wall.
     HalfSpace {
-        /// Points out of it; of any length but 0.
+        /// The outward normal, of any length but 0.
         normal: DVec3,
     },
 }
 
 impl SceneBody {
-    /// An elastic, smooth body at rest at the origin: of 1 kg, or a half-space that is immovable.
+    /// An elastic, smooth body at rest at the origin. It has a mass of 1 kg; a half-space is immovable.
     pub fn new(name: String, shape: SceneShape) -> SceneBody {
         let is_half_space = matches!(shape, SceneShape::HalfSpace { .. });
         SceneBody {
@@ -131,7 +131,7 @@ impl SceneBody {
         }
     }
 
-    /// Its mesh before rotation and scale, if it is one.
+    /// The mesh of the body before rotation and scale, if its shape is a mesh.
     pub fn mesh(&self) -> Option<&MeshRef> {
         match &self.shape {
             SceneShape::Mesh(mesh) => Some(mesh),
@@ -141,10 +141,10 @@ impl SceneBody {
 }
 
 impl Scene {
-    /// A scene of the gallery by its name, a scene file by its path, which ends in `.toml`, or a mesh
-    /// file by its path: a scene of that mesh alone, of 1 kg and at rest.
+    /// Loads a scene: of the gallery by its name, from a scene file by its path, which ends in `.toml`, or from a mesh
+    /// file by its path. The scene of a mesh file has that mesh alone, of 1 kg and at rest.
     ///
-    /// A gallery scene opens no file. A path need not be text.
+    /// No file is opened for a gallery scene. A path need not be valid UTF-8.
     pub fn load(name_or_path: impl AsRef<Path>) -> Result<Scene, SceneError> {
         let path = name_or_path.as_ref();
         if let Some(gallery) = SCENES.iter().find(|scene| path == Path::new(scene.name)) {
@@ -174,7 +174,7 @@ impl Scene {
                 most: MAX_BYTES,
             },
         })?;
-        // UTF-16 has zeros, which no text has.
+        // UTF-16 text contains zero bytes, which UTF-8 text never does.
         let valid = match std::str::from_utf8(&bytes) {
             Ok(text) => text.find('\0').unwrap_or(text.len()),
             Err(error) => error.valid_up_to(),
@@ -196,7 +196,7 @@ impl Scene {
     fn of_mesh(path: &Path) -> Result<Scene, SceneError> {
         let mesh = MeshRef::load(path).map_err(|error| SceneError::Mesh(Box::new(error)))?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        // A scene file has no body without a name.
+        // Every body of a scene file needs a name.
         let name = match name.trim().is_empty() {
             true => "mesh".into(),
             false => name,
@@ -210,22 +210,22 @@ impl Scene {
 
     /// A scene from the text of a scene file.
     ///
-    /// `origin` is the file: its stem becomes the scene's name, and mesh paths are relative to
-    /// its folder. A mesh that is not there may be a built-in one.
+    /// `origin` is the path of the file: its stem becomes the scene's name, and mesh paths are relative to its folder.
+    /// If a mesh file does not exist, a built-in mesh of that name is used.
     pub fn parse(text: &str, origin: &Path) -> Result<Scene, SceneError> {
         scene_file::parse(text, origin, MeshSource::beside(origin))
     }
 
-    /// The text of a scene file that gives this scene again in the same folder.
+    /// The text of a scene file that reproduces this scene when read in the same folder.
     ///
-    /// Colours are rounded to the 256 steps that a file can hold. Forces whose law is not data
-    /// ([`Force::Body`], [`Force::Pair`]) have no text and are left out.
+    /// Colours are rounded to the 256 steps that a file can store. Forces whose law is code ([`Force::Body`],
+    /// [`Force::Pair`]) have no text and are left out.
     pub fn to_toml(&self) -> String {
         scene_file::write(self)
     }
 
-    /// Removes a body and the forces that name it, and says how many those were; the others follow
-    /// their bodies to their new places. Panics if there is no such body, as vectors do.
+    /// Removes a body and the forces that refer to it, and returns the number of these forces. The other forces keep
+    /// their bodies, whose indices may change. Panics if there is no such body.
     pub fn remove_body(&mut self, body: usize) -> usize {
         self.bodies.remove(body);
         let renumber = |i: usize| match i.cmp(&body) {
@@ -246,8 +246,8 @@ impl Scene {
         body.map_or_else(String::new, |body| body.name.clone())
     }
 
-    /// Writes the scene to a file, whole or not at all. Meshes beside it are named from its folder, those of other
-    /// folders keep their place.
+    /// Writes the whole scene to a file, or nothing. Meshes beside it get paths relative to its folder; meshes of other
+    /// folders keep their paths.
     pub fn save(&self, path: &Path) -> Result<(), SceneError> {
         let text = self.text_at(path)?;
         file::write(path, text.as_bytes()).map_err(|error| SceneError::Write {
@@ -256,8 +256,8 @@ impl Scene {
         })
     }
 
-    /// The text of a scene file that gives this scene again where it is read as the file at `path`.
-    /// Meshes beside it are named from its folder, those of other folders keep their place.
+    /// The text of a scene file that reproduces this scene when read as the file at `path`. Meshes beside it get paths
+    /// relative to its folder; meshes of other folders keep their paths.
     pub fn text_at(&self, path: &Path) -> Result<String, SceneError> {
         let refused = |error| SceneError::Write {
             path: path.to_owned(),
@@ -279,7 +279,7 @@ impl Scene {
             };
             let absolute = path::absolute(mesh_file).map_err(refused)?;
             let found_from_there = folder.join(mesh.name()) == mesh_file;
-            // What lies beside the scene, or deeper, goes along where its folder goes.
+            // The paths of meshes in the scene's folder or below are relative, so that the folder can be moved.
             let place = match absolute.strip_prefix(&whole_folder) {
                 Ok(beneath) => beneath,
                 Err(_) if found_from_there => continue,
@@ -291,7 +291,7 @@ impl Scene {
                     shown::path(&absolute)
                 ))));
             };
-            // Slashes are read everywhere.
+            // Every system reads slashes.
             let name = match cfg!(windows) {
                 true => name.replace('\\', "/"),
                 false => name.to_owned(),

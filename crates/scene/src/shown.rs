@@ -1,6 +1,5 @@
-//! Text from outside, made fit to be shown: on a terminal or in a window it can neither act (control
-//! characters), nor reorder what stands around it (bidirectional marks), nor begin a line of its
-//! own, nor fill the screen.
+//! Makes external text safe to show on a terminal or in a window: it can contain neither control characters nor
+//! bidirectional marks that reorder the text around them, cannot begin a new line, and is limited in length.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -19,7 +18,7 @@ pub fn name(text: &str) -> String {
     shown(text, NAME)
 }
 
-/// A path: at most 160 bytes. Bytes that are no text become replacement characters.
+/// A path: at most 160 bytes. Bytes that are not valid UTF-8 become replacement characters.
 pub fn path(path: &Path) -> String {
     shown(&path.to_string_lossy(), PATH)
 }
@@ -34,7 +33,7 @@ pub fn part(text: &str) -> String {
     shown(text, MESSAGE / 2)
 }
 
-/// A number in at most a few digits more than it needs, never in hundreds of zeros.
+/// A number with at most a few digits more than it needs, never with hundreds of zeros.
 pub(crate) fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs()) {
         value.to_string()
@@ -43,20 +42,20 @@ pub(crate) fn number(value: f64) -> String {
     }
 }
 
-/// Whether a character must not be shown as it is.
+/// Whether a character must be escaped.
 pub fn is_unsafe(character: char) -> bool {
     character.is_control()
         || matches!(character,
-            // Marks of direction, separators of lines, and what is not seen at all.
+            // Direction marks, line separators and invisible characters.
             '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
             | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}'
             | '\u{e0000}'..='\u{e007f}')
 }
 
-/// Escapes what must not be shown, and cuts out the middle of what is longer than `most` bytes. What
-/// was shown once stays as it is.
+/// Escapes unsafe characters, and removes the middle of text longer than `most` bytes. Applied to its own result it
+/// changes nothing.
 fn shown(text: &str, most: usize) -> String {
-    // Each character takes at least one byte, so no more than `most` at either end can matter.
+    // Each character takes at least one byte, so only the first and last `most` characters can be kept.
     if text.len() <= most && !text.contains(is_unsafe) {
         return text.to_owned();
     }
@@ -96,7 +95,7 @@ fn shown(text: &str, most: usize) -> String {
     start + GAP + &end.concat()
 }
 
-/// Stands for what is cut out.
+/// Replaces the removed middle.
 const GAP: &str = " ... ";
 
 fn escape(out: &mut String, character: char) {

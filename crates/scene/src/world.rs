@@ -1,4 +1,4 @@
-//! A scene to a running world.
+//! Makes a running world from a scene.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -15,9 +15,8 @@ use crate::{MeshRef, SceneError};
 impl Scene {
     /// The world of this scene, at time 0, with the bodies in the same order.
     ///
-    /// Rotation and scale are baked into the meshes; bodies with the same mesh, rotation and
-    /// scale share one. Bodies that turn start with their rotation instead, and share a mesh however
-    /// they are turned.
+    /// Rotation and scale are baked into the meshes; bodies with the same mesh, rotation and scale share one. Turning
+    /// bodies instead start with their rotation as state, so they share a mesh at any rotation.
     pub fn world(&self) -> Result<World, SceneError> {
         let settings = Settings {
             dt: self.dt,
@@ -95,21 +94,21 @@ impl Scene {
     }
 }
 
-/// Groups that bodies of a scene can be in.
+/// The most groups of a scene.
 pub(crate) const MOST_GROUPS: usize = 32;
 
-/// What is wrong with more.
+/// The error for a scene with more groups.
 pub(crate) const TOO_MANY_GROUPS: &str =
     "more than 32 groups are named up to here: use some of them for several bodies";
 
-/// The names of all groups of some bodies, in the order in which they come up.
+/// The names of all groups of some bodies, in order of first appearance.
 fn group_names(bodies: &[SceneBody]) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     bodies.iter().for_each(|body| note_groups(body, &mut names));
     names
 }
 
-/// Adds the names of the groups of a body that are not known yet; more than there can be are not counted one by one.
+/// Adds the new group names of a body; stops once there are more than the limit.
 pub(crate) fn note_groups<'a>(body: &'a SceneBody, names: &mut Vec<&'a str>) {
     let own = body.groups.iter().chain(&body.collides_with).flatten();
     for name in own {
@@ -119,7 +118,7 @@ pub(crate) fn note_groups<'a>(body: &'a SceneBody, names: &mut Vec<&'a str>) {
     }
 }
 
-/// A bit for each of some groups, all bits where none are named.
+/// One bit for each of the groups; all bits for `None`.
 fn bits(names: &[&str], groups: Option<&[String]>) -> u32 {
     let bit = |name: &String| names.iter().position(|known| known == name);
     groups.map_or(u32::MAX, |groups| {
@@ -138,36 +137,36 @@ fn kind(body: &SceneBody) -> BodyKind {
     }
 }
 
-/// From the origin of a mesh to its centre of mass, m, at the start.
+/// The vector from the origin of a mesh to its centre of mass at the start, m.
 fn to_centre(turn: Turn) -> DVec3 {
     let centre = turn.inertia.map_or(DVec3::ZERO, |inertia| inertia.centre());
     turn.rotation * centre
 }
 
-/// Turns about the fixed axes x, then y, then z, in degrees, as one.
+/// The rotation about the fixed axes x, then y, then z, in degrees, as a quaternion.
 fn rotation(degrees: DVec3) -> DQuat {
-    // Fixed axes in the order x, y, z are moving axes in the order z, y, x.
+    // Rotations about the fixed axes x, y, z in order equal rotations about the moving axes z, y, x in order.
     let [x, y, z] = degrees.to_array().map(f64::to_radians);
     DQuat::from_euler(EulerRot::ZYX, z, y, x)
 }
 
-/// The angular momentum of a body as its world has it, kg m²/s.
+/// The initial angular momentum of a body in its world, kg m²/s.
 pub(crate) fn angular_momentum(body: &SceneBody, inertia: &Inertia, spin: DVec3) -> DVec3 {
     let axes = rotation(body.rotation).normalize() * inertia.axes();
     axes * (inertia.moments() * (axes.inverse() * spin))
 }
 
-/// Meshes that have been turned and scaled, and what they enclose, each once.
+/// Caches transformed meshes and their mass properties.
 #[derive(Default)]
 pub(crate) struct Baked {
-    /// By the mesh, as a place in memory, rotation and scale.
+    /// The key: the address of the mesh, its rotation and scale.
     known: HashMap<(usize, [u64; 6]), Arc<Mesh>>,
-    /// By the mesh, turned and scaled, as a place in memory; `known` or the scene keeps it there.
+    /// The key: the address of the transformed mesh, which `known` or the scene keeps alive.
     solids: HashMap<usize, Solid>,
 }
 
 impl Baked {
-    /// The mesh of a body as its world has it: scaled, and turned unless the body turns.
+    /// The mesh of a body in its world: scaled, and rotated unless the body is a turning body.
     pub(crate) fn mesh(
         &mut self,
         mesh: &MeshRef,
@@ -179,7 +178,7 @@ impl Baked {
         }
     }
 
-    /// The mesh of a body, turned and scaled.
+    /// The mesh of a body, rotated and scaled.
     pub(crate) fn turned(
         &mut self,
         mesh: &MeshRef,
@@ -188,7 +187,7 @@ impl Baked {
         self.transformed(mesh, body.rotation, body.scale)
     }
 
-    /// The inertia of a body that turns, or why it has none.
+    /// The inertia of a turning body, or the reason why it has none.
     pub(crate) fn inertia(&mut self, body: &SceneBody) -> Result<Option<Inertia>, String> {
         let Some(turn) = body.turn else {
             return Ok(None);
@@ -198,7 +197,7 @@ impl Baked {
             return inertia.map(Some).map_err(|error| error.to_string());
         }
         if body.mass.is_infinite() {
-            // Nothing changes its spin, whatever its moments are; it turns about its origin.
+            // Nothing changes the spin of an immovable body, so its moments do not matter; it rotates about its origin.
             let any = Inertia::new(DVec3::ONE, DQuat::IDENTITY, DVec3::ZERO);
             return any.map(Some).map_err(|error| error.to_string());
         }
@@ -228,7 +227,7 @@ impl Baked {
         if degrees == DVec3::ZERO && scale == DVec3::ONE {
             return Ok(mesh.mesh().clone());
         }
-        // Zero is the same with either sign.
+        // Adding +0 turns -0 into +0.
         let [x, y, z] = (degrees + DVec3::ZERO).to_array();
         let [u, v, w] = scale.to_array();
         let key = (
@@ -244,7 +243,7 @@ impl Baked {
     }
 }
 
-/// The field that makes baking fail.
+/// The field that causes the error of baking.
 pub(crate) fn baked_field(error: &MeshError) -> &'static str {
     match error {
         MeshError::Rotation => "rotation",

@@ -1,4 +1,4 @@
-//! The window: events in, frames out. Sleeps while nothing moves.
+//! The window: handles events and draws frames. It sleeps while nothing moves.
 
 use std::panic;
 use std::sync::Arc;
@@ -27,19 +27,19 @@ use crate::ui::{self, Ui};
 use crate::watch::Watch;
 use crate::worker::Worker;
 
-/// Frames follow each other no faster than this, should the display not hold them back.
+/// The shortest time between frames, in case the display does not limit the rate.
 const SHORTEST_FRAME: Duration = Duration::from_millis(4);
-/// While the window takes no pictures, or a single step takes long, frames come at this pace.
+/// The time between frames while the window is hidden or a single step takes long.
 const UNSEEN_FRAME: Duration = Duration::from_millis(100);
 
-/// How often another graphics device is asked for in place of one that was lost, and how far apart.
+/// How many times another graphics device is requested after one was lost, and the time between the requests.
 const REOPENINGS: u32 = 8;
 const REOPENING: Duration = Duration::from_millis(500);
 
-/// How long the scene's file is left alone once it was touched, so that it is written whole.
+/// How long to wait after the last change of the scene's file before it is read, so that its writer can finish.
 const WRITING: Duration = Duration::from_millis(200);
 
-/// Opens the window on a session and stays until it is closed.
+/// Opens the window on a session and returns when it is closed.
 pub fn run(mut session: Session) -> Result<(), Failure> {
     let event_loop = event_loop()?;
     let mut store = Store::of_the_system();
@@ -61,7 +61,7 @@ pub fn run(mut session: Session) -> Result<(), Failure> {
     let proxy = event_loop.create_proxy();
     let mut app = App {
         watch: Watch::new(move || {
-            // Fails only when the window has closed.
+            // Sending fails only when the window has closed.
             let _ = proxy.send_event(Redraw(WRITING));
         }),
         touched: None,
@@ -86,7 +86,7 @@ pub fn run(mut session: Session) -> Result<(), Failure> {
     if app.session.is_closing() {
         app.rescue.forget();
     } else {
-        // Where this fails, what was written before is told below.
+        // If this fails, the file of the edits written before is named below.
         let _ = app.rescue.keep_at_once(&mut app.session);
     }
     let ended = match (app.failure.take(), ran) {
@@ -103,35 +103,35 @@ pub fn run(mut session: Session) -> Result<(), Failure> {
     })
 }
 
-/// Bytes of a file of pictures, if it was not cancelled.
+/// The bytes of a picture file; `None` if drawing was cancelled.
 type Shot = Result<Option<Vec<u8>>, String>;
 
-/// The control panel wants a frame after this time.
+/// The control panel requests a frame after this time.
 #[derive(Debug)]
 struct Redraw(Duration);
 
 struct App {
-    /// Looks at the scene's files.
+    /// Watches the scene's files for changes.
     watch: Watch,
-    /// When those were touched last, if they are to be read again.
+    /// The time of their last change, if they must be read again.
     touched: Option<Duration>,
-    /// Keeps edits that no file has.
+    /// Keeps unsaved edits.
     rescue: Rescue,
-    /// Where preferences are kept.
+    /// The file of the preferences.
     store: Store,
-    /// Those of the last time, until the window opens.
+    /// The preferences of the previous start, until the window opens.
     preferences: Option<Preferences>,
     session: Session,
     ui: Ui,
-    /// Takes the steps; none while none is under way.
+    /// Takes the steps; `None` while no step runs.
     worker: Option<Worker<Job, Done>>,
-    /// Measures naive against BVH; none while that is off.
+    /// Measures naive against BVH; `None` while that is off.
     measurer: Option<Worker<Trial, Tried>>,
-    /// Runs the variants; none while there are none.
+    /// Runs the variants; `None` if there are none.
     runner: Option<Worker<VariantJob, VariantsDone>>,
-    /// Draws pictures into files; none while there are none to draw.
+    /// Draws pictures into files; `None` if there are none to draw.
     filmer: Option<Worker<Shooting, Shot>>,
-    /// Looks ahead for the opening view; none while that is settled.
+    /// Computes the opening view; `None` once it is found.
     scout: Option<Worker<Outlook, Outlook>>,
     stopwatch: Stopwatch,
     proxy: EventLoopProxy<Redraw>,
@@ -139,14 +139,14 @@ struct App {
     failure: Option<Failure>,
     /// When the last frame began.
     last_frame: Duration,
-    /// When the next frame is due; none while nothing moves.
+    /// When the next frame is due; `None` while nothing moves.
     next_frame: Option<Duration>,
 }
 
-/// A window with all that is needed to draw in it.
+/// A window with everything needed to draw in it.
 struct Open {
     window: Arc<Window>,
-    /// What stands over the window.
+    /// The title of the window.
     title: String,
     egui: egui_winit::State,
     gpu: Gpu,
@@ -163,7 +163,7 @@ impl Open {
         ui::apply_style(&context);
         let proxy = proxy.clone();
         context.set_request_repaint_callback(move |request| {
-            // Fails only when the window has closed.
+            // Sending fails only when the window has closed.
             let _ = proxy.send_event(Redraw(request.delay));
         });
         let egui = egui_winit::State::new(
@@ -184,7 +184,7 @@ impl Open {
 }
 
 impl App {
-    /// Sees to a frame at `time`, or earlier if one is due already.
+    /// Requests a frame at `time`, or keeps an earlier one that is already due.
     fn schedule(&mut self, time: Duration) {
         self.next_frame = Some(self.next_frame.map_or(time, |next| next.min(time)));
     }
@@ -194,13 +194,13 @@ impl App {
         event_loop.exit();
     }
 
-    /// Takes another device for the window in place of one that was lost; panels stay as they are. A driver that
-    /// starts again may take a moment.
+    /// Opens another device for the window after one was lost; the panels keep their state. A restarting driver may
+    /// need some time.
     fn reopen(&mut self, event_loop: &ActiveEventLoop) {
         let Some(open) = self.open.take() else { return };
         let context = open.egui.egui_ctx().clone();
         let window = open.window.clone();
-        // Two surfaces would be in each other's way.
+        // Two surfaces of one window would conflict.
         drop(open);
         let mut tries = REOPENINGS;
         loop {
@@ -220,7 +220,7 @@ impl App {
         }
     }
 
-    /// Lets physics go on. Steps are waited for no longer than a frame can spare.
+    /// Advances the physics. It waits for steps no longer than a frame allows.
     fn steps(&mut self, elapsed: Duration) {
         if let Some(worker) = &mut self.worker {
             if let Some(done) = worker.result(Duration::ZERO) {
@@ -235,7 +235,7 @@ impl App {
         let Some(job) = self.session.due(elapsed) else {
             return;
         };
-        // A worker that is busy now has outdated steps, and ends by itself once it is let go.
+        // A worker that is still busy computes outdated steps. It ends by itself after it is dropped.
         self.worker = self.worker.take().filter(|worker| !worker.is_busy());
         if self.worker.is_none() {
             self.worker = Worker::start("steps", |job: Job, time| job.run(|| time.read())).ok();
@@ -252,7 +252,7 @@ impl App {
         }
     }
 
-    /// Lets measurements go on, never waiting for one.
+    /// Advances the measurements without waiting for them.
     fn measure(&mut self, elapsed: Duration) {
         if let Some(measurer) = &mut self.measurer {
             if let Some(tried) = measurer.result(Duration::ZERO) {
@@ -279,7 +279,7 @@ impl App {
         }
     }
 
-    /// Lets variants come up with the run, never waiting for them.
+    /// Advances the variants to the time of the run without waiting for them.
     fn run_variants(&mut self) {
         if let Some(runner) = &mut self.runner {
             if let Some(done) = runner.result(Duration::ZERO) {
@@ -308,7 +308,7 @@ impl App {
         }
     }
 
-    /// Lets the opening view of a scene just opened come, never waiting for it.
+    /// Advances the search for the opening view of a new scene without waiting for it.
     fn look_ahead(&mut self) {
         if let Some(outlook) = self.session.outlook() {
             let run = |outlook: Outlook, time: &Stopwatch| outlook.run(|| time.read());
@@ -322,12 +322,12 @@ impl App {
             self.session.accept_outlook(&seen);
             self.scout = None;
         } else if scout.is_gone() {
-            // The bodies are in view all the same.
+            // The bodies are in view even without the opening view.
             self.scout = None;
         }
     }
 
-    /// Lets pictures be drawn into files, never waiting for them.
+    /// Advances the drawing of pictures into files without waiting for it.
     fn film(&mut self) {
         if let Some(shooting) = self.session.shooting_due() {
             let run = |shooting: Shooting, _: &Stopwatch| film::shoot(&shooting);
@@ -350,7 +350,7 @@ impl App {
         }
     }
 
-    /// Reads the scene's files again once they have been left alone for a moment.
+    /// Reads the scene's files again once they have not changed for a moment.
     fn reread(&mut self, now: Duration) {
         self.watch.follow(self.session.files());
         if self.watch.take() {
@@ -366,7 +366,7 @@ impl App {
         }
     }
 
-    /// Lets physics go on, lays out the control panel and paints both.
+    /// Advances the physics, lays out the control panel and paints both.
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
         let now = self.stopwatch.read();
         let elapsed = now.saturating_sub(self.last_frame);
@@ -476,7 +476,7 @@ impl ApplicationHandler<Redraw> for App {
     }
 
     fn user_event(&mut self, _: &ActiveEventLoop, Redraw(delay): Redraw) {
-        // egui asks for a frame in the far future to say that it wants none.
+        // egui requests a frame in the far future when it needs none.
         if let Some(time) = self.stopwatch.read().checked_add(delay) {
             self.schedule(time);
         }
@@ -521,19 +521,20 @@ impl ApplicationHandler<Redraw> for App {
     }
 }
 
-/// Whether `.ci/window-faults` wants the device to be lost: once for each file that it puts where this variable says.
+/// Whether `.ci/window-faults` requests that the device be lost: once for each file that it puts at the path in this
+/// variable.
 #[cfg(debug_assertions)]
 fn is_fault_wanted() -> bool {
     std::env::var_os("COWBELL_LOSE_DEVICE").is_some_and(|path| std::fs::remove_file(path).is_ok())
 }
 
-/// What stands over the window: the scene, marked when no file has its edits.
+/// The title of the window: the scene, marked if it has unsaved edits.
 fn title(session: &Session) -> String {
     let mark = if session.is_changed() { "*" } else { "" };
     format!("{}{mark} - Cowbell", shown::name(&session.scene().name))
 }
 
-/// The size of the window at first, in points: as large as is comfortable and the monitor has.
+/// The initial size of the window, in points: a comfortable size, limited by the monitor.
 fn first_size(event_loop: &ActiveEventLoop) -> LogicalSize<f64> {
     let mut size = LogicalSize::<f64>::new(1360.0, 880.0);
     let monitor = event_loop
@@ -549,8 +550,8 @@ fn first_size(event_loop: &ActiveEventLoop) -> LogicalSize<f64> {
     size
 }
 
-/// The connection to the display. winit panics instead of failing where libraries of the display
-/// are missing; to a person both are the same.
+/// The connection to the display. winit panics instead of failing if libraries of the display are missing; both are
+/// reported in the same way.
 fn event_loop() -> Result<EventLoop<Redraw>, Failure> {
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
@@ -569,7 +570,7 @@ fn event_loop() -> Result<EventLoop<Redraw>, Failure> {
 }
 
 fn no_display(reason: &str) -> Failure {
-    // winit says in which line of its source it failed: nothing to a person.
+    // winit adds the source line of its failure, which does not help a user.
     let reason = match reason.split_once(".rs:") {
         Some((_, place)) => place.split_once(": ").map_or(place, |(_, reason)| reason),
         None => reason,

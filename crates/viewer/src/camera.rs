@@ -4,37 +4,37 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DMat4, DVec3, DVec4, Mat4};
 
-/// The distances from the target that the camera keeps to, m.
+/// The range of distances from the target, m.
 const DISTANCE: std::ops::RangeInclusive<f64> = 1e-4..=1e12;
-/// The nearest thing drawn, as a part of the distance to the target.
+/// The near plane, as a fraction of the distance to the target.
 const NEAR: f64 = 1e-3;
-/// How far behind the eye the last thing drawn without perspective is, in distances to the target.
+/// Without perspective, the distance of the far plane behind the eye, in distances to the target.
 const PARALLEL_REACH: f64 = 200.0;
-/// How much larger than a framed sphere the view is.
+/// The factor by which the view is larger than a framed sphere.
 const FRAME_MARGIN: f64 = 1.1;
 
 /// A camera that looks at a target from a distance; `y` is up.
 ///
-/// The fields are free to set; the methods keep them in their ranges and ignore what is not finite.
+/// The fields may be set freely; the methods keep them in their ranges and ignore values that are not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// The point in the middle of the view, m.
     pub target: DVec3,
-    /// From the eye to the target, m, above zero.
+    /// The distance from the eye to the target, m, above zero.
     pub distance: f64,
-    /// Turn about `y`, radians: at 0 the eye is towards `+z` of the target, at a quarter turn towards `+x`.
+    /// Rotation about `y`, radians: at 0 the eye is towards `+z` of the target, at a quarter turn towards `+x`.
     pub yaw: f64,
-    /// Height of the eye over the target as an angle, radians, within a quarter turn.
+    /// The elevation angle of the eye above the target, radians, within a quarter turn.
     pub pitch: f64,
-    /// Field of view, radians, in `(0, pi)`: vertical, or horizontal where the picture is taller than wide.
+    /// Field of view, radians, in `(0, pi)`: vertical, or horizontal if the picture is taller than wide.
     pub fov_y: f64,
-    /// Whether all rays are parallel, so that things are as large far away as near. What is at the target
-    /// is as large either way.
+    /// Whether the projection is parallel, so that the apparent size does not depend on the distance. At the target,
+    /// sizes are the same in both projections.
     pub parallel: bool,
 }
 
 impl Default for Camera {
-    /// A three-quarter view, from a little above, of a few metres round the origin.
+    /// A three-quarter view, from a little above, of a few metres around the origin.
     fn default() -> Self {
         Self {
             target: DVec3::new(0.0, 0.5, 0.0),
@@ -48,7 +48,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// Moves the eye round the target: `dx` radians to the right, `dy` upwards, as far as straight above.
+    /// Rotates the eye around the target: `dx` radians to the right, `dy` upwards, at most to straight above.
     pub fn orbit(&mut self, dx: f64, dy: f64) {
         if dx.is_finite() && dy.is_finite() {
             self.yaw = (self.yaw + dx).rem_euclid(TAU);
@@ -56,8 +56,8 @@ impl Camera {
         }
     }
 
-    /// Moves eye and target together, `dx` to the right and `dy` up, in heights of the view at the target
-    /// (in widths where the picture is taller than wide).
+    /// Moves eye and target together, `dx` to the right and `dy` up, in heights of the view at the target (in widths if
+    /// the picture is taller than wide).
     pub fn pan(&mut self, dx: f64, dy: f64) {
         let span = 2.0 * self.distance * (0.5 * self.fov_y).tan();
         let [right, up, _] = self.axes();
@@ -67,7 +67,7 @@ impl Camera {
         }
     }
 
-    /// Looks elsewhere from where the eye is: `dx` radians to the right, `dy` upwards.
+    /// Rotates the direction of view about the eye: `dx` radians to the right, `dy` upwards.
     pub fn look(&mut self, dx: f64, dy: f64) {
         let eye = self.eye();
         self.orbit(-dx, -dy);
@@ -86,7 +86,7 @@ impl Camera {
         }
     }
 
-    /// Comes nearer the target by a factor above zero: 2 halves the distance, 0.5 doubles it.
+    /// Divides the distance to the target by a factor above zero: 2 halves the distance, 0.5 doubles it.
     pub fn zoom(&mut self, factor: f64) {
         let distance = self.distance / factor;
         if factor > 0.0 && distance.is_finite() {
@@ -94,8 +94,8 @@ impl Camera {
         }
     }
 
-    /// Comes nearer by a factor above zero and keeps what is seen at a point of the picture, at the
-    /// distance of the target, where it is; as [`ray`](Self::ray) has that point.
+    /// Zooms by a factor above zero and keeps fixed the point of the scene seen at `(x, y)`, at the distance of the
+    /// target; the coordinates are those of [`ray`](Self::ray).
     pub fn zoom_at(&mut self, factor: f64, x: f64, y: f64, aspect: f64) {
         let [right, up, _] = self.axes();
         let [half_width, half_height] = self.half_extents(aspect);
@@ -108,8 +108,7 @@ impl Camera {
         }
     }
 
-    /// Looks at a sphere from where all of it is in view, whatever the shape of the picture.
-    /// Keeps the direction of view.
+    /// Moves the camera so that the whole sphere is in view, for any shape of the picture. The direction of view stays.
     pub fn frame(&mut self, centre: DVec3, radius: f64) {
         let distance = FRAME_MARGIN * radius / (0.5 * self.fov_y).sin();
         if centre.is_finite() && distance.is_finite() {
@@ -118,7 +117,7 @@ impl Camera {
         }
     }
 
-    /// Where the eye is, m.
+    /// The position of the eye, m.
     pub fn eye(&self) -> DVec3 {
         self.target - self.distance * self.forward()
     }
@@ -129,8 +128,9 @@ impl Camera {
         -backward
     }
 
-    /// The ray from the eye, or without perspective from beside it (m), through a point of the picture, and its unit direction.
-    /// `x` and `y` are in `[-1, 1]` over the picture, `y` up; `aspect` is its width over its height.
+    /// The origin (m) and unit direction of the ray through a point of the picture: from the eye, or without
+    /// perspective from beside it. `x` and `y` are in `[-1, 1]` over the picture, `y` up; `aspect` is its width over
+    /// its height.
     pub fn ray(&self, x: f64, y: f64, aspect: f64) -> (DVec3, DVec3) {
         let [right, up, backward] = self.axes();
         let [half_width, half_height] = self.half_extents(aspect);
@@ -141,8 +141,8 @@ impl Camera {
         }
     }
 
-    /// Where in the picture a point is seen, in `[-1, 1]`, `y` up, beyond that outside it;
-    /// `None` for what is beside or behind the eye.
+    /// The position of a point in the picture, `y` up: in `[-1, 1]` within the picture, beyond that outside it. `None`
+    /// for points beside or behind the eye.
     pub fn project(&self, point: DVec3, aspect: f64) -> Option<[f64; 2]> {
         let from_eye = point - self.eye();
         let [right, up, backward] = self.axes();
@@ -157,8 +157,8 @@ impl Camera {
         })
     }
 
-    /// From points relative to the eye (world axes, m) to clip space. Depth is reversed and has no far end:
-    /// 1 at the nearest distance drawn, 0 at infinity, which keeps it precise at every distance in f32.
+    /// The matrix from points relative to the eye (world axes, m) to clip space. Depth is reversed, without a far
+    /// plane: 1 at the near plane, 0 at infinity. So its precision in f32 suffices at every distance.
     pub fn view_projection(&self, aspect: f64) -> Mat4 {
         let [right, up, backward] = self.axes();
         let [half_width, half_height] = self.half_extents(aspect);
@@ -185,8 +185,8 @@ impl Camera {
         (projection * view).as_mat4()
     }
 
-    /// How much a part of the depth buffer's value is, compared with that in perspective, for things at the
-    /// target.
+    /// The factor for relative offsets of the depth buffer's value: with it an offset at the target has the same effect
+    /// as in perspective.
     pub fn depth_share(&self) -> f64 {
         match self.parallel {
             true => 1.0 / PARALLEL_REACH,
@@ -194,12 +194,12 @@ impl Camera {
         }
     }
 
-    /// The depth of the nearest thing drawn, m.
+    /// The depth of the near plane, m.
     pub fn near(&self) -> f64 {
         NEAR * self.distance
     }
 
-    /// Half the width and height of the picture at a depth of one.
+    /// Half the width and height of the view at a depth of one.
     pub fn half_extents(&self, aspect: f64) -> [f64; 2] {
         let half = (0.5 * self.fov_y).tan();
         if aspect < 1.0 {
@@ -271,7 +271,7 @@ mod tests {
             let mut largest: f64 = 0.0;
             for step in 0..360 {
                 let (sin, cos) = f64::from(step).to_radians().sin_cos();
-                // The outline of a sphere lies on a circle nearer the eye than its centre.
+                // The outline of a sphere is a circle nearer to the eye than the centre.
                 let sink = radius / camera.distance;
                 let outline = centre - camera.forward() * radius * sink
                     + radius * (1.0 - sink * sink).sqrt() * (cos * right + sin * up);
@@ -293,7 +293,7 @@ mod tests {
             let mut camera = Camera::default();
             let [x, y] = [0.6, -0.4];
             let (eye, direction) = camera.ray(x, y, aspect);
-            // Where the ray passes the target's distance.
+            // The point at which the ray reaches the target's distance.
             let at = eye + direction * (camera.distance / direction.dot(camera.forward()));
             let distance = camera.distance;
             camera.zoom_at(factor, x, y, aspect);

@@ -1,4 +1,4 @@
-//! What draws a frame of the window onto any texture: the picture, and the control panel around it.
+//! Draws a frame of the window onto any texture: the picture, and the control panel around it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -8,7 +8,7 @@ use egui_wgpu::wgpu;
 use crate::picture::Picture;
 use crate::render::{self, Renderer};
 
-/// Format of the picture's texture, the only one that egui shows.
+/// Format of the picture's texture, the only one that egui can show.
 const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 const NO_MEMORY: &str = "The graphics adapter has no memory left, and something is not drawn: make the window smaller, show \
@@ -26,7 +26,7 @@ pub struct Canvas {
     troubles: Arc<Troubles>,
 }
 
-/// What the driver reports at any time, from any thread.
+/// The errors that the driver reports at any time, from any thread.
 #[derive(Default)]
 struct Troubles {
     lost: AtomicBool,
@@ -44,7 +44,7 @@ pub struct UiFrame {
 }
 
 impl Canvas {
-    /// One that paints on textures of a format, with a number of samples for the picture.
+    /// A canvas that paints on textures of a format; the picture has a number of samples per pixel.
     pub fn new(
         (device, queue): (wgpu::Device, wgpu::Queue),
         format: wgpu::TextureFormat,
@@ -84,12 +84,12 @@ impl Canvas {
         self.picture_id
     }
 
-    /// Whether the device is gone, so that everything must be made anew.
+    /// Whether the device is lost, so that everything must be created again.
     pub fn is_lost(&self) -> bool {
         self.troubles.lost.load(Ordering::Relaxed)
     }
 
-    /// What went wrong since this was last asked.
+    /// The error since the last call, if there was one.
     pub fn take_error(&mut self) -> Option<String> {
         let cut = self.scene.take_cut();
         let of_driver = self
@@ -106,8 +106,8 @@ impl Canvas {
         })
     }
 
-    /// Takes in textures of the control panel. egui sends each once, so that none may be left out even
-    /// if nothing can be shown.
+    /// Uploads textures of the control panel. egui sends each once, so every one must be uploaded, even if nothing can
+    /// be shown.
     pub fn take_textures(&mut self, frame: &mut UiFrame) {
         for (id, deltas) in frame.textures.set.drain() {
             for delta in &deltas {
@@ -116,14 +116,14 @@ impl Canvas {
         }
     }
 
-    /// Frees textures that the frame was the last to show.
+    /// Frees the textures that no later frame uses.
     pub fn free_textures(&mut self, frame: &mut UiFrame) {
         for id in frame.textures.free.drain() {
             self.ui.free_texture(&id);
         }
     }
 
-    /// Hands over the writes of textures, which would pile up where nothing is painted.
+    /// Submits the queued writes of textures, which would otherwise accumulate while nothing is painted.
     pub fn flush(&self) {
         self.queue.submit([]);
     }
@@ -167,7 +167,7 @@ impl Canvas {
         size.map(|side| side.clamp(1, most))
     }
 
-    /// Fits the picture's texture to its place in the window.
+    /// Resizes the picture's texture to its area in the window.
     fn fit_picture(&mut self, size: [u32; 2]) {
         let size = self.fitting(size);
         if size == self.picture_size {
@@ -184,7 +184,7 @@ impl Canvas {
     }
 }
 
-/// What is to be told once there has been another error. What is missing for want of memory causes more of them.
+/// Combines the reported error with another one. After a lack of memory, further errors follow from missing objects.
 fn after(told: Option<String>, error: &wgpu::Error) -> String {
     match (told, error) {
         (_, wgpu::Error::OutOfMemory { .. }) => NO_MEMORY.to_owned(),
@@ -244,7 +244,7 @@ mod tests {
         canvas_of(|limits| limits)
     }
 
-    /// The same on a device of other limits.
+    /// A canvas on a device with other limits.
     fn canvas_of(limited: impl Fn(wgpu::Limits) -> wgpu::Limits) -> Option<Canvas> {
         let Some(adapter) = offscreen::adapter() else {
             assert!(std::env::var_os("CI").is_none(), "no graphics adapter");
@@ -291,10 +291,10 @@ mod tests {
         assert!(!canvas.is_lost());
     }
 
-    /// A part of it is better than none, as long as it is told.
+    /// A part of a mesh is drawn, and the cut is reported.
     #[test]
     fn a_mesh_beyond_the_buffers_of_the_device_is_drawn_in_part_and_told_once() {
-        // The vertices of the cow, 24 bytes each, do not fit into this.
+        // The vertices of the cow, 24 bytes each, exceed this limit.
         let limited = |limits| wgpu::Limits {
             max_buffer_size: 1 << 16,
             ..limits
@@ -346,10 +346,10 @@ mod tests {
         canvas.paint(&view, [64, 48], (&Picture::default(), [64, 48]), &frame());
         assert!(!canvas.is_lost());
         canvas.device().destroy();
-        // It tells when all that it had to do is done.
+        // The device reports the loss when all its work is done.
         let _ = canvas.device().poll(wgpu::PollType::wait_indefinitely());
         assert!(canvas.is_lost());
-        // A mesh that it has not seen, too.
+        // The picture also has a mesh that the canvas has not seen yet.
         let mesh = scene::MeshRef::builtin("cube.obj").expect("built in");
         let picture = Picture {
             models: vec![model(mesh.mesh(), true)],
@@ -357,7 +357,7 @@ mod tests {
         };
         canvas.paint(&view, [64, 48], (&picture, [32, 32]), &frame());
         canvas.flush();
-        // Another one takes its place.
+        // Another canvas replaces it.
         let Some(mut canvas) = self::canvas() else {
             return;
         };

@@ -16,13 +16,13 @@ use crate::interrupt::{Interrupt, survive_file_limits};
 use crate::session::{Record, Session, is_run_file};
 use crate::{app, failure::Failure, film, headless, shot, soak};
 
-/// Scene of the window when none is named.
+/// The scene of the window if the command line names none.
 const FIRST_SCENE: &str = "cube-cow";
 
-/// Exit code after an interrupt, as shells have it.
+/// Exit code after an interrupt, as in shells.
 pub const INTERRUPTED: u8 = 130;
 
-/// What `run` says, as far as the names do not say it.
+/// Explains the figures of `run` whose names do not suffice.
 const FIGURES: &str = "\
 Figures, by their names in --json; drifts and errors count from the start, and null is unknown:
   energy_drift     change of kinetic and potential energy, relative to the energy at the start;
@@ -48,13 +48,13 @@ Figures, by their names in --json; drifts and errors count from the start, and n
   potential_energy, total_energy
                    J; null at a centre of attraction, where they are unbounded";
 
-/// What `compare` says.
+/// Explains the output of `compare`.
 const COMPARISON: &str = "\
 Every combination of the methods, steps, collisions and tolerances is run from the start of the scene, and
 the exact solution beside them where it is known. Errors are distances from it, energy is its change since
 the start, relative where it can be. In --csv, run names the method, the rate and how collisions are found.";
 
-/// What `replay` says.
+/// Explains the output of `replay`.
 const REPLAY: &str = "\
 A record has the scene, what was done to it on the way, and a hash of every state. Exit code 1: the replay
 has given another state than the record; the step is told.";
@@ -296,14 +296,14 @@ enum CollisionArg {
     Continuous,
 }
 
-/// Does what the arguments of the process ask for.
+/// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
     survive_file_limits();
     let interrupt = Interrupt::default();
     let done = match Cli::try_parse() {
         Ok(cli) => obey(cli, &interrupt),
         Err(error) if error.use_stderr() => Err(Failure::Refused(one_line(&error))),
-        // Help and version.
+        // Help and version are errors of clap with a text for stdout.
         Err(error) => Ok(error.render().to_string()),
     };
     match done {
@@ -315,7 +315,7 @@ pub fn main() -> ExitCode {
             code
         }
         Err(failure) => {
-            // Nothing is left to do if even that cannot be written.
+            // If stderr cannot be written either, nothing more can be done.
             let _ = writeln!(
                 std::io::stderr(),
                 "cowbell: {}",
@@ -326,8 +326,8 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Starts a command that draws again, without the layer of Mesa that asks Wayland which adapter to take: where
-/// there is no Wayland it says so in lines that begin with `error:`. Nothing can be set safely in the
+/// Starts a drawing command again without the Mesa layer that asks Wayland for the preferred adapter: without Wayland
+/// it prints lines that begin with `error:`. The environment of a running program cannot be changed safely.
 /// environment of a program that runs.
 #[cfg(target_os = "linux")]
 fn silence_mesa() {
@@ -340,7 +340,7 @@ fn silence_mesa() {
     if let Ok(program) = std::env::current_exe() {
         let mut again = std::process::Command::new(program);
         again.args(std::env::args_os().skip(1)).env(LAYER_OFF, "1");
-        // Comes back only where it cannot start; then the lines are printed.
+        // `exec` returns only if it fails; then the lines are printed.
         let _ = again.exec();
     }
 }
@@ -348,7 +348,7 @@ fn silence_mesa() {
 #[cfg(not(target_os = "linux"))]
 fn silence_mesa() {}
 
-/// Runs a command; the answer is the text for stdout.
+/// Runs a command and returns the text for stdout.
 fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
     if matches!(
         cli.command,
@@ -456,7 +456,7 @@ fn obey(cli: Cli, interrupt: &Interrupt) -> Result<String, Failure> {
 }
 
 impl WayArgs {
-    /// Every combination, in the order given; where nothing is given, what the scene says.
+    /// Every combination, in the order given; settings that are not given come from the scene.
     fn settings(&self, scene: &Scene) -> Result<Vec<Settings>, Failure> {
         let or = |given: Vec<f64>, own: f64| if given.is_empty() { vec![own] } else { given };
         let mut methods: Vec<&'static Method> = Vec::new();
@@ -488,7 +488,7 @@ impl WayArgs {
                             method,
                             dt,
                             collision,
-                            // Others make no use of it.
+                            // Methods without error control ignore the tolerance.
                             tolerance: if method.adaptive {
                                 tolerance
                             } else {
@@ -516,13 +516,13 @@ impl From<CollisionArg> for Collision {
     }
 }
 
-/// A session at the start of a recorded run.
+/// Opens a session at the start of a recorded run.
 fn replaying(file: &Path) -> Result<Session, Failure> {
     let record = Record::read(file).map_err(Failure::refused)?;
     Session::replaying(record).map_err(Failure::refused)
 }
 
-/// The world would speak of a dt that nobody gave.
+/// Checks the rate here, because the world's error would name a dt that the user did not give.
 fn check_rate(rate: f64) -> Result<(), Failure> {
     if FixedStep::DT_RANGE.contains(&(1.0 / rate)) {
         return Ok(());
@@ -531,7 +531,7 @@ fn check_rate(rate: f64) -> Result<(), Failure> {
     Err(Failure::Refused(what))
 }
 
-/// Reads a scene and overrules what the arguments overrule.
+/// Loads a scene and applies the settings of the arguments.
 fn load(name_or_path: &Path, settings: &SettingArgs) -> Result<Scene, Failure> {
     overruled(
         Scene::load(name_or_path).map_err(Failure::refused)?,
@@ -558,7 +558,7 @@ fn overruled(mut scene: Scene, settings: &SettingArgs) -> Result<Scene, Failure>
     Ok(scene)
 }
 
-/// Writes to stdout. A reader that has gone away, as `head` does, is no failure.
+/// Writes to stdout. A closed pipe, as after `head`, is not a failure.
 fn print(text: &str) -> ExitCode {
     let mut stdout = std::io::stdout().lock();
     match stdout
@@ -577,7 +577,7 @@ fn print(text: &str) -> ExitCode {
     }
 }
 
-/// What clap says before its usage, in one line.
+/// The message of clap above its usage, in one line.
 fn one_line(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let text = text.strip_prefix("error: ").unwrap_or(&text);

@@ -1,14 +1,14 @@
-//! Errors of a world in words, with the names of bodies in place of their indices.
+//! Error messages of a world, with the names of bodies in place of their indices.
 
 use std::fmt::Display;
 
 use scene::{Scene, shown};
 use sim_core::{SeparateError, StepError};
 
-/// Overlaps, and bodies, that are named one by one.
+/// The most overlaps, or bodies, that a message names individually.
 pub const NAMED: usize = 8;
 
-/// A failed step in words: in which scene, and the body by its name.
+/// The message of a failed step: names the scene and the body.
 pub fn step_error(scene: &Scene, error: &StepError) -> String {
     format!(
         "scene `{}`: {}",
@@ -17,7 +17,7 @@ pub fn step_error(scene: &Scene, error: &StepError) -> String {
     )
 }
 
-/// Why bodies cannot be moved out of each other, by their names.
+/// The reason why bodies cannot be moved apart, with their names.
 pub fn separate_error(scene: &Scene, error: &SeparateError) -> String {
     let name = |&body: &usize| {
         scene
@@ -44,7 +44,7 @@ pub fn separate_error(scene: &Scene, error: &SeparateError) -> String {
 pub fn with_names(scene: &Scene, error: &impl Display) -> String {
     let message = error.to_string();
     let mut words = Vec::new();
-    // Whether the next number is a body, and whether one after it is as well.
+    // Whether the next number is a body, and whether the number after it is one too.
     let (mut one, mut more) = (false, false);
     for word in message.split(' ') {
         let end = word
@@ -71,7 +71,7 @@ pub fn with_names(scene: &Scene, error: &impl Display) -> String {
     words.join(" ")
 }
 
-/// The names of some bodies; of many the first ones, and how many there are.
+/// The names of some bodies; if there are many, the first ones and the total number.
 pub fn names(of: &[&str]) -> String {
     let named: Vec<String> = of
         .iter()

@@ -1,16 +1,16 @@
-//! Numbers as people type them into fields: `1.5`, `-2e-3`, `1/60`, `2*(3 + 4)`, `pi`.
+//! Numbers as users type them into fields: `1.5`, `-2e-3`, `1/60`, `2*(3 + 4)`, `pi`.
 
-/// The longest text that is read, and the deepest brackets.
+/// The most characters of a text, and the deepest nesting of brackets.
 const LONGEST: usize = 200;
 const DEEPEST: usize = 20;
 
-/// The value of a number or of a sum, product or quotient of numbers; none if it is not one, or if what
-/// comes out is no number.
+/// The value of a number or of a sum, product or quotient of numbers. `None` if the text is not such an expression or
+/// its value is not a number.
 pub fn value(text: &str) -> Option<f64> {
     if text.len() > LONGEST {
         return None;
     }
-    // A minus, times and divided sign may be typographic.
+    // The signs minus, times and divided may be typographic.
     let text: String = text
         .chars()
         .map(|c| match c {
@@ -28,7 +28,7 @@ pub fn value(text: &str) -> Option<f64> {
     (rest.peek().is_none() && !value.is_nan()).then_some(value)
 }
 
-/// What is still to be read.
+/// The text that has not been parsed yet.
 struct Rest<'a> {
     text: &'a str,
     depth: usize,
@@ -99,7 +99,7 @@ impl Rest<'_> {
         let mut end = 0;
         let mut before = ' ';
         for (at, c) in self.text.char_indices() {
-            // A sign belongs to the exponent before it.
+            // A sign after an `e` belongs to the exponent.
             let exponent = matches!(c, '+' | '-') && matches!(before, 'e' | 'E');
             if !(c.is_ascii_alphanumeric() || c == '.' || exponent) {
                 break;

@@ -1,6 +1,6 @@
-//! How the program fails.
+//! The failures of the program.
 
-/// Why the program ends without having done what it was asked, as one line for a person.
+/// The reason why the program ends without a result, as one line for the user.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Failure {
     /// A run failed on the way.
@@ -12,7 +12,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Refuses something for the reason of an error.
+    /// Refuses input because of an error.
     pub fn refused(error: impl std::fmt::Display) -> Self {
         Self::Refused(error.to_string())
     }
@@ -26,7 +26,7 @@ impl Failure {
         }
     }
 
-    /// What is wrong and what to do about it.
+    /// The message: the error and its remedy.
     pub fn message(&self) -> &str {
         match self {
             Self::Run(message) | Self::Refused(message) | Self::NoDisplay(message) => message,

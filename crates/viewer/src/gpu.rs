@@ -11,7 +11,7 @@ use crate::canvas::{Canvas, UiFrame};
 use crate::picture::Picture;
 use crate::render;
 
-/// Everything that draws into one window.
+/// The objects that draw into one window.
 pub struct Gpu {
     window: Arc<Window>,
     surface: wgpu::Surface<'static>,
@@ -20,16 +20,16 @@ pub struct Gpu {
     canvas: Canvas,
 }
 
-/// What is to be done after what a surface has answered.
+/// The action after a surface's answer.
 #[derive(Debug)]
 enum Next {
-    /// Paint on it.
+    /// Paint on the texture.
     Paint(wgpu::SurfaceTexture),
-    /// Fit it to the window, and ask again.
+    /// Resize the surface to the window and try again.
     Fit,
-    /// Open the window's graphics anew: another surface beside it would be in its way.
+    /// Open the window's graphics again: the old surface must be gone first.
     Reopen,
-    /// Paint nothing: the window takes no pictures now.
+    /// Paint nothing: the window is not visible now.
     Wait,
 }
 
@@ -54,7 +54,7 @@ impl Gpu {
         let instance = wgpu::Instance::new(
             wgpu::InstanceDescriptor::new_with_display_handle_from_env(display),
         );
-        // The error is a list of drivers, and empty where there is none.
+        // The error is a list of drivers, which is empty if there is none.
         let surface =
             instance
                 .create_surface(window.clone())
@@ -100,27 +100,27 @@ impl Gpu {
         self.canvas.device().limits().max_texture_dimension_2d as usize
     }
 
-    /// Loses the device on purpose, to see what comes of it.
+    /// Loses the device on purpose, to test the recovery.
     #[cfg(debug_assertions)]
     pub fn lose(&self) {
         let device = self.canvas.device();
         device.destroy();
-        // It tells when all that it had to do is done.
+        // The device reports the loss when all its work is done.
         let _ = device.poll(wgpu::PollType::wait_indefinitely());
     }
 
-    /// Whether the device or the surface is gone, so that everything must be made anew.
+    /// Whether the device or the surface is lost, so that everything must be created again.
     pub fn is_lost(&self) -> bool {
         self.surface_lost || self.canvas.is_lost()
     }
 
-    /// What went wrong since this was last asked.
+    /// The error since the last call, if there was one.
     pub fn take_error(&mut self) -> Option<String> {
         self.canvas.take_error()
     }
 
-    /// Draws a picture of `size` pixels and the control panel over it. Whether it came to the
-    /// window: a hidden or minimised window takes no pictures.
+    /// Draws a picture of `size` pixels and the control panel over it. Returns whether the window shows it: a hidden or
+    /// minimised window does not.
     pub fn paint(&mut self, picture: &Picture, size: [u32; 2], mut frame: UiFrame) -> bool {
         self.canvas.take_textures(&mut frame);
         let target = self.acquire();
@@ -139,7 +139,7 @@ impl Gpu {
         shown
     }
 
-    /// The window's next image, if it takes one now. The surface is put right as needed.
+    /// The next image of the window, if it accepts one now. Reconfigures the surface if necessary.
     fn acquire(&mut self) -> Option<wgpu::SurfaceTexture> {
         let size: [u32; 2] = self.window.inner_size().into();
         if size.contains(&0) {
@@ -162,7 +162,7 @@ impl Gpu {
         None
     }
 
-    /// Fits the surface to the window.
+    /// Resizes the surface to the window.
     fn configure(&mut self) {
         [self.config.width, self.config.height] =
             self.canvas.fitting(self.window.inner_size().into());

@@ -1,4 +1,4 @@
-//! Ctrl-C, and how far a long run has come.
+//! Ctrl-C, and the progress of a long run.
 
 use std::io::{IsTerminal, Write, stderr};
 use std::sync::Arc;
@@ -11,20 +11,21 @@ use signal_hook::flag;
 use crate::cli::INTERRUPTED;
 use crate::stopwatch::Stopwatch;
 
-/// Whether someone wants the program to end.
+/// Whether the user wants the program to end.
 #[derive(Debug, Default)]
 pub struct Interrupt {
     came: Arc<AtomicBool>,
-    /// The next signal ends the program, and nothing is told.
+    /// If set, the next signal ends the program without a message.
     at_once: Arc<AtomicBool>,
 }
 
 impl Interrupt {
-    /// From now on a signal to end has the exit code of one: at once, until [`Self::listen`].
+    /// From now on a signal ends the program with the exit code of an interrupt: at once, until [`Self::listen`] is
+    /// called.
     pub fn begin(&self) -> std::io::Result<()> {
         self.at_once.store(true, Ordering::Relaxed);
         for signal in [SIGINT, SIGTERM] {
-            // Asked first, so that it acts on what an earlier signal has noted.
+            // This handler is registered first, so that it acts on what an earlier signal has stored.
             flag::register_conditional_shutdown(signal, INTERRUPTED.into(), self.at_once.clone())?;
             flag::register(signal, self.came.clone())?;
             flag::register(signal, self.at_once.clone())?;
@@ -32,20 +33,20 @@ impl Interrupt {
         Ok(())
     }
 
-    /// From now on the first signal is only noted, and the second ends the program.
+    /// From now on the first signal is only stored, and the second ends the program.
     pub fn listen(&self) {
         self.at_once.store(self.came(), Ordering::Relaxed);
     }
 
-    /// Whether a signal came.
+    /// Whether a signal has come.
     pub fn came(&self) -> bool {
         self.came.load(Ordering::Relaxed)
     }
 
-    /// Tells that a signal has cut something short, if one has.
+    /// Prints that a signal has ended something early, if that happened.
     pub fn tell(&self, reached: u64, total: u64, what: &str) {
         if self.came() {
-            // Nothing is lost if it cannot be told: the result has the count too.
+            // A failure is harmless, because the result has the count too.
             let _ = writeln!(
                 stderr(),
                 "cowbell: interrupted after {reached} of {total} {what}"
@@ -54,24 +55,23 @@ impl Interrupt {
     }
 }
 
-/// A write beyond the limit of file sizes becomes an error, as on a full disk, instead of the end
-/// of the program.
+/// Makes a write beyond the limit of file sizes an error, as on a full disk, instead of ending the program.
 pub fn survive_file_limits() {
     #[cfg(unix)]
     {
-        // Where this fails the program ends as it would have.
+        // If this fails, a signal ends the program as by default.
         let _ = flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
     }
 }
 
-/// The line on a terminal that says how far a run is.
+/// The line on a terminal that shows the progress of a run.
 #[derive(Debug)]
 pub struct Progress {
     stopwatch: Option<Stopwatch>,
     total: u64,
     /// What is counted.
     what: &'static str,
-    /// The step to look at the clock after, and how many lie between two looks.
+    /// The step after which to read the clock, and the number of steps between two readings.
     next: u64,
     stride: u64,
     looked: Duration,
@@ -79,15 +79,15 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// How long a run may take before it tells how far it is, and from one time to the next.
+    /// The time before the first message of a run and between two messages.
     const PAUSE: Duration = Duration::from_millis(500);
 
-    /// Of so many steps; silent where stderr is no terminal.
+    /// Progress of a number of steps; silent if stderr is not a terminal.
     pub fn new(total: u64) -> Progress {
         Progress::of(total, "steps")
     }
 
-    /// The same of something else that is counted.
+    /// Progress of another quantity.
     pub fn of(total: u64, what: &'static str) -> Progress {
         Progress {
             what,
@@ -100,7 +100,7 @@ impl Progress {
         }
     }
 
-    /// Tells it if it is time to; most calls compare two numbers.
+    /// Prints the progress if it is time to; most calls only compare two numbers.
     pub fn at(&mut self, steps: u64) {
         if steps < self.next {
             return;
@@ -110,7 +110,7 @@ impl Progress {
             return;
         };
         let now = stopwatch.read();
-        // Short steps are not slowed by the clock, long ones not left alone.
+        // The clock must not slow down short steps, and long steps must still be reported.
         let pause = now - self.looked;
         self.looked = now;
         if pause < Self::PAUSE / 16 {
@@ -122,7 +122,7 @@ impl Progress {
         if now - self.shown.unwrap_or_default() >= Self::PAUSE {
             self.shown = Some(now);
             let percent = 100.0 * steps as f64 / self.total as f64;
-            // Nothing is lost if it cannot be told.
+            // A failure to print is harmless.
             let _ = write!(
                 stderr(),
                 "\r{steps} of {} {}, {percent:.1} % ",

@@ -1,10 +1,9 @@
-//! The window on a world: scenes, control panel, pictures, and the same runs without a display.
+//! The program `cowbell`: the window with its control panel and pictures, and the same runs without a display.
 //!
-//! [`cli`] reads the command line and calls one of [`app`] (the window), [`headless`] (runs and
-//! checks as text) and [`shot`] (one picture in a file). All of them look at a world through a
-//! [`session`], which knows neither windows nor graphics; it describes what is to be seen as a
-//! [`picture`], which [`render`] draws. [`ui`] is the control panel around it, and a [`worker`]
-//! takes the steps.
+//! [`cli`] reads the command line and calls one of [`app`] (the window), [`headless`] (runs and checks as text) and
+//! [`shot`] (one picture in a file). All of them use a [`session`], which depends on neither windows nor graphics. It
+//! describes the scene as a [`picture`], which [`render`] draws. [`ui`] is the control panel around it, and a
+//! [`worker`] takes the steps.
 
 pub mod app;
 pub mod camera;

@@ -1,7 +1,7 @@
-//! Numbers as people read them.
+//! Formats numbers for users.
 
-/// About four significant digits, with an exponent where that is shorter. The columns of a
-/// figure that changes stay in place, since small and large values keep their widths.
+/// About four significant digits, with an exponent if that is shorter. Small and large values have about the same
+/// width, so that the columns of a changing figure stay in place.
 pub fn figure(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 {
@@ -17,7 +17,7 @@ pub fn figure(value: f64) -> String {
     }
 }
 
-/// Two significant digits, for tables in little room.
+/// Two significant digits, for narrow tables.
 pub fn short(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 {
@@ -33,7 +33,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A value, or 0 where it is no more than rounding beside something of its kind.
+/// A value, or 0 if it is only rounding error relative to another value of its kind.
 pub fn beside(value: f64, other: f64) -> f64 {
     if value.abs() > 1e-13 * other.abs() {
         value
@@ -42,7 +42,7 @@ pub fn beside(value: f64, other: f64) -> f64 {
     }
 }
 
-/// A duration in seconds with the unit that suits it.
+/// A duration in seconds, with a suitable unit.
 pub fn seconds(value: f64) -> String {
     if value == 0.0 {
         "0 s".to_owned()
@@ -57,7 +57,7 @@ pub fn seconds(value: f64) -> String {
     }
 }
 
-/// A length in metres, or in millimetres where it is short.
+/// A length in metres, or in millimetres if it is short.
 pub fn length(value: f64) -> String {
     if value == 0.0 || value.abs() >= 0.1 {
         format!("{} m", short(value))
@@ -66,7 +66,7 @@ pub fn length(value: f64) -> String {
     }
 }
 
-/// A number without the digits that are rounding.
+/// A number without the digits that are rounding errors.
 pub fn tidy(value: f64) -> String {
     let text = format!("{value:.6}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -90,7 +90,7 @@ pub fn count(value: f64) -> String {
     text
 }
 
-/// Bytes, of two digits or more, in a unit that suits their number.
+/// Bytes, with two digits or more, in a suitable unit.
 pub fn bytes(count: usize) -> String {
     let size = count as f64;
     match size {
@@ -101,7 +101,7 @@ pub fn bytes(count: usize) -> String {
     }
 }
 
-/// An energy, J; not every one is finite, as where a body is at a centre of attraction.
+/// An energy, J. It may be infinite, for example if a body is at a centre of attraction.
 pub fn energy(value: f64) -> String {
     if value.is_finite() {
         format!("{} J", figure(value))

@@ -1,4 +1,4 @@
-//! What to draw: plain data, made by whoever looks at a world and read by [`render`](crate::render).
+//! What to draw, as plain data that [`render`](crate::render) reads.
 
 use std::sync::Arc;
 
@@ -10,17 +10,17 @@ use crate::camera::Camera;
 /// One picture. Positions are in world metres, `y` up; colours are sRGB, each part in `0..=1`.
 #[derive(Clone, Default)]
 pub struct Picture {
-    /// Where it is seen from.
+    /// The viewpoint.
     pub camera: Camera,
     /// Meshes, shaded.
     pub models: Vec<Model>,
-    /// Meshes that are seen through, and cast no shadow.
+    /// Translucent meshes, which cast no shadow.
     pub ghosts: Vec<Ghost>,
-    /// Coloured glass.
+    /// Translucent coloured panes.
     pub panes: Vec<Pane>,
     /// Lines of a width in pixels.
     pub lines: Vec<Line>,
-    /// Lines that nothing hides.
+    /// Lines that are drawn on top of everything.
     pub marks: Vec<Line>,
     /// Arrows with thickness, such as velocities.
     pub arrows: Vec<Arrow>,
@@ -35,9 +35,9 @@ pub struct Picture {
 pub struct Model {
     /// The geometry; models of the same `Arc` share one copy on the graphics device.
     pub mesh: Arc<Mesh>,
-    /// Where the mesh's origin is, m.
+    /// The position of the mesh's origin, m.
     pub position: DVec3,
-    /// Turns the mesh into the world.
+    /// The rotation of the mesh in the world.
     pub rotation: DQuat,
     /// Surface colour, sRGB.
     pub colour: [f32; 3],
@@ -45,23 +45,23 @@ pub struct Model {
     pub selected: bool,
 }
 
-/// A mesh at a position, seen through: what is elsewhere or at another time.
+/// A translucent mesh at a position: a body elsewhere or at another time.
 #[derive(Clone)]
 pub struct Ghost {
     /// The geometry, shared like that of a [`Model`].
     pub mesh: Arc<Mesh>,
-    /// Where the mesh's origin is, m.
+    /// The position of the mesh's origin, m.
     pub position: DVec3,
-    /// Turns the mesh into the world.
+    /// The rotation of the mesh in the world.
     pub rotation: DQuat,
     /// Colour, sRGB.
     pub colour: [f32; 3],
 }
 
-/// A flat pane that is seen through.
+/// A flat translucent pane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pane {
-    /// Its corners in order, m, of a convex polygon; fewer than three are not drawn.
+    /// The corners of a convex polygon in order, m; fewer than three are not drawn.
     pub corners: Vec<DVec3>,
     /// sRGB and opacity.
     pub colour: [f32; 4],
@@ -85,16 +85,16 @@ pub struct Line {
 pub struct Arrow {
     /// The tail, m.
     pub from: DVec3,
-    /// The tip, m; an arrow of no length is not drawn.
+    /// The tip, m; an arrow of zero length is not drawn.
     pub to: DVec3,
     /// Colour, sRGB.
     pub colour: [f32; 3],
-    /// Radius of the shaft, m; a short arrow is drawn thinner, to keep its shape.
+    /// Radius of the shaft, m; a short arrow is drawn thinner, to keep its proportions.
     pub radius: f32,
 }
 
-/// Colours for bodies that have none of their own, told apart also by people who are colour-blind
-/// (after the set of Okabe and Ito, softened for large surfaces).
+/// Colours for bodies without a colour of their own, distinguishable for colour-blind people too (after the set of
+/// Okabe and Ito, softened for large surfaces).
 pub const PALETTE: [[f32; 3]; 8] = [
     [0.35, 0.60, 0.82],
     [0.90, 0.62, 0.25],
@@ -106,7 +106,7 @@ pub const PALETTE: [[f32; 3]; 8] = [
     [0.62, 0.63, 0.65],
 ];
 
-/// An image as the bytes of a PNG file.
+/// Encodes an image as the bytes of a PNG file.
 pub fn png(image: &image::RgbaImage) -> Result<Vec<u8>, image::ImageError> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     image.write_to(&mut bytes, image::ImageFormat::Png)?;

@@ -1,4 +1,4 @@
-//! What a person prefers, kept from one start of the program to the next.
+//! The preferences of the user, kept from one start of the program to the next.
 
 use std::path::{Path, PathBuf};
 
@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::words::Language;
 
-/// How many files that were opened are remembered.
+/// The number of recently opened files that are remembered.
 pub const MOST_RECENT: usize = 8;
 
-/// The choices that outlive the window. What a file does not name is as at first.
+/// The settings that outlive the window. A setting that a file does not name has its default.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
@@ -19,7 +19,7 @@ pub struct Preferences {
     pub language: Language,
     /// Light panels rather than dark ones.
     pub light: bool,
-    /// Magnification of the panels.
+    /// Scale factor of the panels.
     pub zoom: f32,
     /// Whether the side panel is shown.
     pub panel: bool,
@@ -29,13 +29,13 @@ pub struct Preferences {
     pub plots: bool,
     /// Whether the ground grid is drawn.
     pub grid: bool,
-    /// Whether numbers stand on the axes.
+    /// Whether the axes have numbers.
     pub numbers: bool,
     /// Whether all bodies are named in the picture.
     pub names: bool,
     /// Whether edges are drawn over all meshes.
     pub wireframe: bool,
-    /// Whether the view has no perspective.
+    /// Whether the projection is parallel.
     pub parallel: bool,
     /// Files that were opened or saved, the latest first.
     pub recent: Vec<PathBuf>,
@@ -61,7 +61,7 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// Those of someone who has chosen nothing yet: in the language of the system, where it is spoken here.
+    /// The defaults for a new user: in the language of the system, if it is supported.
     pub fn first(locale: Option<&str>) -> Self {
         let chinese = locale.is_some_and(|locale| locale.to_lowercase().starts_with("zh"));
         Self {
@@ -76,26 +76,26 @@ impl Preferences {
 
 /// The file of the preferences.
 pub struct Store {
-    /// None where the system has no place for it.
+    /// `None` if the system has no place for it.
     path: Option<PathBuf>,
-    /// What is in the file.
+    /// The contents of the file.
     kept: Option<Preferences>,
 }
 
 impl Store {
-    /// The file in the place that the system has for such.
+    /// The file in the system's place for preferences.
     pub fn of_the_system() -> Self {
         let folders = etcetera::choose_base_strategy().ok();
         let file = Path::new("cowbell").join("preferences.json");
         Self::at(folders.map(|folders| folders.config_dir().join(file)))
     }
 
-    /// A file at a path; without one nothing is kept.
+    /// A file at a path; without a path nothing is kept.
     pub fn at(path: Option<PathBuf>) -> Self {
         Self { path, kept: None }
     }
 
-    /// What the file holds; nothing if there is none. Errors name the file.
+    /// The contents of the file; `None` if it does not exist. Errors name the file.
     pub fn load(&mut self) -> Result<Option<Preferences>> {
         let Some(path) = self.path.as_deref().filter(|path| path.exists()) else {
             return Ok(None);
@@ -108,7 +108,7 @@ impl Store {
         Ok(Some(kept))
     }
 
-    /// Writes preferences if they are others than the file has. Errors name the file.
+    /// Writes preferences if they differ from those in the file. Errors name the file.
     pub fn keep(&mut self, wanted: &Preferences) -> Result<()> {
         let Some(path) = &self.path else {
             return Ok(());
@@ -116,7 +116,7 @@ impl Store {
         if self.kept.as_ref() == Some(wanted) {
             return Ok(());
         }
-        // Not tried again before something else is wanted.
+        // A failed write is not repeated until the preferences change.
         self.kept = Some(wanted.clone());
         write(path, wanted)
             .with_context(|| format!("preferences are not kept in {}", scene::shown::path(path)))

@@ -1,5 +1,5 @@
-//! Edits that no file has, kept in one of their own while the window is open: so they outlive a display that
-//! goes away, a driver that fails, and the power. A window that is closed leaves none.
+//! Keeps unsaved edits in a file while the window is open. So they survive the loss of the display, a failure of the
+//! driver and a power failure. A window that is closed normally leaves no file.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -10,38 +10,38 @@ use scene::shown;
 
 use crate::session::Session;
 
-/// Beside the lock of the same name, as long as there are edits.
+/// The extension of the file, which has the name of the lock. It exists as long as there are edits.
 const ENDING: &str = "toml";
 
-/// The most windows that have files of their own at the same time.
+/// The most windows with rescue files at the same time.
 const MOST: usize = 64;
 
 /// Keeps the edits of one window.
 pub struct Rescue {
-    /// None where the system has no place for it.
+    /// `None` if the system has no place for it.
     folder: Option<PathBuf>,
     own: Option<Own>,
-    /// The edit that is in the file.
+    /// The number of the edit in the file.
     kept: Option<u64>,
 }
 
 /// The files of one window.
 struct Own {
     scene: PathBuf,
-    /// Locked while the window is open, so that others leave both alone.
+    /// Locked while the window is open, so that other windows do not use the two files.
     lock: File,
     lock_path: PathBuf,
 }
 
 impl Rescue {
-    /// In the place that the system has for such.
+    /// In the system's place for such files.
     pub fn of_the_system() -> Self {
         let folders = etcetera::choose_base_strategy().ok();
         let folder = Path::new("cowbell").join("unsaved");
         Self::at(folders.map(|folders| folders.data_dir().join(folder)))
     }
 
-    /// In a folder; without one nothing is kept.
+    /// In a folder; without a folder nothing is kept.
     pub fn at(folder: Option<PathBuf>) -> Self {
         Self {
             folder,
@@ -50,7 +50,7 @@ impl Rescue {
         }
     }
 
-    /// Keeps the edits if they are others than the file has, once they have been left alone for a moment.
+    /// Writes the edits if they differ from those in the file and have not changed for a moment.
     pub fn keep(&mut self, session: &Session) -> Result<()> {
         if session.is_settling() {
             return Ok(());
@@ -59,7 +59,7 @@ impl Rescue {
         if edit == self.kept {
             return Ok(());
         }
-        // Not tried again before there is another edit.
+        // A failed write is not repeated until the next edit.
         self.kept = edit;
         if edit.is_none() {
             self.forget();
@@ -78,22 +78,22 @@ impl Rescue {
         written.with_context(place)
     }
 
-    /// Keeps the edits as the window ends by itself, what has not been left alone yet too.
+    /// Writes the edits when the window ends on its own, including those that changed just now.
     pub fn keep_at_once(&mut self, session: &mut Session) -> Result<()> {
         session.settle_at_once();
         self.keep(session)
     }
 
-    /// The file with the edits, if there are some that no other file has.
+    /// The file with the edits, if there are edits that no other file has.
     pub fn file(&self) -> Option<&Path> {
         let own = self.own.as_ref()?;
         own.scene.exists().then_some(own.scene.as_path())
     }
 
-    /// The edits are in a file of the person's, or given up.
+    /// Removes the file: the edits are saved elsewhere or discarded.
     pub fn forget(&mut self) {
         if let Some(own) = self.own.take() {
-            // Of what cannot be removed the next window tells.
+            // If the file cannot be removed, the next window reports it.
             let _ = fs::remove_file(&own.scene);
             drop(own.lock);
             let _ = fs::remove_file(&own.lock_path);
@@ -101,7 +101,7 @@ impl Rescue {
         self.kept = None;
     }
 
-    /// Files of windows that have ended without having been closed, each told once.
+    /// Files of windows that ended without being closed. Each is returned once.
     pub fn left_behind(&self) -> Vec<PathBuf> {
         let Some(folder) = &self.folder else {
             return Vec::new();
@@ -114,7 +114,7 @@ impl Rescue {
             }
             let left = free_name(folder);
             if fs::rename(&scene, &left).is_ok() {
-                // Without its scene the lock is nobody's.
+                // A lock without its scene belongs to no window.
                 let _ = fs::remove_file(&lock_path);
                 found.push(left);
             }
@@ -124,7 +124,7 @@ impl Rescue {
 }
 
 impl Own {
-    /// Files that no other window has.
+    /// Files that no other window uses.
     fn in_folder(folder: &Path) -> Result<Self> {
         fs::create_dir_all(folder)?;
         for number in 0..MOST {
@@ -143,7 +143,7 @@ impl Own {
         anyhow::bail!("too many windows have left edits there")
     }
 
-    /// The lock, if no other window holds it.
+    /// Locks the file, if no other window has locked it.
     fn locked(path: &Path) -> Result<File> {
         let file = File::options()
             .create(true)
@@ -160,7 +160,7 @@ fn names(folder: &Path, number: usize) -> (PathBuf, PathBuf) {
     (of(ENDING), of("lock"))
 }
 
-/// A name that no file has.
+/// A file name that is not in use.
 fn free_name(folder: &Path) -> PathBuf {
     let names = (1..).map(|n| folder.join(format!("rescued-{n}.{ENDING}")));
     let mut free = names.filter(|path| !path.exists());
@@ -200,7 +200,7 @@ mod tests {
         rescue.keep(&session()).expect("nothing to keep");
         assert!(rescue.file().is_none() && !folder.exists());
         rescue.keep(&edited(7.0)).expect("kept");
-        // Another one beside it has a file of its own, and takes nothing from the first.
+        // Another window has its own file and does not take the first one's.
         let mut beside = Rescue::at(Some(folder.clone()));
         assert!(beside.left_behind().is_empty(), "its window is open");
         beside.keep(&edited(8.0)).expect("kept");

@@ -1,4 +1,4 @@
-//! A picture of a scene in a PNG file, drawn without a window.
+//! Draws a picture of a scene into a PNG file, without a window.
 
 use std::io::{Write, stderr};
 use std::sync::Arc;
@@ -17,8 +17,8 @@ use crate::render::offscreen::{Offscreen, ShotError};
 use crate::session::Session;
 use crate::stopwatch::Stopwatch;
 
-/// Runs a scene for a number of steps, or as many as there are before an interrupt, draws it and writes the
-/// file; says what was written.
+/// Runs a scene for a number of steps, fewer after an interrupt, draws it and writes the file. Returns a message about
+/// the file.
 pub fn write(scene: Scene, args: &ShotArgs, interrupt: &Interrupt) -> Result<String, Failure> {
     interrupt.listen();
     let mut session = Session::new(scene).map_err(Failure::refused)?;
@@ -54,14 +54,14 @@ pub fn write(scene: Scene, args: &ShotArgs, interrupt: &Interrupt) -> Result<Str
     ))
 }
 
-/// Takes pictures of a session, and says of each mesh once that it is drawn in part.
+/// Takes pictures of a session, and reports each mesh that is drawn only in part once.
 pub struct Studio {
     offscreen: Offscreen,
     told: Vec<Arc<Mesh>>,
 }
 
 impl Studio {
-    /// On the fastest adapter there is.
+    /// A studio on the fastest adapter.
     pub fn new() -> Result<Self, Failure> {
         Offscreen::new().map(Self::with).map_err(failure)
     }
@@ -73,17 +73,17 @@ impl Studio {
         }
     }
 
-    /// The world as it is to be drawn now, in pixels.
+    /// Draws the present world, in a size in pixels.
     pub fn shot(&mut self, session: &mut Session, size: [u32; 2]) -> Result<RgbaImage, Failure> {
         let (image, lines) = self.drawn(session, size)?;
         for line in lines {
-            // There is a picture whether that can be told or not.
+            // A failure to print the report does not affect the picture.
             let _ = writeln!(stderr(), "cowbell: {}", shown::message(&line));
         }
         Ok(image)
     }
 
-    /// The picture, and what is to be told of it.
+    /// The picture, and the reports about it.
     fn drawn(
         &mut self,
         session: &mut Session,
@@ -116,7 +116,7 @@ fn in_part(session: &Session, cut: &Cut) -> String {
     )
 }
 
-/// Selects a body and shows boxes, as the arguments ask for.
+/// Selects a body and shows boxes as the arguments request.
 pub fn look(
     session: &mut Session,
     select: Option<&str>,
@@ -148,7 +148,7 @@ pub fn look(
     Ok(())
 }
 
-/// Why there is no picture, for the one who asked for it.
+/// Converts the error to a failure of the command.
 fn failure(error: ShotError) -> Failure {
     let message = error.to_string();
     match error {
@@ -176,10 +176,10 @@ fn no_such_body(scene: &Scene, name: &str) -> Failure {
 mod tests {
     use super::*;
 
-    /// A part of it is better than none, as long as it is told.
+    /// A part of a mesh is drawn, and the cut is reported.
     #[test]
     fn a_mesh_that_is_drawn_in_part_is_told_once_with_the_name_of_its_body() {
-        // The vertices of the cow, 24 bytes each, do not fit into this.
+        // The vertices of the cow, 24 bytes each, exceed this limit.
         let small = Offscreen::limited(|limits| egui_wgpu::wgpu::Limits {
             max_buffer_size: 1 << 16,
             ..limits
@@ -196,7 +196,7 @@ mod tests {
         let mut session = Session::new(scene).expect("a session");
         let mut studio = Studio::with(offscreen);
         for frame in 0..3 {
-            // Selected, its triangles are drawn from another buffer.
+            // The triangles of a selected mesh are in another buffer.
             session.select((frame == 2).then_some(0));
             let (image, told) = studio.drawn(&mut session, [64, 48]).expect("a picture");
             assert_eq!(image.dimensions(), (64, 48));

@@ -1,7 +1,7 @@
-//! Scenes that run for minutes or days, looked at after each step.
+//! Runs scenes for minutes or days and checks them after each step.
 //!
-//! Each scene has an equal part of the time. What must hold after each of its steps is an `Invariant`;
-//! the first that does not hold ends the soak with an error. A scene that has an end, as one in which
+//! Each scene gets an equal part of the time. An `Invariant` must hold after each step; the first violation ends the
+//! soak with an error. A scene that ends, for example when walls close on a body, starts again.
 //! walls close on a body, starts again.
 
 use std::fmt::Write as _;
@@ -18,20 +18,20 @@ use crate::number;
 use crate::session::{Drift, Reference};
 use crate::stopwatch::Stopwatch;
 
-/// What rounding may make: of the energy, of its gain by the square root of steps; of the momentum, of all that
-/// bodies have had and have given each other in a step.
+/// The relative rounding errors allowed: of the energy, where its gain is multiplied by the square root of the number
+/// of steps; and of the momentum, relative to all momentum that bodies have and exchange in a step.
 const ROUNDING: f64 = 1e-12;
 
-/// What must hold after each step, and what is wrong where it does not.
+/// A condition that must hold after each step, and the message if it does not.
 struct Invariant {
     broken: fn(&Scene, &World, &Step) -> Option<String>,
 }
 
-/// What a step has changed, and all steps before it.
+/// The changes of a step, and of all steps before it.
 struct Step {
     since_start: Drift,
     alone: Drift,
-    /// Impulses of its impacts, N s.
+    /// Sum of the impulses of its impacts, N s.
     impulses: f64,
 }
 
@@ -55,7 +55,7 @@ const INVARIANTS: [Invariant; 4] = [
             Some(format!("{} and {} overlap", name(scene, i), name(scene, j)))
         },
     },
-    // Where a method follows a force that varies, it has an error of its own.
+    // Under varying forces a method has errors of its own.
     Invariant {
         broken: |_, world, step| {
             let drift = &step.since_start;
@@ -71,8 +71,8 @@ const INVARIANTS: [Invariant; 4] = [
             (gained > most).then(|| format!("energy has grown by {gained:e} of it"))
         },
     },
-    // Each exchange is rounded in the place of what is exchanged, and of the momenta that it changes. Step by
-    // step: errors that are allowed to add up would in the end allow any.
+    // Each exchange is rounded relative to itself and to the momenta that it changes. Each step is tested on its own:
+    // if errors were allowed to accumulate, any error would be allowed in the end.
     Invariant {
         broken: |_, world, step| {
             let error = step.alone.momentum?;
@@ -92,7 +92,7 @@ fn name(scene: &Scene, body: usize) -> String {
     format!("body {}", shown::name(&scene.bodies[body].name))
 }
 
-/// What a scene has done.
+/// The results of a scene.
 #[derive(Default)]
 struct Soaked {
     steps: u64,
@@ -103,7 +103,7 @@ struct Soaked {
     /// Mean time of a step in the first and in the last tenth, s.
     early: Mean,
     late: Mean,
-    /// Resident memory after the first tenth and at the end, bytes, where the system tells it.
+    /// Resident memory after the first tenth and at the end, bytes, if the system reports it.
     memory: [Option<u64>; 2],
 }
 
@@ -124,7 +124,7 @@ impl Mean {
     }
 }
 
-/// Runs scenes for so many minutes together, and tells what they have done.
+/// Runs scenes for a number of minutes in all, and returns a report.
 pub fn run(
     scenes: &[(String, Scene)],
     minutes: f64,
@@ -142,7 +142,7 @@ pub fn run(
             break;
         }
         let soaked = soak(name, scene, part, interrupt).inspect_err(|_| {
-            // What the scenes before have done is told all the same; nothing is left to do if it cannot be.
+            // The results of the previous scenes are printed at once; a failure to print is harmless.
             if index > 0 {
                 let _ = std::io::stdout().write_all(text.as_bytes());
             }
@@ -196,7 +196,7 @@ fn soak(
             let watch = Stopwatch::start();
             match world.step_reporting(&mut impacts) {
                 Ok(()) => {}
-                // What closing walls are there for.
+                // The expected end of scenes with closing walls.
                 Err(StepError::Squeezed { .. }) if world.steps() > 0 => break,
                 Err(error) => return Err(Failure::Run(errors::step_error(scene, &error))),
             }
@@ -222,7 +222,7 @@ fn soak(
 }
 
 impl Soaked {
-    /// Notes a step that took some time, at a part of all the time.
+    /// Records a step: its duration, and the fraction of the whole time at which it was taken.
     fn note(&mut self, drift: &Drift, seconds: f64, part: f64) {
         self.steps += 1;
         self.energy = self.energy.max(drift.relative_energy.unwrap_or(0.0).abs());
@@ -238,7 +238,7 @@ impl Soaked {
     }
 }
 
-/// Memory of the process that is in use, bytes.
+/// Resident memory of the process, bytes.
 fn resident() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

@@ -1,9 +1,9 @@
-//! The only clock of the project; everything else is handed durations.
+//! The only clock of the program; everything else receives durations.
 
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-/// Time since it was started, s. Simulations never read it: they are told how much time passed.
+/// Time since the start. Simulations never read it: the elapsed time is passed to them.
 #[derive(Clone, Copy, Debug)]
 pub struct Stopwatch(Instant);
 
@@ -13,13 +13,13 @@ impl Stopwatch {
         Self(Instant::now())
     }
 
-    /// Time since the start; never goes back.
+    /// Time since the start; it never decreases.
     pub fn read(&self) -> Duration {
         self.0.elapsed()
     }
 }
 
-/// Real time since this was first asked, ns: a clock for [`sim_core::World::step_profiled`].
+/// Real time since the first call, ns: a clock for [`sim_core::World::step_profiled`].
 pub fn nanoseconds() -> u64 {
     static START: LazyLock<Stopwatch> = LazyLock::new(Stopwatch::start);
     u64::try_from(START.read().as_nanos()).unwrap_or(u64::MAX)

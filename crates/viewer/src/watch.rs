@@ -1,4 +1,4 @@
-//! Watching the scene's files, so that what an editor writes there is seen at once, and what goes too.
+//! Watches the scene's files, so that changes by an editor, and deletions, are noticed at once.
 
 use std::collections::HashSet;
 use std::ffi::OsString;
@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher};
 
-/// Watches some files. Where the system cannot, nothing is ever seen.
+/// A watch on some files. If the system does not support it, changes are never noticed.
 pub struct Watch {
     wake: Arc<dyn Fn() + Send + Sync>,
     watcher: Option<RecommendedWatcher>,
@@ -17,7 +17,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Watches nothing yet; `wake` is called, from another thread, when what is watched is touched.
+    /// A watch without files; `wake` is called on another thread when a watched file changes.
     pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self {
             wake: Arc::new(wake),
@@ -27,7 +27,7 @@ impl Watch {
         }
     }
 
-    /// Watches these files from now on, and no others.
+    /// Watches exactly these files from now on.
     pub fn follow<'a>(&mut self, files: impl Iterator<Item = &'a Path> + Clone) {
         let known = self.files.iter().map(|path| path.as_os_str());
         if known.eq(files.clone().map(Path::as_os_str)) {
@@ -41,13 +41,13 @@ impl Watch {
         };
     }
 
-    /// Whether one was touched since this was last asked.
+    /// Whether a file has changed since the last call.
     pub fn take(&self) -> bool {
         self.touched.swap(false, Ordering::Relaxed)
     }
 
-    /// Many editors write another file and rename it, so folders are watched. A file of the same name in one
-    /// of the other folders is taken for touched too: the reader finds that nothing has changed.
+    /// Many editors write another file and rename it, so the folders are watched. A file of the same name in another of
+    /// these folders counts as changed too; the reader then finds no change.
     fn watcher(&self) -> notify::Result<RecommendedWatcher> {
         let (mut names, mut folders) = (HashSet::<OsString>::new(), HashSet::new());
         for file in &self.files {
@@ -68,7 +68,7 @@ impl Watch {
         };
         let mut watcher = notify::recommended_watcher(seen)?;
         for folder in folders {
-            // One that is not there hides nothing of the others.
+            // A missing folder must not prevent watching the others.
             let _ = watcher.watch(&folder, RecursiveMode::NonRecursive);
         }
         Ok(watcher)
@@ -91,7 +91,7 @@ mod tests {
         std::fs::write(&mesh, "a").expect("written");
         let (wakes, woken) = mpsc::channel();
         let mut watch = Watch::new(move || {
-            // Fails only when the test is over.
+            // Sending fails only when the test is over.
             let _ = wakes.send(());
         });
         watch.follow([&*file, &*mesh].into_iter());

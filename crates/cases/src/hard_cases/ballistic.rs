@@ -1,4 +1,4 @@
-//! Case 1: every error of a throw is known.
+//! Case 1: a throw, for which every error is known.
 
 use sim_core::{Body, DVec3, Force, Method};
 
@@ -23,12 +23,12 @@ pub(super) fn test(method: &'static Method) -> Tried {
     let gravity = Force::Gravity {
         acceleration: -DVec3::Y,
     };
-    // A force of no effect sends the body through the method's own step.
+    // A force without effect makes the method step the body itself, instead of the closed form.
     let no_drag = Force::LinearDrag {
         body: None,
         coefficient: 0.0,
     };
-    // With what they round by at each step beside 1e-13, m.
+    // The ways, each with its rounding error per step in addition to 1e-13, m.
     let ways = [
         (stone.clone(), vec![], 0.0),
         (weightless, vec![gravity], 0.0),

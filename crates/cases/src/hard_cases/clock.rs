@@ -1,4 +1,4 @@
-//! Case 8: frames of any length into whole steps.
+//! Case 8: whole steps from frames of any length.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ pub(super) fn test() -> Tried {
     let mut words = Vec::new();
     let frames: [(&str, &dyn Fn(u32) -> Duration); 3] = [
         ("sixtieths", &|_| Duration::from_nanos(16_666_667)),
-        // The golden ratio's multiples are spread evenly over 0 to 0.1 s.
+        // Multiples of the golden ratio are evenly distributed over 0 to 0.1 s.
         ("of 0 to 0.1 s", &|i| {
             Duration::from_nanos(u64::from(i) * 61_803_399 % 100_000_000)
         }),
@@ -40,7 +40,7 @@ pub(super) fn test() -> Tried {
     Ok(Finding::within(f64::from(wrong), 0.0, words.join("; ")))
 }
 
-/// Steps taken at 60 Hz, and steps due by integers.
+/// The number of steps at 60 Hz, and the exact number by integer arithmetic.
 fn count(frame: &dyn Fn(u32) -> Duration) -> (u64, u64) {
     let dt = 1.0 / 60.0;
     let Ok(mut clock) = FixedStep::new(dt, Duration::from_secs(1)) else {
@@ -61,7 +61,7 @@ fn count(frame: &dyn Fn(u32) -> Duration) -> (u64, u64) {
     (taken, exact as u64)
 }
 
-/// Time reported as lost and steps taken after 10 s at once, with a quarter of a second allowed.
+/// The time reported as dropped and the steps taken after a frame of 10 s, of which a quarter of a second is allowed.
 fn stall() -> (Duration, u32) {
     let Ok(mut clock) = FixedStep::new(1.0 / 60.0, Duration::from_millis(250)) else {
         return (Duration::ZERO, 0);

@@ -1,4 +1,4 @@
-//! Case 28: what no world may accept.
+//! Case 28: input that every world must refuse.
 
 use sim_core::{Body, DVec3, Force, Mesh, Settings, Vec3, World};
 
@@ -90,7 +90,7 @@ struct Tally {
 }
 
 impl Tally {
-    /// Whether a world refuses something, says so by name, and goes on as if nothing had been.
+    /// Tests that a world refuses an input, names the field, and continues as if nothing had happened.
     fn refused<E: ToString>(&mut self, field: &str, bad: impl FnOnce(&mut World) -> Result<(), E>) {
         self.tried += 1;
         let [mut world, mut unharmed] = [(); 2].map(|()| stone());
@@ -116,7 +116,7 @@ fn stone() -> World {
     world
 }
 
-/// Triangles that make no mesh.
+/// Triangles that do not form a mesh.
 fn meshes(tally: &mut Tally) {
     let corners = |x: f32| vec![Vec3::new(x, 0.0, 0.0), Vec3::X, Vec3::Y];
     let broken = [

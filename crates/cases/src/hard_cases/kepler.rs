@@ -7,14 +7,14 @@ use crate::drift::{self, Orbit};
 
 const ORBITS: usize = 100;
 
-/// Energy error that methods may make which do not keep it, relative.
+/// The relative energy error allowed for methods that do not conserve energy.
 const ENERGY: f64 = 1e-6;
 
-/// Growth of it that symplectic methods may show, relative, per orbit.
+/// The relative growth of it per orbit that symplectic methods may have.
 const SLOPE: f64 = 1e-14;
 
-/// Or this part of the error itself, if that is more: how near to the perihelion a step falls changes
-/// the greatest error from orbit to orbit. What drifts grows by a hundredth of it.
+/// Or this fraction of the error itself, if that is more: the greatest error of an orbit depends on how close a step
+/// comes to the perihelion. With real drift the growth is a hundredth of the error.
 const RESOLUTION: f64 = 1e-6;
 
 pub(super) fn test(method: &'static Method) -> Tried {

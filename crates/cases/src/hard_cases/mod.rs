@@ -1,7 +1,6 @@
 //! Hard cases with known outcomes: figure, tolerance, verdict, and why.
 //!
-//! A case is a file here and a row in [`CASES`], which says who does not pass it: every other method
-//! must.
+//! A case is a file here and a row in [`CASES`], which lists the methods that fail it; every other method must pass.
 
 mod ballistic;
 mod clock;
@@ -23,57 +22,57 @@ use sim_core::{METHODS, Method};
 
 pub use impacts::{balls, chains, meshes, symmetry};
 
-/// A case, who is tried on it, and what must come out.
+/// A case, the methods tried on it, and the expected outcome.
 pub struct Case {
-    /// From 1, without a gap.
+    /// The number, from 1, without gaps.
     pub number: u8,
     /// Name in tables.
     pub title: &'static str,
-    /// What must come out, and how exactly.
+    /// The expected outcome and its tolerance.
     pub outcome: &'static str,
-    /// Methods by name that fail; all that are not named pass.
+    /// Names of the methods that fail; all others pass.
     fails: &'static [&'static str],
-    /// Methods by name to which it does not apply.
+    /// Names of the methods to which the case does not apply.
     spares: &'static [&'static str],
     test: Test,
 }
 
-/// What a case has found, or what has kept it from ending.
+/// The finding of a case, or the error that stopped it.
 type Tried = anyhow::Result<Finding>;
 
 enum Test {
-    /// Each method for itself.
+    /// Each method is tried.
     Methods(fn(&'static Method) -> Tried),
-    /// Something that is the same for all of them.
+    /// The case is the same for all methods.
     Once(fn() -> Tried),
 }
 
-/// What came out.
+/// The result of a case.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// The number that decides, in the unit of the tolerance.
+    /// The figure that decides, in the unit of the tolerance.
     pub figure: Option<f64>,
     /// The largest figure that passes.
     pub tolerance: Option<f64>,
-    /// What follows.
+    /// The verdict.
     pub verdict: Verdict,
-    /// In words.
+    /// An explanation.
     pub why: String,
 }
 
-/// Whether a figure is within its tolerance.
+/// The verdict on a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The figure is within the tolerance.
     Pass,
-    /// It is not, or there is none.
+    /// The figure is not within the tolerance, or there is none.
     Fail,
-    /// The case asks for what this method does not claim.
+    /// The case requires a property that the method does not claim.
     DoesNotApply,
 }
 
 impl Verdict {
-    /// Of what passes or does not.
+    /// The verdict of a test.
     pub(crate) fn of(passes: bool) -> Verdict {
         match passes {
             true => Verdict::Pass,
@@ -120,32 +119,32 @@ impl Finding {
     }
 }
 
-/// A case by a method, or by all at once.
+/// The result of a case for one method, or for all together.
 pub struct Outcome {
-    /// What was tried.
+    /// The case.
     pub case: &'static Case,
-    /// `None`: it does not depend on the method.
+    /// The method; `None` if the case does not depend on it.
     pub method: Option<&'static Method>,
-    /// What came out.
+    /// The result.
     pub finding: Finding,
 }
 
 impl Outcome {
-    /// Whether the verdict is the one that the case's row says.
+    /// Whether the verdict is the one in the case's row.
     pub fn is_expected(&self) -> bool {
         self.finding.verdict == self.case.expected(self.method)
     }
 }
 
 impl Case {
-    /// Who is tried: each method, or one for all.
+    /// The methods to try: each one, or `None` once for all.
     pub fn methods(&self) -> impl Iterator<Item = Option<&'static Method>> + use<> {
         let is_each = matches!(self.test, Test::Methods(_));
         let methods = METHODS.into_iter().filter(move |_| is_each).map(Some);
         methods.chain((!is_each).then_some(None))
     }
 
-    /// Tries it, by a method if it depends on one.
+    /// Tries the case, with a method if it depends on one.
     pub fn attempt(&'static self, method: Option<&'static Method>) -> Outcome {
         let tried = match (&self.test, method) {
             (Test::Methods(test), Some(method)) => test(method),
@@ -159,7 +158,7 @@ impl Case {
         }
     }
 
-    /// What must come out.
+    /// The expected verdict.
     pub fn expected(&self, method: Option<&'static Method>) -> Verdict {
         let is_in = |names: &[&str]| method.is_some_and(|method| names.contains(&method.name));
         match (is_in(self.fails), is_in(self.spares)) {
@@ -170,7 +169,7 @@ impl Case {
     }
 }
 
-/// Tries all cases by all methods, on all processors; told in order.
+/// Tries all cases with all methods, on all processors; the results are in order.
 pub fn attempt_all() -> Vec<Outcome> {
     let tasks: Vec<(&'static Case, Option<&'static Method>)> = CASES
         .iter()
@@ -222,7 +221,7 @@ impl Case {
     }
 }
 
-/// They are not exact in flight.
+/// The methods that are not exact in flight.
 const FIRST_ORDER: &[&str] = &["forward-euler", "backward-euler", "symplectic-euler"];
 
 /// All cases, by number.

@@ -1,4 +1,4 @@
-//! Case 2: halving dt divides the error by 2 to the order.
+//! Case 2: halving dt divides the error by two to the power of the order.
 
 use std::f64::consts::PI;
 
@@ -17,7 +17,7 @@ pub(super) fn test(method: &'static Method) -> Tried {
         ("drag", slope(method, |n| error(method, &drag(), n))),
         ("Kepler", slope(method, |n| error(method, &kepler(), n))),
     ];
-    // In a world adaptive methods take as many steps as they need.
+    // In a world, adaptive methods take as many partial steps as they need.
     if !method.adaptive {
         slopes.push(("drag in a world", slope(method, |n| in_world(method, n))));
     }
@@ -32,13 +32,13 @@ pub(super) fn test(method: &'static Method) -> Tried {
     }
     let tolerance = match method.order {
         0..=4 => 0.05,
-        // Rounding hides the steps so short that the leading term of the error is alone.
+        // Rounding hides the errors at steps so short that the leading term alone matters.
         _ => 0.5,
     };
     Ok(Finding::within(worst, tolerance, words.join(", ")))
 }
 
-/// Accelerations with the motion at the start and at the end.
+/// Accelerations, with the exact motion at the start and at the end.
 struct Motion {
     acceleration: fn(DVec3, DVec3) -> DVec3,
     by_velocity: bool,
@@ -86,8 +86,7 @@ fn drag() -> Motion {
     }
 }
 
-/// Part of an orbit from the aphelion, where it is smooth enough for high orders to show before
-/// rounding hides them.
+/// A part of an orbit from the aphelion, where it is smooth enough for high orders to be visible above rounding.
 fn kepler() -> Motion {
     let (e, time) = (0.6f64, 2.0);
     Motion {
@@ -116,11 +115,11 @@ fn eccentric_anomaly(e: f64, mean: f64) -> f64 {
     })
 }
 
-/// The error after so many steps.
+/// The error after a number of steps.
 fn error(method: &'static Method, motion: &Motion, steps: u32) -> Option<f64> {
     let [x, v] = motion.start;
     let mut stepper = Stepper::new(method, &[x], &[v]);
-    // No error is too large for an adaptive method now: it takes each dt in one step.
+    // With this tolerance an adaptive method accepts every error, so it takes each dt in one step.
     stepper.tolerance = 1e100;
     let dt = motion.time / f64::from(steps);
     for _ in 0..steps {
@@ -131,7 +130,7 @@ fn error(method: &'static Method, motion: &Motion, steps: u32) -> Option<f64> {
     off.is_finite().then_some(off)
 }
 
-/// The same of drag, in a world.
+/// The error of a motion under drag, in a world.
 fn in_world(method: &'static Method, steps: u32) -> Option<f64> {
     let Motion {
         start, end, time, ..
@@ -151,12 +150,12 @@ fn in_world(method: &'static Method, steps: u32) -> Option<f64> {
     Some((world.position(0) - end[0]).length() + (world.velocity(0) - end[1]).length())
 }
 
-/// What rounding comes to in so many steps if it adds up at random.
+/// The expected rounding error of so many steps if it accumulates like a random walk.
 fn rounding(steps: u32) -> f64 {
     f64::EPSILON * f64::from(steps).sqrt()
 }
 
-/// How many times that an error must be to be judged: the rougher the tolerance, the fewer.
+/// The factor above rounding at which an error is judged: the rougher the tolerance, the smaller.
 fn margin(method: &Method) -> f64 {
     match method.order {
         0..=4 => 200.0,
@@ -164,7 +163,7 @@ fn margin(method: &Method) -> f64 {
     }
 }
 
-/// Most steps in which rounding does not add up.
+/// The most steps in which rounding does not accumulate.
 const MOST_STEPS: u32 = 1 << 15;
 
 /// `log2` of the ratio of errors at the shortest two steps that are far from rounding.

@@ -1,4 +1,4 @@
-//! Case 3: an oscillator keeps to the amplitude of its method for a thousand periods.
+//! Case 3: over a thousand periods, an oscillator keeps the amplitude that theory predicts for its method.
 //!
 //! One step is a matrix `M = (a b; c d)`. With complex eigenvalues it multiplies the quadratic form
 //! `c x² + (d - a) x v - b v²` by its determinant, which theory gives.
@@ -11,7 +11,7 @@ use super::{Finding, Tried};
 use crate::worlds;
 
 pub(super) fn test(method: &'static Method) -> Tried {
-    // At 60 Hz RK4 and its like lose too little to tell their formulas from none.
+    // At 60 Hz RK4 and similar methods lose too little to test their formulas.
     let dt = match method.name {
         "forward-euler" | "backward-euler" | "symplectic-euler" => 1.0 / 60.0,
         _ => 0.2,
@@ -32,7 +32,7 @@ pub(super) fn test(method: &'static Method) -> Tried {
     };
     let ([a, c], [b, d]) = (column(1.0, 0.0)?, column(0.0, 1.0)?);
     let form = |x: f64, v: f64| c * x * x + (d - a) * x * v - b * v * v;
-    // log of the determinant
+    // The logarithm of the determinant.
     let (log_determinant, formula) = match method.name {
         "forward-euler" => ((dt * dt).ln_1p(), "√(1 + dt²) a step"),
         "backward-euler" => (-(dt * dt).ln_1p(), "1/√(1 + dt²) a step"),

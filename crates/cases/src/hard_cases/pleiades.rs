@@ -8,7 +8,7 @@ use crate::problems::{Effort, Solve};
 
 const TOLERANCE: f64 = 1e-10;
 
-/// The first run with so many evaluations is the last one; a product with the Jacobian is four.
+/// The first run with so many evaluations is the last one; a product with the Jacobian counts as four.
 const MOST_CALLS: u64 = 200_000;
 
 pub(super) fn test(method: &'static Method) -> Tried {
@@ -26,7 +26,7 @@ pub(super) fn test(method: &'static Method) -> Tried {
     };
     let mut best = None;
     for effort in efforts {
-        // What takes too long a step may end nowhere.
+        // A method can fail if its steps are too long.
         let Ok(end) = problem.by_method(method, effort, true) else {
             continue;
         };
@@ -43,7 +43,7 @@ pub(super) fn test(method: &'static Method) -> Tried {
     let why = match error <= TOLERANCE || method.adaptive {
         true => format!("in {evaluations} evaluations"),
         false => {
-            // Error falls with evaluations to the power of the order.
+            // The error decreases with the number of evaluations to the power of the order.
             let factor = (error / TOLERANCE).powf(1.0 / f64::from(method.order));
             let needed = evaluations as f64 * factor;
             format!("in {evaluations} evaluations; by its order it would take {needed:.0e}")

@@ -1,4 +1,4 @@
-//! Case 5: a decay of a microsecond beside one of a second.
+//! Case 5: a decay within a microsecond together with one within a second.
 
 use sim_core::{
     Body, BodyLaw, BodyMotion, DMat3, DVec3, Force, Jacobians, Law, Method, StepError, World,
@@ -8,7 +8,7 @@ use sim_core::{
 use super::{Finding, Tried};
 use crate::worlds;
 
-/// Drag by a matrix.
+/// A drag force given by a matrix.
 #[derive(Debug)]
 struct MatrixDrag(DMat3);
 
@@ -27,7 +27,7 @@ impl BodyLaw for MatrixDrag {
 
 const FAST: f64 = 1e6;
 
-/// Steps of the second. L-stable, backward Euler has an answer at each of these.
+/// Numbers of steps for the second. Backward Euler is L-stable and has an answer at each of them.
 fn steps(method: &Method) -> &'static [u32] {
     match method.name {
         "backward-euler" => &[100, 10, 1000],
@@ -105,19 +105,19 @@ fn run(method: &'static Method, steps: u32) -> Result<(World, Result<(), StepErr
     Ok((world, outcome))
 }
 
-/// What a step of `z = λ dt` multiplies `y' = λ y` by.
+/// The amplification factor of a step of `y' = λ y`, as a function of `z = λ dt`.
 fn own_factor(method: &Method) -> Option<fn(f64) -> f64> {
     match method.name {
         "backward-euler" => Some(|z| 1.0 / (1.0 - z)),
-        // A kick half before and half after the motion is the trapezoidal rule here.
+        // Half a kick before and half a kick after the drift are the trapezoidal rule here.
         "implicit-midpoint" | "velocity-verlet" => Some(|z| (2.0 + z) / (2.0 - z)),
         _ => None,
     }
 }
 
-/// An error is right if the method is unstable there and the limit it names is the true one.
+/// An error passes if the method is unstable there and the limit that it names is the true one.
 fn reported(method: &Method, error: &StepError) -> Finding {
-    // |1 + z| ≤ 1, and where RK4's polynomial leaves the unit circle on the real axis.
+    // The limit of |1 + z| ≤ 1, and the point where RK4's polynomial leaves the unit circle on the real axis.
     let limit = match method.name {
         "forward-euler" | "symplectic-euler" => Some(2.0 / FAST),
         "rk4" => Some(2.785_293_563_4 / FAST),

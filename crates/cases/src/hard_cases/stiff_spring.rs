@@ -1,4 +1,4 @@
-//! Case 4: what is stable finds the place of rest, what is not says so.
+//! Case 4: a stable method finds the position of rest, an unstable one reports an error.
 
 use sim_core::{Body, DVec3, Force, Method, StepError, World, WorldError};
 
@@ -6,11 +6,11 @@ use super::{Finding, Tried};
 use crate::problems::stiff_spring::{C, G, K};
 use crate::worlds;
 
-/// Where it rests, m.
+/// The position of rest, m.
 const REST: f64 = -G / K;
 
 pub(super) fn test(method: &'static Method) -> Tried {
-    // Worked out by hand where that is possible: from |1 + z λ| ≤ 1 and the like.
+    // The limits were derived by hand if possible: from |1 + z λ| ≤ 1 and similar conditions.
     let limit = match method.name {
         "forward-euler" => 1e-3,
         "symplectic-euler" => (5f64.sqrt() - 1.0) * 1e-3,
@@ -58,10 +58,10 @@ fn unlimited(method: &'static Method) -> Tried {
     Ok(Finding::within(error, 1e-12, why))
 }
 
-/// Steps within which growth of one per cent a step must have been noticed.
+/// The number of steps within which a growth of one per cent per step must be detected.
 const MOST_STEPS: u64 = 50_000;
 
-/// A method with a limit, on both sides of it.
+/// A method with a stability limit, on both sides of it.
 fn limited(method: &'static Method, limit: f64) -> Tried {
     let mut below = world(method, 0.99 * limit)?;
     if let Err(error) = worlds::step(&mut below, 20_000) {
@@ -83,8 +83,8 @@ fn limited(method: &'static Method, limit: f64) -> Tried {
     }
 }
 
-/// Beyond the limit the error, its step, and how far beyond. Methods of many stages are stable
-/// again beyond a narrow window, which may end before a hundredth.
+/// Above the limit: the error, its step, and how far above. Methods with many stages are stable again above a narrow
+/// unstable window, which may end before one per cent.
 fn reported(
     method: &'static Method,
     limit: f64,

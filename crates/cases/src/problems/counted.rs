@@ -1,4 +1,4 @@
-//! A system that counts how often it is asked.
+//! A system that counts its evaluations.
 
 use std::cell::Cell;
 

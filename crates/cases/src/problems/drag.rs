@@ -1,4 +1,4 @@
-//! A body that air slows.
+//! A body under quadratic drag.
 
 use sim_core::{DMat3, DVec3, Jacobians, System};
 
@@ -46,7 +46,7 @@ impl System for Drag {
     fn jacobians(&self, _: f64, _: &[DVec3], v: &[DVec3], out: &mut [Jacobians]) {
         let v = v[0];
         let speed = v.length_squared().sqrt();
-        // |v| (1 + n nᵀ) with the direction n, which is no direction at rest.
+        // |v| (1 + n nᵀ) with the direction n, which is undefined at rest.
         let along = match speed {
             0.0 => DMat3::ZERO,
             _ => DMat3::from_cols(v.x * v, v.y * v, v.z * v) * (1.0 / speed),

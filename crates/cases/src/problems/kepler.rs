@@ -1,4 +1,4 @@
-//! A planet around a sun that stands still.
+//! A planet around a fixed sun.
 
 use std::f64::consts::PI;
 
@@ -16,7 +16,7 @@ fn perihelion(e: f64) -> (DVec3, DVec3) {
     ((1.0 - e) * DVec3::X, velocity)
 }
 
-/// The same in a world, under a force of attraction.
+/// The same problem in a world, under a force of attraction.
 pub fn world(settings: Settings, eccentricity: f64) -> Result<World, WorldError> {
     let (position, velocity) = perihelion(eccentricity);
     let planet = Body {
@@ -32,7 +32,7 @@ pub fn world(settings: Settings, eccentricity: f64) -> Result<World, WorldError>
     worlds::under(settings, [planet], &[pull])
 }
 
-/// A hundred orbits from the perihelion: half axis 1, `G M = 1`, so that one takes 2π.
+/// A hundred orbits from the perihelion. With the semi-major axis 1 and `G M = 1`, one orbit takes 2π.
 pub(super) fn problem(eccentricity: f64) -> Problem<Kepler, 4> {
     let (position, velocity) = perihelion(eccentricity);
     let (name, title) = match eccentricity {

@@ -1,5 +1,5 @@
-//! What is solved: problems with known ends, each as a second-order motion for the methods of
-//! `sim_core` and as a first-order system for solvers of those.
+//! Problems with a known final state, each as a second-order motion for the methods of `sim_core` and as a first-order
+//! system for solvers of such systems.
 //!
 //! A new problem is a file here and a line in [`all`].
 
@@ -31,22 +31,22 @@ pub fn all() -> Vec<Box<dyn Solve>> {
     ]
 }
 
-/// What to know of a problem before it is solved.
+/// The description of a problem.
 #[derive(Clone, Debug)]
 pub struct Card {
     /// Name in tables and file names.
     pub name: &'static str,
     /// Name in prose.
     pub title: &'static str,
-    /// Equation, start, exact end, and where it is from.
+    /// Equation, initial state, exact final state, and its source.
     pub about: &'static str,
-    /// What the error is the greatest component of.
+    /// The quantities over whose components the error is the maximum.
     pub error: &'static str,
-    /// Time at the end, s.
+    /// Final time, s.
     pub time: f64,
-    /// Fewest and most steps that methods with a fixed step try.
+    /// The fewest and the most steps for methods with a fixed step.
     pub steps: [u64; 2],
-    /// Into how many `dt` the time is cut for adaptive methods, as a program would that draws.
+    /// The number of `dt` into which the time is divided for adaptive methods, as by a program that draws frames.
     pub frames: u64,
     /// Whether stability, not accuracy, limits the steps of explicit methods.
     pub is_stiff: bool,
@@ -57,56 +57,56 @@ pub trait FirstOrder<const N: usize> {
     /// Writes `f(y)`.
     fn slope(&self, y: &[f64; N], dy: &mut [f64; N]);
 
-    /// Writes how `f` changes along a direction, `∂f/∂y · d`.
+    /// Writes the derivative of `f` along a direction, `∂f/∂y · d`.
     fn slope_along(&self, y: &[f64; N], d: &[f64; N], out: &mut [f64; N]);
 
-    /// The state that positions and velocities are.
+    /// The state that corresponds to positions and velocities.
     fn state(x: &[DVec3], v: &[DVec3]) -> [f64; N];
 }
 
-/// A problem: equations, where they start, and where they end.
+/// A problem: equations, initial state and final state.
 #[derive(Clone, Debug)]
 pub(crate) struct Problem<E, const N: usize> {
-    /// What to know of it.
+    /// The description.
     pub(crate) card: Card,
-    /// Both forms of it.
+    /// Both forms of the equations.
     pub(crate) equations: E,
-    /// Positions at the start.
+    /// Initial positions.
     pub(crate) position: Vec<DVec3>,
-    /// Velocities at the start.
+    /// Initial velocities.
     pub(crate) velocity: Vec<DVec3>,
-    /// The first components of the state at the end.
+    /// The first components of the final state.
     pub(crate) exact: Vec<f64>,
-    /// What errors are divided by.
+    /// The scale by which errors are divided.
     pub(crate) scale: f64,
 }
 
-/// How much trouble to take.
+/// The accuracy of a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Effort {
     /// Steps of equal length.
     Steps(u64),
-    /// Error allowed in a step, relative and absolute.
+    /// Relative and absolute error tolerance of a step.
     Tolerance(f64),
 }
 
-/// Where a solution has ended.
+/// The result of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct End {
-    /// The greatest error of a component that is known, by the problem's scale.
+    /// The greatest error of the known components, divided by the problem's scale.
     pub error: f64,
-    /// Calls of the right-hand side.
+    /// Evaluations of the right-hand side.
     pub evaluations: u64,
-    /// Calls of its Jacobian, or of products with it.
+    /// Evaluations of its Jacobian, or of products with it.
     pub jacobians: u64,
 }
 
 /// A problem of any size, ready to be solved.
 pub trait Solve {
-    /// What to know of it.
+    /// The description.
     fn card(&self) -> &Card;
 
-    /// By a method of `sim_core`. Evaluations are counted if asked for, at a cost in time.
+    /// Solves it with a method of `sim_core`. Evaluations are counted if requested, which takes time.
     fn by_method(
         &self,
         method: &'static Method,
@@ -114,7 +114,7 @@ pub trait Solve {
         count: bool,
     ) -> Result<End, String>;
 
-    /// By a solver of first-order systems.
+    /// Solves it with a solver of first-order systems.
     fn by_solver(&self, solver: &Solver, tolerance: f64) -> Result<End, String>;
 }
 
@@ -179,7 +179,7 @@ impl<E: FirstOrder<N>, const N: usize> Problem<E, N> {
             let done = stepper.step(system, dt);
             done.map_err(|failure| format!("step {}: {failure}", step + 1))?;
             let is_lost = || !stepper.velocity()[0].is_finite();
-            // Looked at now and then: a check at each step would count as the method's time.
+            // The check is rare, because its cost would count as the method's time.
             if step % 4096 == 4095 && is_lost() {
                 return Err(format!("beyond all numbers by step {}", step + 1));
             }
@@ -194,10 +194,10 @@ impl<E: FirstOrder<N>, const N: usize> Problem<E, N> {
         }
     }
 
-    /// The greatest error of a component that is known.
+    /// The greatest error of the known components.
     fn error(&self, state: &[f64; N]) -> f64 {
         let pairs = self.exact.iter().zip(state);
-        // `max` would drop a NaN.
+        // `max` would ignore NaN.
         let worst = pairs
             .map(|(exact, y)| (exact - y).abs())
             .fold(0.0, |m, e| if e <= m { m } else { e });
@@ -209,8 +209,7 @@ impl<E: FirstOrder<N>, const N: usize> Problem<E, N> {
 mod tests {
     use super::*;
 
-    /// Every problem's two forms and its exact end belong together: the tightest solves of both
-    /// forms meet it.
+    /// The two forms of every problem match its exact final state: the most accurate solutions of both reach it.
     #[test]
     fn both_forms_reach_the_end_that_is_known() {
         for problem in all() {
@@ -218,7 +217,8 @@ mod tests {
             let dop853 = Method::named("dop853").expect("it is in the table");
             let by_method = problem.by_method(dop853, Effort::Tolerance(1e-13), false);
             let by_solver = problem.by_solver(&solvers::SOLVERS[1], 1e-13);
-            // A hundred orbits of eccentricity 0.9 make 2e-6 of a tolerance of 1e-13, others less.
+            // A hundred orbits of eccentricity 0.9 turn a tolerance of 1e-13 into an error of 2e-6; other problems have
+            // less.
             let allowed = 1e-5;
             for end in [by_method, by_solver] {
                 let end = end.unwrap_or_else(|error| panic!("{}: {error}", card.name));

@@ -5,14 +5,14 @@ use sim_core::{Body, DMat3, DVec3, Force, Jacobians, Settings, System, World, Wo
 use super::{Card, FirstOrder, Problem};
 use crate::worlds;
 
-/// Masses 1 to 7 under their own gravitation with `G = 1`; state: all x, all y, all x', all y'.
+/// Masses 1 to 7 under mutual gravitation with `G = 1`; state: all x, all y, all x', all y'.
 #[derive(Clone, Debug)]
 pub(crate) struct Pleiades;
 
 const STARS: usize = 7;
 const N: usize = 4 * STARS;
 
-/// Positions and velocities at the start, per star.
+/// Initial positions and velocities of each star.
 const START: [[f64; 4]; STARS] = [
     [3.0, 3.0, 0.0, 0.0],
     [3.0, -3.0, 0.0, 0.0],
@@ -23,7 +23,7 @@ const START: [[f64; 4]; STARS] = [
     [2.0, 4.0, -1.5, 0.0],
 ];
 
-/// All x, then all y, at t = 3 to the digits that the book's test set has.
+/// All x, then all y, at t = 3, to the digits printed in the book's test set.
 pub const END: [f64; 2 * STARS] = [
     0.3706139143970502,
     3.237284092057233,
@@ -63,7 +63,7 @@ pub(crate) fn problem() -> Problem<Pleiades, N> {
     }
 }
 
-/// The same in a world, under gravitation.
+/// The same problem in a world, under gravitation.
 pub fn world(settings: Settings) -> Result<World, WorldError> {
     let stars = START.into_iter().enumerate().map(|(i, [x, y, u, v])| Body {
         position: DVec3::new(x, y, 0.0),
@@ -82,7 +82,7 @@ fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..STARS).flat_map(|i| (0..i).map(move |j| (i, j)))
 }
 
-/// How the pull `d/|d|³` changes with `d`.
+/// The derivative of the attraction `d/|d|³` with respect to `d`.
 fn slope_of_pull(d: DVec3) -> DMat3 {
     let squared = d.length_squared();
     let outer = DMat3::from_cols(d.x * d, d.y * d, d.z * d) * (3.0 / squared);

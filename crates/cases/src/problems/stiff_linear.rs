@@ -1,11 +1,10 @@
-//! A fast decay and a slow one, coupled.
+//! A fast and a slow decay, coupled.
 
 use sim_core::{DMat3, DVec3, Jacobians, System};
 
 use super::{Card, FirstOrder, Problem};
 
-/// `y' = A y` with eigenvalues -1 along (1, 1) and -10⁶ along (1, -1). As a motion the state is the
-/// velocity.
+/// `y' = A y` with the eigenvalues -1 along (1, 1) and -10⁶ along (1, -1). As a motion, the state is the velocity.
 #[derive(Clone, Debug)]
 pub(super) struct StiffLinear;
 

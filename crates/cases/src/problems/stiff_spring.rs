@@ -1,4 +1,4 @@
-//! A spring that comes to rest in hundredths of a second and then lasts.
+//! A spring that comes to rest within hundredths of a second and then stays at rest.
 
 use sim_core::{DMat3, DVec3, Jacobians, System};
 

@@ -1,13 +1,13 @@
-//! A ball that bounces on a floor for ever.
+//! A ball that bounces on a floor without end.
 
 use sim_core::DVec3;
 
 use super::{Form, GRAVITY, Goal, Item, Known, Scene};
 
-/// Of the ball, m.
+/// Radius of the ball, m.
 pub const RADIUS: f64 = 0.25;
 
-/// Elastic, dropped from 1 m: its lowest point is at 1 - (t - 2 n √(2/g))² g/2.
+/// An elastic ball dropped from 1 m: the height of its lowest point is 1 - (t - 2 n √(2/g))² g/2.
 pub fn bouncing_ball() -> Known {
     let (duration, fall) = (10.0, (2.0 / GRAVITY).sqrt());
     let from_top = duration - 2.0 * fall * f64::round(duration / (2.0 * fall));

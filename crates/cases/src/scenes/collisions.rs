@@ -1,16 +1,16 @@
-//! Scenes of two bodies that meet, whose end is known.
+//! Scenes of two colliding bodies with a known final state.
 
 use kit::meshes::builtin;
 use sim_core::DVec3;
 
 use super::{Family, Form, Pair, Who, bouncing_ball};
 
-/// Part of a run after which the pair touches: at no rate at the border of a step.
+/// The fraction of a run after which the pair touches; at no rate is it a boundary of a step.
 const IMPACT: f64 = 0.5187;
 
 const SPEEDS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 
-/// Of what bodies do when they meet.
+/// Scenes that test collisions.
 pub static COLLISIONS: [Family; 3] = [
     Family {
         name: "cube-cube",

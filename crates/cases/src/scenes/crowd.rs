@@ -5,8 +5,8 @@ use sim_core::DVec3;
 
 use super::{Form, Item, Scene};
 
-/// Bodies in a closed box, apart at the start, with speeds up to 2 m/s along each axis; an eighth
-/// of the space is theirs if they are cubes. Also half of the box's side, m.
+/// Separate bodies in a closed box, with speeds up to 2 m/s along each axis; cubes fill an eighth of the volume. Also
+/// returns half the box's side, m.
 pub fn crowd(count: usize, form: &Form) -> (Scene, f64) {
     let side = (count as f64).cbrt().ceil() as usize;
     let half_box = 0.5 * side as f64;
@@ -20,7 +20,8 @@ pub fn crowd(count: usize, form: &Form) -> (Scene, f64) {
     for i in 0..count {
         let cell = [i % side, i / side % side, i / side / side].map(|c| c as f64 + 0.5);
         let position = DVec3::from_array(cell) - half_box + 0.2 * vector();
-        // Slow enough to be found without; walls are swept by all that is fast.
+        // The bodies are slow enough without continuous detection between them; all fast bodies are swept against
+        // walls.
         items.push(Item {
             velocity: 2.0 * vector(),
             ..Item::resting(form.clone(), position)

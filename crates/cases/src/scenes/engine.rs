@@ -1,33 +1,33 @@
-//! Who steps scenes: one trait for ours and for peers.
+//! The engines that step scenes: one trait for ours and for peers.
 
 use sim_core::{Bundled, Collision, DQuat, DVec3, StepError};
 
 use super::{Scene, ours};
 
-/// A scene that is stepped.
+/// A running scene.
 pub trait Engine {
     /// Makes a step.
     fn step(&mut self) -> Result<(), StepError>;
 
-    /// Makes a step, and tells when the first impact in it was, s.
+    /// Makes a step, and returns the time of its first impact, s.
     fn step_noting(&mut self) -> Result<Option<f64>, StepError>;
 
-    /// Of a body, m.
+    /// Position of a body, m.
     fn position(&self, body: usize) -> DVec3;
 
-    /// Of a body, m/s.
+    /// Velocity of a body, m/s.
     fn velocity(&self, body: usize) -> DVec3;
 
-    /// Turns the frame of a body's shape into the world.
+    /// Rotation from the frame of a body's shape to the world.
     fn rotation(&self, body: usize) -> DQuat;
 
     /// Angular velocity of a body in the world, rad/s.
     fn spin(&self, body: usize) -> DVec3;
 
-    /// Of all bodies, J.
+    /// Kinetic energy of all bodies, J.
     fn kinetic_energy(&self) -> f64;
 
-    /// What solving contacts at once has cost in the last step, where that is known.
+    /// The cost of solving contacts together in the last step, if known.
     fn bundled(&self) -> Option<Bundled> {
         None
     }
@@ -36,9 +36,9 @@ pub trait Engine {
 /// An engine by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Who {
-    /// Ours, by times of impact.
+    /// Ours, with impacts at their times of impact.
     Continuous,
-    /// Ours, by what meets at the end of a step.
+    /// Ours, with collisions at the end of a step.
     Discrete,
     /// `rapier3d-f64`.
     #[cfg(feature = "rapier3d-f64")]
@@ -46,7 +46,7 @@ pub enum Who {
 }
 
 impl Who {
-    /// All that are compiled in.
+    /// All engines that are compiled in.
     pub const ALL: &[Who] = &[
         Who::Continuous,
         Who::Discrete,
@@ -54,7 +54,7 @@ impl Who {
         Who::Rapier,
     ];
 
-    /// Whether contacts last: the discrete mode has none.
+    /// Whether the engine has persisting contacts: the discrete mode has none.
     pub fn has_contacts(self) -> bool {
         self != Who::Discrete
     }
@@ -69,7 +69,7 @@ impl Who {
         }
     }
 
-    /// A scene at its start.
+    /// Starts a scene.
     pub fn start(self, scene: &Scene) -> Box<dyn Engine> {
         match self {
             Who::Continuous => Box::new(ours::continuous(scene)),

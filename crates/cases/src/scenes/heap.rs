@@ -1,11 +1,11 @@
-//! Bodies that fall on a heap between walls.
+//! Bodies that fall between walls and form a heap.
 
 use kit::random::Random;
 use sim_core::DVec3;
 
 use super::{Form, Item, Scene};
 
-/// Layers of so many by so many, a fifth of a body apart, above a floor.
+/// Layers of `side` by `side` bodies, a fifth of a body apart, above a floor.
 pub fn heap(form: &Form, count: usize, side: usize, restitution: f64, friction: f64) -> Scene {
     let half_of_one = Item::resting(form.clone(), DVec3::ZERO).half();
     let pitch = 2.4 * half_of_one;

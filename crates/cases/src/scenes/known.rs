@@ -1,57 +1,57 @@
-//! Scenes whose end is known, and what a run of one has got wrong.
+//! Scenes with a known final state, and the errors of their runs.
 
 use sim_core::DVec3;
 
 use super::{Engine, Form, Scene, Who};
 use crate::hard_cases::Verdict;
 
-/// A scene for each of some speeds, with who must come to its end.
+/// A scene for each of some speeds, and the engines that must reach its final state.
 pub struct Family {
     /// Name in tables and file names.
     pub name: &'static str,
     /// Name in prose.
     pub title: &'static str,
-    /// Bodies, and the end.
+    /// The bodies, and the final state.
     pub about: &'static str,
-    /// Speeds that it is made for, m/s.
+    /// The speeds, m/s.
     pub speeds: &'static [f64],
-    /// Makes it for a speed.
+    /// Makes the scene for a speed.
     pub make: fn(f64) -> Known,
     /// The largest error that passes.
     pub tolerance: f64,
-    /// Who must pass, at every rate; all others must not.
+    /// The engines that must pass at every rate; all others must fail.
     pub passed_by: &'static [Who],
 }
 
-/// A scene with its end.
+/// A scene with its final state.
 #[derive(Clone, Debug)]
 pub struct Known {
     /// Bodies at the start.
     pub scene: Scene,
-    /// s
+    /// The duration, s.
     pub duration: f64,
-    /// Time of the first impact, s, where that matters.
+    /// Time of the first impact, s, if it matters.
     pub impact: Option<f64>,
-    /// What counts as the error.
+    /// The definition of the error.
     pub goal: Goal,
 }
 
-/// What counts as the error.
+/// The definition of the error.
 #[derive(Clone, Debug)]
 pub enum Goal {
-    /// How far bodies are from where they should end.
+    /// The distances of bodies from their final positions.
     Places {
-        /// Ends of what may move, m.
+        /// Final positions of the movable bodies, m.
         at: Vec<DVec3>,
-        /// What errors are divided by, m.
+        /// The length by which errors are divided, m.
         way: f64,
     },
-    /// How far contacts are closed ahead of their time, or bodies are in each other, m.
+    /// The distance by which contacts are closed ahead of their time, or the depth of overlaps, m.
     Heap,
 }
 
 impl Goal {
-    /// What the error is, for axes.
+    /// The description of the error, for axes.
     pub fn unit(&self) -> &'static str {
         match self {
             Goal::Places { way: 1.0, .. } | Goal::Heap => "error, m",
@@ -60,37 +60,37 @@ impl Goal {
     }
 }
 
-/// What a run has got wrong.
+/// The errors of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Run {
-    /// As the goal has it.
+    /// The error, as the goal defines it.
     pub error: f64,
-    /// Of the first impact, s; `None` if there was none.
+    /// The error of the time of the first impact, s; `None` if there was none.
     pub time: Option<f64>,
     /// Relative change of the energy.
     pub energy: f64,
-    /// The most that the energy has risen in a step, of that at the start.
+    /// The greatest rise of the energy in a step, relative to the initial energy.
     pub rise: f64,
-    /// How deep bodies have been in each other at the end of a step, m.
+    /// The greatest depth of overlap at the end of a step, m.
     pub overlap: f64,
-    /// Energy that bundled contacts have taken, of that at the start; `None` where nothing is bundled.
+    /// The energy dissipated by bundled contacts, relative to the initial energy; `None` if nothing is bundled.
     pub bundled: Option<f64>,
 }
 
 impl Family {
-    /// What a run comes to.
+    /// The verdict on a run.
     pub fn verdict(&self, run: &Run) -> Verdict {
         Verdict::of(run.error <= self.tolerance)
     }
 
-    /// What it must come to.
+    /// The expected verdict.
     pub fn expected(&self, who: Who) -> Verdict {
         Verdict::of(self.passed_by.contains(&who))
     }
 }
 
 impl Known {
-    /// The same in so many steps a second.
+    /// The same scene at a number of steps per second.
     pub fn at_rate(mut self, rate: u32) -> Known {
         self.scene.dt = 1.0 / f64::from(rate);
         self
@@ -101,7 +101,7 @@ impl Known {
         (self.duration / self.scene.dt).round() as u32
     }
 
-    /// Steps to the end and looks at all of it.
+    /// Steps to the end and measures all errors.
     pub fn run(&self, who: Who) -> Run {
         let mut engine = who.start(&self.scene);
         let engine = engine.as_mut();
@@ -110,7 +110,7 @@ impl Known {
         let mut run = Run::default();
         let mut impact = None;
         for _ in 0..self.steps() {
-            // What fails is told by where it leaves the bodies.
+            // The positions of the bodies show the failure of a step.
             let found = engine.step_noting().unwrap_or_default();
             impact = impact.or(found);
             run.overlap = run.overlap.max(self.overlap(engine));
@@ -141,7 +141,7 @@ impl Known {
         self.scene.movable().map(of).sum()
     }
 
-    /// How far the worst body is from its place.
+    /// The greatest distance of a body from its final position.
     fn farthest(&self, engine: &dyn Engine, places: &[DVec3]) -> f64 {
         let off = self
             .scene
@@ -151,7 +151,7 @@ impl Known {
         off.fold(0.0, f64::max)
     }
 
-    /// How deep the worst body is in another one, m; of meshes this is not known.
+    /// The greatest depth of overlap of a body with another one, m; unknown for meshes.
     fn overlap(&self, engine: &dyn Engine) -> f64 {
         let items = &self.scene.items;
         let mut deepest: f64 = 0.0;

@@ -1,4 +1,4 @@
-//! Scenes as every engine gets them, and who steps them.
+//! Scenes in the form given to every engine, and the engines.
 
 mod ball;
 mod collisions;
@@ -30,44 +30,44 @@ pub use rapier::Rapier;
 pub(crate) use rapier::vector;
 pub use resting::{RESTING, landing_way, sliding_way};
 
-/// The acceleration of what falls, m/s².
+/// The acceleration of gravity, m/s².
 pub const GRAVITY: f64 = kit::worlds::GRAVITY;
 
-/// Half of a cube, or radius of a ball, where there are many, m.
+/// Half the edge of a cube, or the radius of a ball, in scenes of many bodies, m.
 pub const HALF: f64 = 0.25;
 
-/// What a body is to others.
+/// The shape of a body.
 #[derive(Clone, Debug)]
 pub enum Form {
-    /// Which way out of it is.
+    /// A wall with its outward normal.
     Wall(DVec3),
-    /// Its radius, m.
+    /// A ball of a radius, m.
     Ball(f64),
-    /// A cube as engines know it: half of a side, m.
+    /// A cube, as a primitive of the engine if it has one: half its edge, m.
     Cube(f64),
-    /// Anything of triangles.
+    /// A mesh.
     Mesh(Arc<Mesh>),
-    /// A mesh that nothing moves.
+    /// An immovable mesh.
     Ground(Arc<Mesh>),
 }
 
-/// A body at the start.
+/// The initial state of a body.
 #[derive(Clone, Debug)]
 pub struct Item {
-    /// None of a point that meets nothing.
+    /// `None` for a point, which collides with nothing.
     pub form: Option<Form>,
-    /// m
+    /// The position, m.
     pub position: DVec3,
-    /// m/s
+    /// The velocity, m/s.
     pub velocity: DVec3,
-    /// Of a scene whose bodies turn, rad/s.
+    /// The spin, in a scene of turning bodies, rad/s.
     pub spin: DVec3,
-    /// Whether it may sweep others that move as well.
+    /// Whether continuous detection applies against other moving bodies too.
     pub is_bullet: bool,
 }
 
 impl Item {
-    /// A body on its way.
+    /// A moving body.
     pub fn new(form: Form, position: DVec3, velocity: DVec3) -> Item {
         Item {
             form: Some(form),
@@ -78,7 +78,7 @@ impl Item {
         }
     }
 
-    /// One at rest, or slow enough for no engine to need its continuous detection.
+    /// A body at rest, or one so slow that no engine needs continuous detection for it.
     pub fn resting(form: Form, position: DVec3) -> Item {
         Item {
             is_bullet: false,
@@ -86,12 +86,12 @@ impl Item {
         }
     }
 
-    /// Whether nothing moves it.
+    /// Whether it is immovable.
     pub fn is_fixed(&self) -> bool {
         matches!(self.form, Some(Form::Wall(_) | Form::Ground(_)))
     }
 
-    /// How far it reaches from its middle along each axis, m; walls reach nowhere.
+    /// Its half extents along each axis, m; 0 for walls.
     pub fn half(&self) -> DVec3 {
         match &self.form {
             &Some(Form::Ball(half) | Form::Cube(half)) => DVec3::splat(half),
@@ -104,27 +104,28 @@ impl Item {
     }
 }
 
-/// Bodies of 1 kg, elastic and without friction unless said, that do not turn unless said, and immovable walls.
+/// A scene of bodies of 1 kg and immovable walls. Unless stated otherwise, contacts are elastic and frictionless, and
+/// bodies do not rotate.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// All bodies.
     pub items: Vec<Item>,
     /// Length of a step, s.
     pub dt: f64,
-    /// m/s²
+    /// Gravity, m/s².
     pub gravity: DVec3,
-    /// Of all contacts.
+    /// Restitution of all contacts.
     pub restitution: f64,
-    /// Of all contacts.
+    /// Friction of all contacts.
     pub friction: f64,
-    /// Whether bodies turn.
+    /// Whether bodies rotate.
     pub turns: bool,
-    /// Whether engines may pass over what is at rest.
+    /// Whether engines may let bodies at rest sleep.
     pub may_sleep: bool,
 }
 
 impl Scene {
-    /// Bodies at 60 Hz that nothing pulls.
+    /// A scene at 60 Hz without gravity.
     pub fn new(items: Vec<Item>) -> Scene {
         Scene {
             items,
@@ -137,7 +138,7 @@ impl Scene {
         }
     }
 
-    /// The same under gravity along y.
+    /// A scene under gravity along y.
     pub fn falling(items: Vec<Item>) -> Scene {
         Scene {
             gravity: -GRAVITY * DVec3::Y,
@@ -145,7 +146,7 @@ impl Scene {
         }
     }
 
-    /// The bodies that may move.
+    /// The movable bodies.
     pub fn movable(&self) -> impl Iterator<Item = usize> {
         let items = self.items.iter().enumerate();
         items.filter(|(_, item)| !item.is_fixed()).map(|(i, _)| i)

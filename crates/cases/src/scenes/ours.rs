@@ -1,4 +1,4 @@
-//! Scenes in a world of ours.
+//! Scenes in our worlds.
 
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ impl Engine for World {
     }
 }
 
-/// By a mode and a method.
+/// A world with a collision mode and a method.
 pub fn world(scene: &Scene, collision: Collision, method: &str) -> World {
     let settings = Settings {
         dt: scene.dt,
@@ -96,12 +96,12 @@ pub fn world(scene: &Scene, collision: Collision, method: &str) -> World {
     world
 }
 
-/// With continuous collisions, by a method that is exact in flight.
+/// A world in the continuous mode, with a method that is exact in free flight.
 pub fn continuous(scene: &Scene) -> World {
     world(scene, Collision::Continuous, "velocity-verlet")
 }
 
-/// The cube of the assets has sides of 1 m.
+/// The cube in the assets has edges of 1 m.
 fn scaled_cube(half: f64) -> Arc<Mesh> {
     let cube = builtin("cube.obj");
     let vertices = cube.vertices().iter();

@@ -1,4 +1,4 @@
-//! Two bodies head on, at rest and coming.
+//! Two bodies head on, the second one approaching the first.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use sim_core::{Bvh, DVec3, Mesh};
 
 use super::{Form, Goal, Item, Known, Scene};
 
-/// Two bodies of which the second one comes along a way and touches at a place.
+/// Two bodies, and the position at which the second one, moving along a direction, touches the first.
 pub struct Pair {
     forms: [Form; 2],
     way: DVec3,
@@ -17,7 +17,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Finds the first contact over the whole way at once.
+    /// Finds the first contact by one search over the whole path.
     pub fn new(forms: [Form; 2], way: DVec3) -> Pair {
         let way = way.normalize();
         let [first, second] = forms.each_ref().map(|form| Bvh::build(&mesh(form)));
@@ -32,7 +32,7 @@ impl Pair {
         }
     }
 
-    /// They touch after a time, s.
+    /// The scene in which they touch after a time, s.
     pub fn scene(&self, speed: f64, impact: f64) -> Scene {
         let [first, second] = self.forms.clone();
         let velocity = speed * self.way;
@@ -42,7 +42,7 @@ impl Pair {
         ])
     }
 
-    /// The same, with its end: equal masses exchange what they have along the normal.
+    /// The scene with its final state: equal masses exchange their velocities along the normal.
     pub fn known(&self, speed: f64, impact: f64, duration: f64) -> Known {
         let (velocity, rest) = (speed * self.way, duration - impact);
         let given = velocity.dot(self.normal) * self.normal;
@@ -58,7 +58,7 @@ impl Pair {
     }
 }
 
-/// The cube of the gallery has sides of 1 m.
+/// The cube of the gallery has edges of 1 m.
 fn mesh(form: &Form) -> Arc<Mesh> {
     match form {
         Form::Mesh(mesh) => mesh.clone(),

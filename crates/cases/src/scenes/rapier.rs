@@ -1,10 +1,10 @@
-//! Scenes in a world of Rapier, as its documentation advises.
+//! Scenes in a world of Rapier, set up as its documentation advises.
 //!
-//! Boxes and balls are shapes of its own, walls are thick boxes. Meshes are as they are, which of a
-//! cube on the cow makes the least errors, or have internal edges fixed, which of the cow on itself
-//! does. Its limit on speeds is lifted. Continuous detection of moving bodies is asked for with
-//! `ccd_enabled`; as one such body never sweeps another, of a pair only
-//! the mover has it. Bodies sleep only where a scene lets them, so that all of them are simulated.
+//! Boxes and balls are Rapier's primitives; walls are thick boxes. Meshes are used unchanged, which gives the least
+//! errors for a cube on the cow, or with internal edges fixed, which gives the least for the cow on itself. The limit
+//! on speeds is lifted. Continuous detection of moving bodies is enabled with `ccd_enabled`; one such body never sweeps
+//! another, so of a pair only the moving body has it. Bodies sleep only if a scene allows it, so that all of them are
+//! simulated.
 
 use rapier3d_f64::prelude::*;
 use sim_core::{DQuat, DVec3, StepError};
@@ -26,7 +26,7 @@ impl Engine for Rapier {
         Ok(())
     }
 
-    /// The middle of a step in which the second body's velocity has changed by more than gravity.
+    /// Returns the middle of the step, if the second body's velocity has changed by more than gravity explains.
     fn step_noting(&mut self) -> Result<Option<f64>, StepError> {
         let before = self.velocity(1);
         self.step()?;
@@ -62,7 +62,7 @@ impl Engine for Rapier {
             let movable = bodies.filter(|body| body.is_dynamic());
             return movable.map(RigidBody::kinetic_energy).sum();
         }
-        // They have 1 kg each.
+        // Every body has 1 kg.
         let squares = (0..self.handles.len()).map(|i| self.velocity(i).length_squared());
         0.5 * squares.sum::<f64>()
     }
@@ -73,12 +73,12 @@ pub(crate) fn vector(v: DVec3) -> Vector {
 }
 
 impl Rapier {
-    /// With meshes as they are.
+    /// A world with unchanged meshes.
     pub fn new(scene: &Scene) -> Rapier {
         Rapier::with_flags(scene, TriMeshFlags::empty())
     }
 
-    /// With meshes whose internal edges make no contacts.
+    /// A world with meshes whose internal edges cause no contacts.
     pub fn with_internal_edges_fixed(scene: &Scene) -> Rapier {
         Rapier::with_flags(scene, TriMeshFlags::FIX_INTERNAL_EDGES)
     }
@@ -137,6 +137,6 @@ impl Rapier {
     }
 }
 
-/// Half of a wall's thickness and of its sides, m.
+/// Half the thickness of a wall, and half its sides, m.
 const THICK: f64 = 2.0;
 const WIDE: f64 = 100.0;

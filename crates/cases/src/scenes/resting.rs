@@ -1,14 +1,14 @@
-//! Scenes of bodies that lie or slide, whose ends are known, and a heap.
+//! Scenes of resting or sliding bodies with known final states, and a heap.
 
 use sim_core::DVec3;
 
 use super::{Family, Form, GRAVITY, Goal, HALF, Item, Known, Scene, Who};
 
-/// As far above what it lies on as bodies in contact are, m.
+/// The initial gap below a body, equal to that of bodies in contact, m.
 const HOVER: f64 = 1e-12;
 const FRICTION: f64 = 0.4;
 
-/// Of what friction and contacts do, by continuous collisions; bodies keep nothing of the speed at which they meet.
+/// Scenes that test friction and contacts in the continuous mode; restitution is 0.
 pub static RESTING: [Family; 6] = [
     Family {
         name: "slide",
@@ -84,7 +84,7 @@ fn known(items: Vec<Item>, friction: f64, duration: f64, goal: Goal) -> Known {
     }
 }
 
-/// A cube on a floor that comes to a place along x.
+/// A cube on a floor that stops at a position along x.
 fn on_a_floor(
     height: f64,
     speed: f64,
@@ -106,20 +106,20 @@ fn on_a_floor(
 /// Sine and cosine of a slope of 3 in 4.
 const STEEP: (f64, f64) = (0.6, 0.8);
 
-/// The same at rest, under gravity that is turned by the angle of a slope, in which x is downhill.
+/// A cube initially at rest on a slope: gravity is rotated by its angle, and x points downhill.
 fn on_a_slope(friction: f64, duration: f64, end: (f64, f64)) -> Known {
     let mut known = on_a_floor(HOVER, 0.0, friction, duration, end);
     known.scene.gravity = GRAVITY * DVec3::new(STEEP.0, -STEEP.1, 0.0);
     known
 }
 
-/// How far something slides on a floor, m.
+/// The sliding distance on a floor, m.
 pub fn sliding_way(speed: f64, friction: f64) -> f64 {
     speed * speed / (2.0 * friction * GRAVITY)
 }
 
-/// How far something comes that lands on a floor from a height and slides: the impact takes mu times
-/// what it gives upwards.
+/// The distance that a body slides after it lands on a floor from a height: the impact reduces the horizontal momentum
+/// by mu times its vertical impulse.
 pub fn landing_way(height: f64, speed: f64, friction: f64) -> f64 {
     let falling = (2.0 * height / GRAVITY).sqrt();
     let left = speed - friction * GRAVITY * falling;
@@ -162,7 +162,7 @@ fn heap() -> Known {
     let walls = [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z].map(wall);
     let balls = (0..27_u32).map(|i| {
         let cell = [i % 3, i / 9, i / 3 % 3].map(|c| 0.6 * f64::from(c));
-        // None is right above another one.
+        // No body is exactly above another one.
         let shake = [1, 2, 3].map(|k| 0.02 * (f64::from(i * k) * 2.4).sin());
         let at = DVec3::from_array(cell) + DVec3::from_array(shake);
         Item::resting(Form::Ball(HALF), at + DVec3::new(-0.6, 0.3, -0.6))

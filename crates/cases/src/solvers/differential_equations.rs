@@ -1,4 +1,4 @@
-//! The crate `differential-equations`, with its own defaults but for the limit on steps.
+//! The crate `differential-equations`, with its defaults except for the limit on steps.
 
 use std::hint::black_box;
 
@@ -63,7 +63,7 @@ pub(super) fn radau5<E: FirstOrder<N>, const N: usize>(
 fn solved<const N: usize>(
     outcome: Result<Solution<f64, [f64; N]>, Error<f64, [f64; N]>>,
 ) -> Result<Solved<N>, String> {
-    // Its errors can be displayed for some kinds of state only, of which arrays are none.
+    // Its errors implement `Display` only for some types of state, not for arrays.
     let solution = outcome.map_err(|error| match error {
         Error::MaxSteps { t, .. } => format!("at t = {t} after {MOST_STEPS} steps"),
         Error::StepSize { t, .. } => format!("at t = {t} the step became too small"),

@@ -1,5 +1,5 @@
-//! Solvers of `y' = f(y)` that choose their steps: the ones of `sim_core` and their peers, all
-//! given the same right-hand side, inlined, and the same tolerance.
+//! Solvers of `y' = f(y)` with error control: those of `sim_core` and their peers, with the same inlined right-hand
+//! side and the same tolerance.
 
 #[cfg(feature = "differential-equations")]
 mod differential_equations;
@@ -9,37 +9,37 @@ mod ours;
 
 use crate::problems::FirstOrder;
 
-/// A solver and what it is.
+/// A solver and its description.
 #[derive(Debug)]
 pub struct Solver {
     /// Name in tables.
     pub name: &'static str,
     /// Name in legends.
     pub title: &'static str,
-    /// Whose it is.
+    /// Its implementation.
     pub kind: Kind,
 }
 
-/// Whose method it is.
+/// The implementations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Dormand and Prince's method of order 5, ours.
+    /// Our implementation of Dormand and Prince's method of order 5.
     OurDopri5,
-    /// Theirs of order 8, ours.
+    /// Our implementation of their method of order 8.
     OurDop853,
-    /// Of `ode_solvers`.
+    /// Dormand and Prince's method of order 5 in `ode_solvers`.
     #[cfg(feature = "ode_solvers")]
     OdeSolversDopri5,
-    /// Of `ode_solvers`.
+    /// Their method of order 8 in `ode_solvers`.
     #[cfg(feature = "ode_solvers")]
     OdeSolversDop853,
-    /// Of `differential-equations`.
+    /// Dormand and Prince's method of order 5 in `differential-equations`.
     #[cfg(feature = "differential-equations")]
     DifferentialEquationsDopri5,
-    /// Of `differential-equations`.
+    /// Their method of order 8 in `differential-equations`.
     #[cfg(feature = "differential-equations")]
     DifferentialEquationsDop853,
-    /// Of `differential-equations`, for stiff problems.
+    /// A method for stiff problems in `differential-equations`.
     #[cfg(feature = "differential-equations")]
     DifferentialEquationsRadau5,
 }
@@ -88,35 +88,35 @@ pub static SOLVERS: &[Solver] = &[
     },
 ];
 
-/// Steps after which a solver is stopped.
+/// The number of steps after which a solver is stopped.
 const MOST_STEPS: u32 = 5_000_000;
 
 /// A system to solve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Task<'a, E, const N: usize> {
-    /// What is solved.
+    /// The equations.
     pub(crate) equations: &'a E,
-    /// The state at time 0.
+    /// The initial state.
     pub(crate) start: [f64; N],
-    /// Time to solve for, from 0.
+    /// The duration, from time 0.
     pub(crate) time: f64,
-    /// Error allowed in a step, relative and absolute.
+    /// Relative and absolute error tolerance of a step.
     pub(crate) tolerance: f64,
 }
 
-/// Where a solver has come to, at what cost by its own count.
+/// The result of a solver, and its cost by its own count.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Solved<const N: usize> {
-    /// The state at the end.
+    /// The final state.
     pub(crate) state: [f64; N],
-    /// Calls of the right-hand side.
+    /// Evaluations of the right-hand side.
     pub(crate) evaluations: u64,
-    /// Calls of its Jacobian.
+    /// Evaluations of its Jacobian.
     pub(crate) jacobians: u64,
 }
 
 impl<E: FirstOrder<N>, const N: usize> Task<'_, E, N> {
-    /// Solves it.
+    /// Solves the system.
     pub(crate) fn solve(self, solver: &Solver) -> Result<Solved<N>, String> {
         match solver.kind {
             Kind::OurDopri5 => ours::dopri5(self),

@@ -1,5 +1,5 @@
-//! The crate `ode_solvers`, with its own defaults but for the limit on steps and its test for
-//! stiffness, which would end a solve, and without output between the steps.
+//! The crate `ode_solvers`, with its defaults except for the limit on steps and the stiffness test, which would end a
+//! solution, and without output between the steps.
 
 use std::hint::black_box;
 

@@ -1,4 +1,4 @@
-//! Times of first contact of meshes that move and turn evenly, from closed forms and from exact tests.
+//! Times of first contact of meshes that translate and rotate uniformly, from closed forms and from exact tests.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 use std::sync::Arc;
@@ -11,89 +11,89 @@ use sim_core::{Bvh, DQuat, DVec3, Mesh, Vec3};
 
 use crate::hard_cases::Verdict;
 
-/// Two meshes that come together, or do not, for each of some spins.
+/// Two meshes that may come into contact, for each of some spins.
 pub struct Contact {
     /// Name in tables and file names.
     pub name: &'static str,
     /// Name in prose.
     pub title: &'static str,
-    /// Bodies, and where the time is from.
+    /// The bodies, and the source of the exact time.
     pub about: &'static str,
-    /// Spins that it is made for, rad/s.
+    /// The spins, rad/s.
     pub spins: &'static [f64],
-    /// Makes it for a spin.
+    /// Makes the pair for a spin.
     pub make: fn(f64) -> Meeting,
     /// The largest error that passes, s.
     pub tolerance: f64,
-    /// Who must pass at every spin.
+    /// The seekers that must pass at every spin.
     pub passed_by: &'static [Seeker],
-    /// Who must fail at some of them.
+    /// The seekers that must fail at some spin.
     pub failed_by: &'static [Seeker],
 }
 
-/// Two meshes on their way.
+/// Two moving meshes.
 #[derive(Clone, Debug)]
 pub struct Meeting {
-    /// Both of them.
+    /// The two meshes with their motion.
     pub things: [Thing; 2],
-    /// Until when a contact is looked for, s.
+    /// The duration of the search, s.
     pub duration: f64,
-    /// Where the time of the first contact is from.
+    /// The source of the exact time of first contact.
     pub truth: Truth,
 }
 
-/// A mesh that moves and turns evenly about the origin of its frame.
+/// A mesh that translates uniformly and rotates uniformly about the origin of its frame.
 #[derive(Clone, Debug)]
 pub struct Thing {
-    /// What moves.
+    /// The mesh.
     pub mesh: Arc<Mesh>,
-    /// Its half extents if it is a box about its origin, m.
+    /// Its half extents if it is a box centred at its origin, m.
     pub half: Option<Vec3>,
-    /// At the start, m.
+    /// Initial position, m.
     pub position: DVec3,
-    /// m/s
+    /// Velocity, m/s.
     pub velocity: DVec3,
     /// Angular velocity, rad/s.
     pub spin: DVec3,
 }
 
-/// Where the time of the first contact is from.
+/// The source of the exact time of first contact.
 #[derive(Clone, Copy, Debug)]
 pub enum Truth {
     /// A closed form, s.
     At(f64),
     /// They do not meet.
     Never,
-    /// The exact test whether the meshes meet, at 4,096 times and then by bisection.
+    /// The exact intersection test of the meshes, at 4,096 times and then by bisection.
     ByTests,
-    /// The lowest corner above the plane `y = 0` of the second mesh, by its closed form.
+    /// The closed form of the lowest vertex above the plane `y = 0`, the surface of the second mesh.
     LowestCorner,
 }
 
-/// Who looks for contacts.
+/// The implementations that search for contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seeker {
-    /// Ours, of meshes.
+    /// Ours, for meshes.
     Ours,
-    /// The nonlinear shape cast of `parry3d-f64`, of meshes.
+    /// The nonlinear shape cast of `parry3d-f64`, for meshes.
     #[cfg(feature = "rapier3d-f64")]
     ParryMeshes,
-    /// The same of its own boxes.
+    /// The same shape cast for the boxes of `parry3d-f64`.
     #[cfg(feature = "rapier3d-f64")]
     ParryBoxes,
 }
 
-/// What has been found.
+/// The result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
-    /// When they come together, s; `None` that they do not.
+    /// The time of contact, s; `None` if the search finds none.
     pub time: Option<f64>,
-    /// Whether the search says itself that it has not come to an end: of ours, that they are apart until then and it
-    /// looked no further; of parry, by its status, which may also stand beside a time that is right.
+    /// Whether the search itself reports that it was incomplete: ours, that the meshes are apart until then and it has
+    /// not searched further; parry, by its status, which can occur together with a correct time.
     pub has_failed: bool,
 }
 
-/// A search that is ready to be asked.
+/// A prepared search.
 pub type Search = Box<dyn Fn() -> Found>;
 
 impl Thing {
@@ -135,12 +135,12 @@ fn cube(position: DVec3) -> Thing {
     Thing::cuboid(Vec3::splat(0.5), position)
 }
 
-/// Its upper face is in the plane `y = 0`.
+/// A floor whose upper face lies in the plane `y = 0`.
 fn floor() -> Thing {
     Thing::cuboid(Vec3::new(8.0, 1.0, 8.0), DVec3::NEG_Y)
 }
 
-/// What parry has.
+/// Both searches of parry.
 const PARRY: &[Seeker] = &[
     #[cfg(feature = "rapier3d-f64")]
     Seeker::ParryMeshes,
@@ -148,7 +148,7 @@ const PARRY: &[Seeker] = &[
     Seeker::ParryBoxes,
 ];
 
-/// All of them.
+/// All contacts.
 pub static CONTACTS: [Contact; 8] = [
     Contact {
         name: "cube-floor",
@@ -224,7 +224,7 @@ pub static CONTACTS: [Contact; 8] = [
                     .spinning(spin * DVec3::X),
             ],
             duration: 0.4,
-            // As the numbers are, 1.1 - 1.
+            // 1.1 - 1 in floating point, as in the positions.
             truth: Truth::At(1.1 - 1.0),
         },
         tolerance: 1e-9,
@@ -276,7 +276,7 @@ pub static CONTACTS: [Contact; 8] = [
                 truth: Truth::At((FRAC_PI_4 - (height * 2_f64.sqrt()).acos()) / spin),
             }
         },
-        // What is rounded at the start, of 1e-16 m, moves the time of a graze by more.
+        // Rounding errors of 1e-16 m in the initial state cause larger errors of the time of a grazing contact.
         tolerance: 1e-9,
         passed_by: Seeker::ALL,
         failed_by: &[],
@@ -322,7 +322,7 @@ pub static CONTACTS: [Contact; 8] = [
 ];
 
 impl Contact {
-    /// What an answer comes to, of a meeting with this first contact. Its time decides.
+    /// The verdict on a result, for the exact time of first contact. Only the time matters.
     pub fn verdict(&self, exact: Option<f64>, found: &Found) -> Verdict {
         Verdict::of(match (exact, found.time) {
             (Some(exact), Some(time)) => (time - exact).abs() <= self.tolerance,
@@ -333,7 +333,7 @@ impl Contact {
 }
 
 impl Meeting {
-    /// Time of the first contact, s, found without what is measured here.
+    /// The exact time of the first contact, s, found without the code under test.
     pub fn exact(&self) -> Option<f64> {
         match self.truth {
             Truth::At(time) => Some(time),
@@ -367,7 +367,7 @@ impl Meeting {
             let heights = corners.iter().map(|&corner| (turn * corner).y + from);
             heights.fold(f64::INFINITY, f64::min)
         };
-        // A hundredth of a radian between two of them.
+        // Two samples are a hundredth of a radian apart.
         let count = 1000 + (100.0 * body.spin.length() * self.duration) as u32;
         let at = |i: u32| self.duration * f64::from(i) / f64::from(count);
         let reach = corners.iter().map(|corner| corner.length());
@@ -378,7 +378,7 @@ impl Meeting {
             if height(before) > way {
                 continue;
             }
-            // What dips below and comes up again in between has a least height there.
+            // A height that falls below zero and rises again in between has its minimum there.
             let dip = lowest(before, after, &height);
             let below = [dip, after].into_iter().find(|&t| height(t) <= 0.0);
             if let Some(below) = below {
@@ -389,7 +389,7 @@ impl Meeting {
     }
 }
 
-/// The border between what is not and what is, to the last bit.
+/// The boundary between false and true, to the last bit.
 fn bisect(mut not: f64, mut is: f64, at: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = 0.5 * (not + is);
@@ -403,7 +403,7 @@ fn bisect(mut not: f64, mut is: f64, at: impl Fn(f64) -> bool) -> f64 {
     }
 }
 
-/// Where a function that has one least value between two places has it, by thirds.
+/// The position of the minimum of a unimodal function in an interval, by ternary search.
 fn lowest(mut low: f64, mut high: f64, of: &impl Fn(f64) -> f64) -> f64 {
     for _ in 0..40 {
         let third = (high - low) / 3.0;
@@ -416,7 +416,7 @@ fn lowest(mut low: f64, mut high: f64, of: &impl Fn(f64) -> f64) -> f64 {
 }
 
 impl Seeker {
-    /// All that are compiled in.
+    /// All seekers that are compiled in.
     pub const ALL: &[Seeker] = &[
         Seeker::Ours,
         #[cfg(feature = "rapier3d-f64")]
@@ -436,7 +436,7 @@ impl Seeker {
         }
     }
 
-    /// Makes trees and shapes; `None` where it has no shape for a mesh.
+    /// Builds trees and shapes; `None` if the seeker has no shape for a mesh.
     pub fn prepare(self, meeting: &Meeting) -> Option<Search> {
         match self {
             Seeker::Ours => Some(ours(meeting)),
@@ -451,7 +451,7 @@ impl Seeker {
 fn ours(meeting: &Meeting) -> Search {
     let duration = meeting.duration;
     let movers = meeting.things.clone().map(|thing| {
-        // Of equal moments, it turns evenly.
+        // With equal moments the body rotates uniformly.
         let flight = Flight::new(
             DVec3::ONE,
             DQuat::IDENTITY,
@@ -477,7 +477,7 @@ fn ours(meeting: &Meeting) -> Search {
         let touch = first_contact(&a, &b, duration);
         Found {
             time: touch.map(|touch| touch.time),
-            // A search that ends where it is says so by a distance that is no contact.
+            // A search that ended early is recognised by a distance that is not a contact.
             has_failed: touch.is_some_and(|touch| touch.distance > touch.near),
         }
     })

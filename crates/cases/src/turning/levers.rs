@@ -1,4 +1,4 @@
-//! Forces at points of bodies that turn: a top and a pendulum with closed forms, and a brick on a spring.
+//! Forces at points of turning bodies: a top and a pendulum with closed forms, and a brick on a spring.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, TAU};
 
@@ -10,49 +10,49 @@ use sim_core::{
 use crate::problems::Effort;
 use crate::worlds;
 
-/// A body with a force at a point of it, and a known end.
+/// A body with a force at one of its points, and a known final state.
 pub struct Lever {
     /// Name in tables and file names.
     pub name: &'static str,
     /// Name in prose.
     pub title: &'static str,
-    /// Body, force, and where the end is from.
+    /// The body, the force, and the source of the final state.
     pub about: &'static str,
-    /// What it is at the start.
+    /// Its initial state.
     make: fn() -> Tied,
-    /// How long it is followed, s.
+    /// The duration, s.
     time: fn() -> f64,
-    /// Where [`Tied::watched`] is then, m.
+    /// The final position of [`Tied::watched`], m.
     end: fn() -> DVec3,
 }
 
-/// A body and what pulls at it.
+/// A body and the force on it.
 #[derive(Clone, Copy, Debug)]
 struct Tied {
     mass: f64,
-    /// About the axes of its frame, kg m².
+    /// Moments of inertia about the axes of its frame, kg m².
     moments: DVec3,
     rotation: DQuat,
-    /// In the world, rad/s.
+    /// Spin in the world, rad/s.
     spin: DVec3,
     /// Force at the centre of mass, N.
     weight: DVec3,
-    /// Where it is pulled, in its frame, m.
+    /// The point of application, in its frame, m.
     point: DVec3,
     pull: Pull,
-    /// The point whose place at the end counts, in its frame, m.
+    /// The point whose final position is compared, in its frame, m.
     watched: DVec3,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Pull {
-    /// N
+    /// A constant force, N.
     Constant(DVec3),
-    /// A spring without a rest length to a fixed place.
+    /// A spring without rest length to a fixed point.
     Spring { anchor: DVec3, stiffness: f64 },
 }
 
-/// All of them.
+/// All levers.
 pub static LEVERS: [Lever; 3] = [
     Lever {
         name: "top",
@@ -79,7 +79,7 @@ pub static LEVERS: [Lever; 3] = [
         make: pendulum,
         time: || 4.5 * complete(0.5),
         end: || {
-            // sin θ/2 = k cd t, with k² = 1/2 and θ from the lowest place.
+            // sin θ/2 = k cd t, with k² = 1/2 and θ measured from the lowest position.
             let [_, cn, dn] = functions(4.5 * complete(0.5), 0.5);
             let angle = 2.0 * (0.5_f64.sqrt() * cn / dn).asin();
             DVec3::new(angle.sin(), -angle.cos(), 0.0)
@@ -116,7 +116,7 @@ fn symmetric(tilt: f64, spin: f64) -> Tied {
         moments: DVec3::new(ACROSS, ACROSS, ALONG),
         rotation,
         spin: rotation * (spin * DVec3::Z),
-        // It would fly off else.
+        // It balances the force at the point; otherwise the body would fly off.
         weight: 2.0 * TORQUE * DVec3::Y,
         point: 0.5 * DVec3::Z,
         pull: Pull::Constant(-2.0 * TORQUE * DVec3::Y),
@@ -155,11 +155,12 @@ fn brick() -> Tied {
     }
 }
 
-/// Of the top: how long it takes from its highest to its highest, s, by what angle it goes about then, and how high its
-/// axis is at its lowest.
+/// The nodding of the top: its period from one highest position of the axis to the next, s, the angle of precession in
+/// that time, and the lowest height of the axis.
 ///
-/// With `u` the height of the axis, `A² u'² = (a - u) (2 A τ (1 - u²) - L² (a - u))`, of which `a` is the root where it
-/// is let go. With `u` between two roots as a cosine the integrands are smooth and periodic, so that a sum over even
+/// With `u` the height of the axis, `A² u'² = (a - u) (2 A τ (1 - u²) - L² (a - u))`, of which `a` is the root at the
+/// release. If `u` is written as a cosine between two roots, the integrands are smooth and periodic, so that a sum over
+/// equidistant points is exact up to rounding.
 /// steps is right to rounding.
 fn nod() -> (f64, f64, f64) {
     let (a, along) = (TILT.cos(), ALONG * SPIN);
@@ -180,17 +181,17 @@ fn nod() -> (f64, f64, f64) {
 }
 
 impl Lever {
-    /// The end, which may take long to find: m.
+    /// The final position, which can take long to compute, m.
     pub fn exact(&self) -> DVec3 {
         (self.end)()
     }
 
-    /// How long it is followed, s.
+    /// The duration, s.
     pub fn time(&self) -> f64 {
         (self.time)()
     }
 
-    /// A world of ours with it.
+    /// The lever in one of our worlds.
     pub fn world(&self, settings: Settings) -> Result<World, WorldError> {
         let tied = (self.make)();
         let inertia = Inertia::new(tied.moments, DQuat::IDENTITY, DVec3::ZERO);
@@ -223,12 +224,12 @@ impl Lever {
         worlds::under(settings, [body], &[force])
     }
 
-    /// How far the point that counts is from its end in a world, m.
+    /// The distance of the watched point in a world from its final position, m.
     pub fn error(&self, world: &World, exact: DVec3) -> f64 {
         (world.point_of(0, (self.make)().watched) - exact).length()
     }
 
-    /// Where the point that counts is at the end, m, by a method; an adaptive one takes twenty steps of the world.
+    /// The final position of the watched point, m, with a method; an adaptive one takes twenty steps of the world.
     pub fn after(&self, method: &'static Method, effort: Effort) -> Result<DVec3, StepError> {
         let (steps, tolerance) = match effort {
             Effort::Steps(steps) => (steps, 1e-13),
@@ -247,7 +248,7 @@ impl Lever {
         Ok(world.point_of(0, (self.make)().watched))
     }
 
-    /// The same by Rapier, which gets its forces at points before every step.
+    /// The same with Rapier, which receives the forces at points before every step.
     #[cfg(feature = "rapier3d-f64")]
     pub fn after_by_rapier(&self, steps: u64) -> DVec3 {
         let mut tied = self.rapier(self.time() / steps as f64);
@@ -255,7 +256,7 @@ impl Lever {
         tied.watched()
     }
 
-    /// A world of Rapier with it.
+    /// The lever in a world of Rapier.
     #[cfg(feature = "rapier3d-f64")]
     pub fn rapier(&self, dt: f64) -> TiedInRapier {
         TiedInRapier::new((self.make)(), dt)
@@ -317,7 +318,7 @@ mod peer {
             self.world.step();
         }
 
-        /// Where the point that counts is, m.
+        /// The position of the watched point, m.
         pub fn watched(&self) -> DVec3 {
             self.place(self.tied.watched)
         }
@@ -352,7 +353,7 @@ mod tests {
         }
     }
 
-    /// Nothing of the error is hidden by a stop at the end: half a step errs by half as much.
+    /// A body at rest at the end hides no error: steps of half the length give half the error.
     #[test]
     fn methods_of_the_first_order_err_by_the_first_order() {
         for lever in &LEVERS {

@@ -1,5 +1,4 @@
-//! Bodies that turn, with what is known of their motion: free flight, flips, times of first contact,
-//! and forces at points.
+//! Turning bodies whose motion is known: free flight, flips, times of first contact, and forces at points.
 
 pub mod contacts;
 pub mod levers;
@@ -10,20 +9,20 @@ use sim_core::DVec3;
 
 use crate::scenes::Who;
 
-/// Engines in which bodies fly freely; all of our modes fly alike.
+/// The engines whose free flight is tested; all of our modes fly alike.
 pub const ENGINES: &[Who] = &[
     Who::Continuous,
     #[cfg(feature = "rapier3d-f64")]
     Who::Rapier,
 ];
 
-/// Principal moments of a box of 1 kg, by its half extents, kg m².
+/// Principal moments of a box of 1 kg with these half extents, kg m².
 fn moments(half: [f32; 3]) -> DVec3 {
     let [x, y, z] = half.map(|h| f64::from(h) * f64::from(h));
     DVec3::new(y + z, z + x, x + y) / 3.0
 }
 
-/// The greater one, and infinity where one of them is no number, which `f64::max` would pass over.
+/// The maximum; infinity if one of them is NaN, which `f64::max` would ignore.
 fn worse(a: f64, b: f64) -> f64 {
     match a.is_nan() || b.is_nan() {
         true => f64::INFINITY,

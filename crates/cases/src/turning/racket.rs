@@ -1,4 +1,4 @@
-//! The tennis racket: when a body that spins about its middle axis turns over.
+//! The tennis racket: the times at which a body that spins about its intermediate axis flips.
 
 use kit::elliptic;
 use kit::meshes::cuboid;
@@ -7,37 +7,37 @@ use sim_core::DVec3;
 use super::moments;
 use crate::scenes::{Form, Item, Scene, Who};
 
-/// How far the spin is from the middle axis at the start: parts of it about the third axis.
+/// The initial component of the spin about the third axis, relative to that about the intermediate axis.
 pub const STARTS: [f64; 2] = [0.1, 0.01];
 
-/// Flips that are waited for.
+/// The number of flips observed.
 pub const FLIPS: usize = 10;
 
 /// Half extents of the box of 1 kg, m.
 const HALF: [f32; 3] = [1.0, 0.5, 0.25];
 
-/// About the middle axis, rad/s.
+/// Spin about the intermediate axis, rad/s.
 const SPIN: f64 = 3.0;
 
-/// When a run has turned over.
+/// The times at which a run has flipped.
 #[derive(Clone, Debug, Default)]
 pub struct Flips {
     /// Times, s.
     pub times: Vec<f64>,
 }
 
-/// Time of a flip, s, the first one of number 0: when the component about the middle axis is 0.
+/// Time of a flip, s, numbered from 0: the component about the intermediate axis is 0 then.
 pub fn exact(start: f64, flip: usize) -> f64 {
     let racket = elliptic::Racket::new(moments(HALF), SPIN, start * SPIN);
     (flip as f64 + 0.5) * racket.flip()
 }
 
-/// Steps to half a flip after the last one.
+/// The number of steps to half a flip after the last one.
 pub fn steps(start: f64, rate: u32) -> u32 {
     (0.5 * (exact(start, FLIPS - 1) + exact(start, FLIPS)) * f64::from(rate)).round() as u32
 }
 
-/// The box in a scene of so many steps a second.
+/// The box in a scene with so many steps per second.
 pub fn scene(start: f64, rate: u32) -> Scene {
     let body = Item {
         spin: SPIN * DVec3::new(0.0, 1.0, start),
@@ -50,7 +50,7 @@ pub fn scene(start: f64, rate: u32) -> Scene {
     }
 }
 
-/// Steps and notes every flip.
+/// Steps the scene and records every flip.
 pub fn run(who: Who, start: f64, rate: u32) -> Flips {
     let scene = scene(start, rate);
     let mut engine = who.start(&scene);
@@ -58,7 +58,7 @@ pub fn run(who: Who, start: f64, rate: u32) -> Flips {
     let mut before = own(engine.as_ref());
     let mut flips = Flips::default();
     for step in 0..steps(start, rate) {
-        // What fails has no more flips.
+        // After an error there are no further flips.
         if engine.step().is_err() {
             break;
         }
@@ -73,15 +73,15 @@ pub fn run(who: Who, start: f64, rate: u32) -> Flips {
 }
 
 impl Flips {
-    /// How far a flip is from its time, s; `None` if there is none.
+    /// The error of the time of a flip, s; `None` if there is none.
     pub fn error(&self, start: f64, flip: usize) -> Option<f64> {
         let found = self.times.get(flip)?;
         Some((found - exact(start, flip)).abs())
     }
 }
 
-/// The time within a step until the middle component of an angular velocity is 0, s. The equations of Euler are
-/// solved from the step's start, so that an engine answers for its states and not for what is between them.
+/// The time within a step until the intermediate component of an angular velocity is 0, s. Euler's equations are
+/// integrated from the step's start, so that only the states of an engine count, not its interpolation.
 fn until_zero(spin: DVec3, dt: f64) -> f64 {
     let mut t = 0.5 * dt;
     for _ in 0..20 {
@@ -96,7 +96,7 @@ fn slope(spin: DVec3) -> DVec3 {
     (moments * spin).cross(spin) / moments
 }
 
-/// By 64 steps of Runge and Kutta, to rounding.
+/// By 64 Runge-Kutta steps, exact to rounding.
 fn after(mut spin: DVec3, t: f64) -> DVec3 {
     let h = t / 64.0;
     for _ in 0..64 {

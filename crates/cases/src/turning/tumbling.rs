@@ -1,4 +1,4 @@
-//! Free flight of bodies whose moments differ: energy, angular momentum and phase.
+//! Free flight of bodies with different moments: energy, angular momentum and phase.
 
 use kit::elliptic::Racket;
 use kit::meshes::cuboid;
@@ -8,26 +8,26 @@ use super::{moments, worse};
 use crate::hard_cases::Verdict;
 use crate::scenes::{Engine, Form, Item, Scene, Who};
 
-/// A box of 1 kg that nothing pulls.
+/// A box of 1 kg without forces.
 #[derive(Debug)]
 pub struct Tumbler {
     /// Name in tables and file names.
     pub name: &'static str,
     /// Name in prose.
     pub title: &'static str,
-    /// Body, spin, and the closed form.
+    /// The body, its spin, and the closed form.
     pub about: &'static str,
-    /// Half extents, the greatest first, so that moments ascend, m.
+    /// Half extents, the greatest first, so that the moments are in ascending order, m.
     half: [f32; 3],
-    /// At the start, rad/s.
+    /// Initial spin, rad/s.
     spin: DVec3,
     /// The largest error of a kind that passes.
     pub tolerance: f64,
-    /// Who must pass at every rate; all others must not.
+    /// The engines that must pass at every rate; all others must fail.
     pub passed_by: &'static [Who],
 }
 
-/// What is watched.
+/// All tumblers.
 pub static TUMBLERS: [Tumbler; 2] = [
     Tumbler {
         name: "tumbling-box",
@@ -51,19 +51,19 @@ pub static TUMBLERS: [Tumbler; 2] = [
     },
 ];
 
-/// What a run has got wrong, each relative to the start.
+/// The errors of a run, each relative to the start.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tumble {
     /// The greatest change of the energy.
     pub energy: f64,
     /// The greatest change of the angular momentum, a vector in the world.
     pub momentum: f64,
-    /// Of the angular velocity in the frame of the body at the end: the phase of the motion.
+    /// The error of the final angular velocity in the frame of the body, that is, of the phase of the motion.
     pub spin: f64,
 }
 
 impl Tumbler {
-    /// The body in a scene of so many steps a second.
+    /// The body in a scene with so many steps per second.
     pub fn scene(&self, rate: u32) -> Scene {
         let form = Form::Mesh(cuboid(self.half));
         let body = Item {
@@ -90,8 +90,8 @@ impl Tumbler {
         }
     }
 
-    /// Steps, and looks at all of them: energy and momentum come from rotation and angular velocity, by one
-    /// formula for every engine.
+    /// Steps the scene and measures every state. Energy and momentum are computed from rotation and angular velocity,
+    /// by the same formula for every engine.
     pub fn run(&self, who: Who, rate: u32, steps: u32) -> Tumble {
         let mut engine = who.start(&self.scene(rate));
         let moments = moments(self.half);
@@ -115,19 +115,19 @@ impl Tumbler {
         run
     }
 
-    /// What a run comes to.
+    /// The verdict on a run.
     pub fn verdict(&self, run: &Tumble) -> Verdict {
         Verdict::of(worse(worse(run.energy, run.momentum), run.spin) <= self.tolerance)
     }
 
-    /// What it must come to.
+    /// The expected verdict.
     pub fn expected(&self, who: Who) -> Verdict {
         Verdict::of(self.passed_by.contains(&who))
     }
 }
 
 impl Tumble {
-    /// Of a run that has not come to its end.
+    /// The figures of a run that failed before its end.
     const FAILED: Tumble = Tumble {
         energy: f64::INFINITY,
         momentum: f64::INFINITY,

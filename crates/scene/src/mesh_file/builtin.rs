@@ -1,4 +1,4 @@
-//! Meshes that are part of the program, for scenes that need no file.
+//! Meshes that are part of the program, for scenes without mesh files.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -67,7 +67,7 @@ impl BuiltinMesh {
         let mesh = self.mesh.get_or_init(|| {
             let path = Path::new(self.name);
             let loaded = Format::of(path).and_then(|format| read(format, path, self.bytes));
-            // The file is part of the source, and a test reads it.
+            // A test reads every built-in file.
             Arc::new(loaded.expect("a built-in mesh is valid").mesh)
         });
         mesh.clone()

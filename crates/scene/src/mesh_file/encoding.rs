@@ -1,4 +1,4 @@
-//! Bytes of text files to UTF-8.
+//! Converts the bytes of text files to UTF-8.
 
 use std::borrow::Cow;
 
@@ -7,8 +7,8 @@ use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE};
 use super::soup::ReadError;
 use crate::shown;
 
-/// Text whose byte order mark, if it has one, tells the encoding, or else, of UTF-16, the zeros in its first
-/// characters; other bytes stay as they are.
+/// Converts text whose encoding is known from its byte order mark or, for UTF-16 without one, from the zeros in its
+/// first characters. Other bytes stay unchanged.
 pub(super) fn by_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
     let marked = Encoding::for_bom(bytes);
     let (encoding, text) = match (marked, bytes) {
@@ -25,7 +25,7 @@ pub(super) fn by_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(text.into_owned().into_bytes())
 }
 
-/// How many lines end in a stretch of a text: at a line feed, or, on old systems, at a carriage return alone.
+/// The number of line ends in a part of a text: line feeds or, on old systems, carriage returns alone.
 pub(super) fn line_ends(text: &[u8]) -> usize {
     let ends = text
         .iter()
@@ -34,13 +34,13 @@ pub(super) fn line_ends(text: &[u8]) -> usize {
     ends.count()
 }
 
-/// What ends the lines of a text: a line feed, or a carriage return where there is none.
+/// The byte that ends the lines of a text: a line feed, or a carriage return if there is none.
 pub(super) fn line_end(text: &[u8]) -> u8 {
     if text.contains(&b'\n') { b'\n' } else { b'\r' }
 }
 
-/// The text of an XML document: by its byte order mark, by the zeros in its first characters, by
-/// what it declares, or else UTF-8.
+/// Decodes the text of an XML document. The encoding is given by its byte order mark, else by the zeros in its first
+/// characters, else by its declaration; otherwise it is UTF-8.
 pub(super) fn xml(bytes: &[u8]) -> Result<Cow<'_, str>, ReadError> {
     let (encoding, bytes) = match Encoding::for_bom(bytes) {
         Some((encoding, length)) => (encoding, &bytes[length..]),
@@ -63,7 +63,7 @@ pub(super) fn xml(bytes: &[u8]) -> Result<Cow<'_, str>, ReadError> {
         })
 }
 
-/// The encoding that `<?xml ... encoding="..."?>` names, UTF-8 without one.
+/// The encoding that `<?xml ... encoding="..."?>` names; UTF-8 without one.
 fn declared(bytes: &[u8]) -> Result<&'static Encoding, ReadError> {
     let head = &bytes[..bytes.len().min(1024)];
     let head: String = head.iter().map(|&byte| char::from(byte)).collect();
@@ -79,7 +79,7 @@ fn declared(bytes: &[u8]) -> Result<&'static Encoding, ReadError> {
     let label = value.trim_start().get(1..).unwrap_or_default();
     let label = label.split(['"', '\'']).next().unwrap_or_default();
     match Encoding::for_label(label.as_bytes()) {
-        // The declaration itself would not be read so.
+        // The declaration itself is not in UTF-16, otherwise it could not have been read.
         Some(encoding) if encoding == UTF_16LE || encoding == UTF_16BE => Ok(UTF_8),
         Some(encoding) => Ok(encoding),
         None => Err(ReadError::at(

@@ -66,27 +66,27 @@ impl Format {
     }
 }
 
-/// A mesh from a file, and what the file had that a mesh must not have.
+/// A mesh from a file, and the repairs that the file needed.
 #[derive(Debug)]
 pub struct LoadedMesh {
     /// Name of the format in [`FORMATS`].
     pub format: &'static str,
     /// The mesh in metres, y up.
     pub mesh: Mesh,
-    /// What was mended on the way.
+    /// The repairs of the mesh.
     pub repairs: Repairs,
-    /// Metres in a unit of the file, where it says so; `mesh` is in metres.
+    /// The unit of the file in metres, if the file states it; `mesh` is in metres.
     pub unit: Option<f64>,
-    /// The axis that is up in the file, where it says so; `mesh` has y up.
+    /// The up axis of the file, if the file states it; `mesh` has y up.
     pub up_axis: Option<char>,
-    /// Instances that the file scales to nothing and that are left out.
+    /// The number of instances that were left out because the file scales them to zero.
     pub flat_instances: usize,
 }
 
-/// Why a mesh file gives no mesh.
+/// The reason why a mesh file gives no mesh.
 #[derive(Debug, Error)]
 pub enum MeshFileError {
-    /// The extension belongs to no format.
+    /// No format has the extension.
     #[error(
         "{}: not a known kind of mesh file: the extension must be {}",
         shown::path(path),
@@ -96,7 +96,7 @@ pub enum MeshFileError {
         /// The file.
         path: PathBuf,
     },
-    /// A format that is known and not read.
+    /// The format is known but not supported.
     #[error(
         "{}: glTF files are not read: export the mesh as {}",
         shown::path(path),
@@ -106,12 +106,12 @@ pub enum MeshFileError {
         /// The file.
         path: PathBuf,
     },
-    /// The file cannot be read at all.
+    /// The file cannot be read.
     #[error("{}: cannot read the mesh file: {error}", shown::path(path))]
     Io {
         /// The file.
         path: PathBuf,
-        /// The system's answer.
+        /// The error of the operating system.
         error: io::Error,
     },
     /// The file is larger than any sensible mesh.
@@ -125,7 +125,7 @@ pub enum MeshFileError {
         /// Its size.
         bytes: u64,
     },
-    /// The contents are not what the format asks for.
+    /// The contents violate the format.
     #[error("{}: {}", place(path, error.line), shown::part(&error.what))]
     Content {
         /// The file.
@@ -133,12 +133,12 @@ pub enum MeshFileError {
         /// Line and explanation.
         error: ReadError,
     },
-    /// The triangles make no mesh.
+    /// The triangles do not form a valid mesh.
     #[error("{}: {error}", shown::path(path))]
     Mesh {
         /// The file.
         path: PathBuf,
-        /// What is wrong with them.
+        /// The error.
         error: MeshError,
     },
 }
@@ -156,7 +156,7 @@ fn extensions() -> String {
     known.join(" or ")
 }
 
-/// Reads a mesh file. The extension tells the format; no other file is opened.
+/// Reads a mesh file. The extension determines the format; no other file is opened.
 pub fn load(path: &Path) -> Result<LoadedMesh, MeshFileError> {
     let format = Format::of(path)?;
     let bytes = file::read(path, MAX_BYTES).map_err(|refusal| match refusal {
@@ -172,7 +172,7 @@ pub fn load(path: &Path) -> Result<LoadedMesh, MeshFileError> {
     read(format, path, &bytes)
 }
 
-/// Makes a mesh from the bytes of a file; `path` serves the messages only.
+/// Makes a mesh from the bytes of a file; `path` is used only in messages.
 pub fn read(
     format: &'static Format,
     path: &Path,

@@ -1,10 +1,9 @@
 //! Wavefront OBJ: the polygons of one text file.
 //!
-//! `tobj` reads the statements. In front of it stands a sieve that lets through only vertex
-//! positions and the position indices of faces, each checked, because a message needs the line
-//! that `tobj` does not keep. So a file names no other file that is opened (`mtllib`), lines,
-//! points, curves, normals and texture coordinates are left out, and objects and groups become
-//! one mesh. A fourth or later number of a vertex (weight, colour) is ignored.
+//! `tobj` parses the statements. It does not keep the line numbers that messages need, so a filter before it passes
+//! only vertex positions and the position indices of faces, each checked. Thus no other file that the file names
+//! (`mtllib`) is opened; lines, points, curves, normals and texture coordinates are left out; objects and groups become
+//! one mesh. The fourth and later numbers of a vertex (weight, colour) are ignored.
 
 use std::io::{self, BufRead, Read};
 
@@ -105,7 +104,7 @@ fn index_error(line: usize, index: impl std::fmt::Display, vertices: usize) -> R
     ReadError::at(line, format!("a face uses vertex {index}, but {range}"))
 }
 
-/// Whether the next line belongs to this one: blanks after the backslash do not matter.
+/// Whether the statement continues on the next line: blanks after the backslash are allowed.
 fn goes_on(line: &[u8]) -> bool {
     line.trim_ascii_end().ends_with(b"\\")
 }
@@ -116,12 +115,11 @@ struct Sieve<'a> {
     line_end: u8,
     /// The line last taken from `rest`, from 1.
     line: usize,
-    /// The statement to hand out, and how much of it is gone.
+    /// The current statement, and how many of its bytes have been read.
     statement: Vec<u8>,
     consumed: usize,
     vertices: usize,
-    /// The highest vertex index of any face, from 1, and its line: a face may come before its
-    /// vertices.
+    /// The highest vertex index of all faces, from 1, and its line: a face may precede its vertices.
     highest_index: (usize, usize),
     error: Option<ReadError>,
 }
@@ -152,7 +150,7 @@ impl<'a> Sieve<'a> {
         Some(line.strip_suffix(b"\r").unwrap_or(line))
     }
 
-    /// Fills `statement` with the next vertex or face; leaves it empty at the end of the file.
+    /// Fills `statement` with the next vertex or face; at the end of the file it stays empty.
     fn next_statement(&mut self) -> Result<(), ReadError> {
         self.statement.clear();
         self.consumed = 0;
@@ -179,9 +177,9 @@ impl<'a> Sieve<'a> {
                     None => break,
                 }
             }
-            // Comments are free text in any encoding, so they go before the check.
+            // Comments may be in any encoding, so they are removed before the check.
             let end = whole.iter().position(|&byte| byte == b'#');
-            // A word that is no text is no number, and the message shows it.
+            // A word that is not valid UTF-8 is not a number; the message shows it.
             let text = String::from_utf8_lossy(&whole[..end.unwrap_or(whole.len())]);
             let words = text.split_ascii_whitespace().skip(1);
             return if keyword == Some(b"v") {
@@ -193,7 +191,7 @@ impl<'a> Sieve<'a> {
         Ok(())
     }
 
-    /// A left-out statement may also go on over several lines; a comment may not.
+    /// Skips the further lines of a statement that is left out. A comment cannot continue on another line.
     fn skip_continuation(&mut self, line: &[u8]) {
         let mut continued = !line.trim_ascii_start().starts_with(b"#") && goes_on(line);
         while continued {
@@ -247,7 +245,7 @@ impl<'a> Sieve<'a> {
             let number = match number {
                 1.. => number as usize,
                 0 => return Err(index_error(line, 0, self.vertices)),
-                // From the last vertex so far back.
+                // A negative index counts back from the last vertex.
                 _ => usize::try_from(number.unsigned_abs())
                     .ok()
                     .and_then(|back| (self.vertices + 1).checked_sub(back))

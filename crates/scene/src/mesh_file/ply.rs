@@ -1,8 +1,8 @@
 //! PLY, as text or binary in either byte order: the elements `vertex` and `face` of a file.
 //!
-//! Read here, as messages need lines, and as what a header says of its counts must not be believed:
-//! memory grows with what is read. Other elements and properties (colours, normals) are skipped. The
-//! format tells neither unit nor up axis.
+//! The parser is our own because messages need line numbers and the counts in a header are not trusted: memory grows
+//! only with the data that is read. Other elements and properties (colours, normals) are skipped. The format states
+//! neither unit nor up axis.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ pub(super) const FORMAT: Format = Format {
     read,
 };
 
-/// The only one there has been.
+/// The only version that exists.
 const VERSION: &str = "1.0";
 
 fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
@@ -39,7 +39,7 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
             _ => skip(element, &mut values)?,
         }
     }
-    // Faces may stand before the vertices.
+    // The faces may precede the vertices.
     let mut start = 0;
     for &(end, line) in &faces.ends {
         append(&mut soup, &faces.corners[start..end], line)?;
@@ -53,7 +53,7 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
     Ok(soup)
 }
 
-/// What stands above `end_header`.
+/// The part of the file above `end_header`.
 struct Header {
     encoding: Encoding,
     elements: Vec<Element>,
@@ -75,7 +75,7 @@ struct Element {
 
 struct Property {
     name: String,
-    /// The type of the length, of a list.
+    /// For a list, the type of its length.
     list: Option<Scalar>,
     scalar: Scalar,
 }
@@ -112,15 +112,15 @@ impl Scalar {
 #[derive(Default)]
 struct Faces {
     corners: Vec<f64>,
-    /// Where each face ends in `corners`, and the line it stands in, in a text.
+    /// For each face its end in `corners` and, in a text file, its line.
     ends: Vec<(usize, Option<usize>)>,
 }
 
 impl Header {
-    /// Reads the header; what follows it comes back too.
+    /// Reads the header. Returns it and the bytes after it.
     fn read(bytes: &[u8]) -> Result<(Header, &[u8]), ReadError> {
         let mut rest = bytes;
-        // All lines of a header end as the first one does: what follows may be bytes of any value.
+        // All lines of a header end like the first one. The bytes after the header may have any value.
         let line_end = encoding::line_end(&rest[..rest.len().min("ply\r\n".len())]);
         let (mut kind, mut elements) = (None, Vec::<Element>::new());
         let mut line = 0;
@@ -209,7 +209,7 @@ impl Header {
 struct Values<'a> {
     encoding: Encoding,
     rest: &'a [u8],
-    /// The line that the next word is in, of a text.
+    /// The line of the next word, in a text file.
     line: usize,
 }
 
@@ -394,7 +394,7 @@ fn read_faces(element: &Element, values: &mut Values, faces: &mut Faces) -> Resu
                 }
             })?;
         }
-        // A face of n corners is n - 2 triangles, so there are at most three corners to each.
+        // A face of n corners gives n - 2 triangles, so there are at most three triangle corners for each corner.
         let corners = faces.corners.len();
         if corners > 3 * MAX_TRIANGLES {
             return Err(too_many());
@@ -411,7 +411,7 @@ fn read_faces(element: &Element, values: &mut Values, faces: &mut Faces) -> Resu
 }
 
 fn skip(element: &Element, values: &mut Values) -> Result<(), ReadError> {
-    // Without properties there is nothing to read, however many there are.
+    // Elements without properties have no data, whatever their count.
     if element.properties.is_empty() {
         return Ok(());
     }
@@ -423,7 +423,7 @@ fn skip(element: &Element, values: &mut Values) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// Adds a face, cut into triangles.
+/// Adds a face as triangles.
 fn append(soup: &mut Soup, face: &[f64], line: Option<usize>) -> Result<(), ReadError> {
     let wrong = |what: String| ReadError { line, what };
     let n = face.len();

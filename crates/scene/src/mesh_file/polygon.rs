@@ -1,16 +1,16 @@
-//! Triangles from polygons, convex or not.
+//! Triangulation of polygons, convex or not.
 
 use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
 
-/// The most corners of a polygon that is not convex: cutting ears takes quadratic time.
+/// The most corners of a polygon that is not convex, because ear clipping takes quadratic time.
 pub(super) const MAX_CONCAVE_CORNERS: usize = 1000;
 
 /// Cuts a polygon into `corners.len() - 2` triangles of corner numbers and appends them to `out`.
 ///
-/// Every corner stays a corner of some triangle, also one in the middle of a straight side, so
-/// that neighbouring faces still meet edge to edge. Convex polygons become fans, others lose ear
-/// after ear. A polygon that crosses itself has no right answer: it gets some triangles.
+/// Every corner is a corner of some triangle, even one in the middle of a straight side, so that neighbouring faces
+/// still meet edge to edge. Convex polygons become fans; others are triangulated by ear clipping. A polygon that
+/// crosses itself has no correct triangulation; it gets some triangles.
 ///
 /// Returns false for a polygon that is not convex and has more than [`MAX_CONCAVE_CORNERS`].
 pub(super) fn triangulate(corners: &[DVec3], out: &mut Vec<[usize; 3]>) -> bool {
@@ -33,10 +33,10 @@ pub(super) fn triangulate(corners: &[DVec3], out: &mut Vec<[usize; 3]>) -> bool 
     true
 }
 
-/// Cuts a polygon with holes into triangles of corner numbers. `rings` says how many corners the
-/// outline and each hole have, in whichever direction they run.
+/// Cuts a polygon with holes into triangles of corner numbers. `rings` has the numbers of corners of the outline and of
+/// each hole, in either orientation.
 ///
-/// Each hole is tied to what is around it by a bridge, there and back, that crosses no side.
+/// Two coincident sides (a bridge) connect each hole with the outline; they cross no other side.
 pub(super) fn pierced(corners: &[DVec3], rings: &[usize]) -> Result<Vec<[usize; 3]>, String> {
     if corners.len() + 2 * (rings.len() - 1) > MAX_CONCAVE_CORNERS {
         return Err(format!(
@@ -71,8 +71,8 @@ pub(super) fn pierced(corners: &[DVec3], rings: &[usize]) -> Result<Vec<[usize; 
     Ok(cut.into_iter().map(|t| t.map(|at| outline[at])).collect())
 }
 
-/// The shortest way from the outline to a hole that crosses no side: the place in the outline, the
-/// hole, and the place in it.
+/// The shortest segment from the outline to a hole that crosses no side: its place in the outline, the hole, and its
+/// place in the hole.
 fn bridge(
     flat: &[DVec2],
     outline: &[usize],
@@ -104,7 +104,7 @@ fn bridge(
         .map(|(_, place, hole, corner)| (place, hole, corner))
 }
 
-/// Whether the way from a corner to a point starts on the inner side of that corner.
+/// Whether the segment from a corner to a point starts on the inner side of that corner.
 fn is_within(before: DVec2, corner: DVec2, after: DVec2, point: DVec2) -> bool {
     let (left_of_in, left_of_out) = (turn(before, corner, point), turn(corner, after, point));
     if turn(before, corner, after) > 0.0 {
@@ -114,7 +114,7 @@ fn is_within(before: DVec2, corner: DVec2, after: DVec2, point: DVec2) -> bool {
     }
 }
 
-/// Whether a bridge meets a side other than at a common end.
+/// Whether a bridge meets a side elsewhere than at a common end.
 fn crosses(from: DVec2, to: DVec2, a: DVec2, b: DVec2) -> bool {
     let on = |p: DVec2| {
         p != from
@@ -138,7 +138,7 @@ fn crosses(from: DVec2, to: DVec2, a: DVec2, b: DVec2) -> bool {
         || apart(turn(from, to, a), turn(from, to, b)) && apart(turn(a, b, from), turn(a, b, to))
 }
 
-/// Twice the area of a ring, positive where it runs counter-clockwise.
+/// Twice the area of a ring, positive if it is counter-clockwise.
 fn doubled_area(flat: &[DVec2], ring: &[usize]) -> f64 {
     let origin = flat[ring[0]];
     let pairs = ring.windows(2);
@@ -147,14 +147,14 @@ fn doubled_area(flat: &[DVec2], ring: &[usize]) -> f64 {
         .sum()
 }
 
-/// The polygon seen along the axis closest to its normal (Newell's method), counter-clockwise.
+/// The polygon projected along the axis closest to its normal (Newell's method), counter-clockwise.
 ///
-/// Dropping a coordinate is exact, so the turns below have the signs of the file's own numbers.
+/// Dropping a coordinate is exact, so the orientations below are exact for the file's own numbers.
 fn projected(corners: &[DVec3]) -> Vec<DVec2> {
     projected_by(corners, corners)
 }
 
-/// Points seen as a polygon is.
+/// Projects `points` along the axis of `polygon`.
 fn projected_by(polygon: &[DVec3], points: &[DVec3]) -> Vec<DVec2> {
     let (corners, n) = (polygon, polygon.len());
     let mut normal = DVec3::ZERO;
@@ -181,13 +181,13 @@ fn projected_by(polygon: &[DVec3], points: &[DVec3]) -> Vec<DVec2> {
         .collect()
 }
 
-/// Positive where the way from `a` over `b` to `c` turns left; the sign is exact.
+/// Positive if the path from `a` over `b` to `c` turns left; the sign is exact.
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     orient2d(coord(a), coord(b), coord(c))
 }
 
-/// Ear cutting: among the ears, the one with the shortest new side goes first.
+/// Ear clipping: of all ears, the one with the shortest new side is cut first.
 fn cut_ears(flat: &[DVec2], out: &mut Vec<[usize; 3]>) {
     let mut left: Vec<usize> = (0..flat.len()).collect();
     let mut ears: Vec<Option<f64>> = (0..left.len()).map(|i| ear(flat, &left, i)).collect();
@@ -196,7 +196,7 @@ fn cut_ears(flat: &[DVec2], out: &mut Vec<[usize; 3]>) {
         let shortest = (0..n)
             .filter_map(|i| ears[i].map(|length| (i, length)))
             .min_by(|a, b| a.1.total_cmp(&b.1));
-        // No ear is left only where the polygon touches or crosses itself.
+        // There is always an ear, unless the polygon touches or crosses itself.
         let i = shortest.map_or(0, |(i, _)| i);
         out.push([left[(i + n - 1) % n], left[i], left[(i + 1) % n]]);
         left.remove(i);
@@ -209,8 +209,8 @@ fn cut_ears(flat: &[DVec2], out: &mut Vec<[usize; 3]>) {
     out.push([left[0], left[1], left[2]]);
 }
 
-/// The squared length of the side that cutting corner `i` off would make, if it is an ear: a left
-/// turn whose closed triangle holds no other corner.
+/// The squared length of the new side after corner `i` is cut off, if the corner is an ear: a left turn whose closed
+/// triangle contains no other corner.
 fn ear(flat: &[DVec2], left: &[usize], i: usize) -> Option<f64> {
     let n = left.len();
     let at = |k: usize| flat[left[k % n]];
@@ -218,7 +218,7 @@ fn ear(flat: &[DVec2], left: &[usize], i: usize) -> Option<f64> {
     if turn(a, b, c) <= 0.0 {
         return None;
     }
-    // A corner at the same place as a, b or c is where a bridge to a hole returns.
+    // The bridge to a hole visits corners twice: a corner at the position of a, b or c does not block.
     let blocked = left.iter().map(|&k| flat[k]).any(|p| {
         p != a
             && p != b

@@ -1,4 +1,4 @@
-//! What is to be known of a mesh that has been loaded.
+//! The figures of a loaded mesh.
 
 use sim_core::Mesh;
 
@@ -13,38 +13,38 @@ pub struct MeshReport {
     pub triangles: usize,
     /// Vertices merged into an earlier one at the same position.
     pub welded_vertices: usize,
-    /// Triangles left out as they have no area.
+    /// Triangles left out because they have no area.
     pub degenerate_triangles: usize,
-    /// Triangles left out as an earlier one has the same corners.
+    /// Triangles left out because an earlier one has the same corners.
     pub duplicate_triangles: usize,
-    /// Vertices left out as no triangle uses them.
+    /// Vertices left out because no triangle uses them.
     pub unreferenced_vertices: usize,
-    /// Triangles turned over, as a closed mesh was wound inward: all or none.
+    /// Triangles flipped because a closed mesh was oriented inwards: all or none.
     pub flipped_triangles: usize,
-    /// Instances left out as the file scales them to nothing.
+    /// Instances left out because the file scales them to zero.
     pub flat_instances: usize,
     /// Edges of one triangle only.
     pub boundary_edges: usize,
     /// Edges of more than two triangles.
     pub non_manifold_edges: usize,
-    /// Pieces that hang together by vertices.
+    /// Connected components, by common vertices.
     pub components: usize,
     /// Whether every edge belongs to exactly two triangles.
     pub closed: bool,
-    /// Whether triangles with a common edge run along it in opposite directions.
+    /// Whether the two triangles at each common edge traverse it in opposite directions.
     pub oriented: bool,
-    /// The enclosed volume, m³, of a closed and oriented mesh.
+    /// The enclosed volume of a closed and oriented mesh, m³.
     pub volume: Option<f64>,
     /// Size along x, y and z, m.
     pub extent: [f64; 3],
-    /// Metres in a unit of the file, where it says so.
+    /// The unit of the file in metres, if the file states it.
     pub unit: Option<f64>,
-    /// The axis that is up in the file, where it says so.
+    /// The up axis of the file, if the file states it.
     pub up_axis: Option<char>,
 }
 
 impl LoadedMesh {
-    /// The figures of the mesh and of how it was read.
+    /// The figures of the mesh and of its repairs.
     pub fn report(&self) -> MeshReport {
         let (mesh, repairs) = (&self.mesh, &self.repairs);
         let mut triangles_at = vec![0_u32; mesh.edges().len()];
@@ -78,7 +78,7 @@ impl LoadedMesh {
     }
 }
 
-/// How many pieces there are: one for each vertex, less one for each edge that joins two.
+/// The number of components: one for each vertex, minus one for each edge that joins two components.
 fn components(mesh: &Mesh) -> usize {
     let mut parent: Vec<u32> = (0..mesh.vertices().len() as u32).collect();
     let mut pieces = parent.len();
@@ -94,7 +94,7 @@ fn components(mesh: &Mesh) -> usize {
 
 fn root(parent: &mut [u32], mut vertex: u32) -> u32 {
     while parent[vertex as usize] != vertex {
-        // Halves the way for who comes next.
+        // Path halving, which shortens later searches.
         let above = parent[parent[vertex as usize] as usize];
         parent[vertex as usize] = above;
         vertex = above;

@@ -1,15 +1,14 @@
-//! What the readers of mesh files hand over: triangles as written, not yet a mesh.
+//! The output of the readers of mesh files: triangles as written, not yet a mesh.
 
 use glam::Vec3;
 
-/// The most triangles one file may expand to, so that instances of instances cannot fill the
-/// memory.
+/// The most triangles to which one file may expand. This limits the memory that instances of instances can use.
 pub(super) const MAX_TRIANGLES: usize = 10_000_000;
 
-/// The most vertices one file may expand to.
+/// The most vertices to which one file may expand.
 pub(super) const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
 
-/// Triangles over shared vertices, in range and finite, but neither welded nor oriented.
+/// Triangles over shared vertices. Indices are in range and positions finite, but nothing is welded or oriented.
 #[derive(Debug, Default)]
 pub struct Soup {
     /// Vertex positions in metres, y up.
@@ -18,20 +17,20 @@ pub struct Soup {
     pub triangles: Vec<[u32; 3]>,
     /// Vertices of the file that no face uses and that `vertices` leaves out.
     pub unreferenced: usize,
-    /// Metres in a unit of the file, where it says so.
+    /// The unit of the file in metres, if the file states it.
     pub unit: Option<f64>,
-    /// The axis that is up in the file, where it says so.
+    /// The up axis of the file, if the file states it.
     pub up_axis: Option<char>,
-    /// Instances that the file scales to nothing and that are left out.
+    /// The number of instances that were left out because the file scales them to zero.
     pub flat_instances: usize,
 }
 
-/// Why a mesh file cannot be read, without its path.
+/// The reason why a mesh file cannot be read, without its path.
 #[derive(Debug)]
 pub struct ReadError {
-    /// The line of the file, from 1, where there is one to blame.
+    /// The line of the error, from 1, if it has one.
     pub line: Option<usize>,
-    /// What is wrong and what to do about it.
+    /// The error and its remedy.
     pub what: String,
 }
 

@@ -1,7 +1,7 @@
-//! STL, as text or binary: triangles without any vertex in common.
+//! STL, as text or binary: triangles without shared vertices.
 //!
-//! Read here, as messages need lines and a binary file must not be believed how much it holds. Normals
-//! are not read: the order of the corners says the same. The format tells neither unit nor up axis.
+//! The parser is our own because messages need line numbers and the count in a binary file is not trusted. Normals are
+//! not read, because the order of the corners determines them. The format states neither unit nor up axis.
 
 use glam::Vec3;
 
@@ -20,12 +20,12 @@ pub(super) const FORMAT: Format = Format {
 /// Bytes before the count of triangles in a binary file.
 const HEADER: usize = 80;
 
-/// Bytes of a triangle in a binary file: normal, three corners, and two for colours and the like.
+/// Bytes of a triangle in a binary file: the normal, three corners, and two bytes for attributes such as colour.
 const TRIANGLE: usize = 50;
 
 fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
     let soup = match declared(bytes) {
-        // Some binary files start with `solid` too, but only these have the length that they say.
+        // Some binary files start with `solid` too, but only binary files have the length that their count gives.
         Some(count) if bytes.len() == HEADER + 4 + TRIANGLE * count => binary(bytes, count)?,
         _ if looks_like_text(bytes) => text(bytes)?,
         Some(count) => binary(bytes, count)?,
@@ -42,7 +42,7 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
     Ok(soup)
 }
 
-/// How many triangles a binary file says it has.
+/// The number of triangles that a binary file declares.
 fn declared(bytes: &[u8]) -> Option<usize> {
     let count = bytes.get(HEADER..)?.first_chunk::<4>()?;
     usize::try_from(u32::from_le_bytes(*count)).ok()
@@ -64,7 +64,7 @@ fn binary(bytes: &[u8], count: usize) -> Result<Soup, ReadError> {
             "says that it has {count} triangles and holds {held}: it is cut off, or no STL file"
         )));
     }
-    // Some exporters add bytes of their own at the end.
+    // Some exporters append bytes of their own.
     let mut soup = Soup::default();
     for (number, triangle) in triangles.chunks_exact(TRIANGLE).take(count).enumerate() {
         let mut numbers = triangle[12..48].as_chunks::<4>().0.iter();
@@ -172,7 +172,7 @@ fn vertex(words: &mut Words) -> Result<Vec3, ReadError> {
     Ok(corner)
 }
 
-/// The words of a text: any blanks may stand between them, ends of lines too, of every system.
+/// The words of a text, separated by any blanks and line ends of any system.
 struct Words<'a> {
     rest: &'a [u8],
     /// The line that the last word is in, from 1.
@@ -190,7 +190,7 @@ impl<'a> Words<'a> {
         (length > 0).then_some(word)
     }
 
-    /// The name of a solid goes to the end of its line, or to its first facet.
+    /// Skips the name of a solid: it ends at the end of its line or at the first facet.
     fn skip_name(&mut self) {
         loop {
             let (after, line) = (self.rest, self.line);
@@ -206,7 +206,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Normals are not read, so that they may be missing, or no numbers.
+    /// Skips the normal. It may be absent or not numeric, because it is not read.
     fn skip_normal(&mut self) -> Result<(), ReadError> {
         let begins_loop = |word: &[u8]| word.eq_ignore_ascii_case(b"outer");
         if self.peek().is_none_or(begins_loop) {

@@ -1,4 +1,4 @@
-//! A `[[body]]` to the bodies that it stands for.
+//! Converts a `[[body]]` table to its bodies.
 
 use glam::DVec3;
 use sim_core::MeshError;
@@ -15,7 +15,7 @@ use crate::scene::{SceneBody, SceneShape, SceneTurn};
 use crate::shown;
 use crate::world::{angular_momentum, baked_field};
 
-/// The bodies of a table: one, or its copies, which keep clear of those before it.
+/// The bodies of a table: one, or its copies, which do not overlap the bodies before them.
 pub(super) fn parse(
     source: &Source,
     text: Body,
@@ -49,7 +49,7 @@ pub(super) fn parse(
         }
     }
     if let Some(mesh) = body.mesh() {
-        // As its world will have it: here its line is known.
+        // The mesh is transformed here as the world will do it, because errors can name the line here.
         obstacles.baked.turned(mesh, &body).map_err(|error| {
             let field = baked_field(&error);
             let span = scale_span.or(rotation_span).unwrap_or(text.name.span());
@@ -124,7 +124,7 @@ fn group_names(
     }
 }
 
-/// The fields of a table about turning.
+/// The fields of a table that concern rotation.
 type TurnText = (
     Option<Spanned<bool>>,
     Option<Spanned<Triple>>,
@@ -132,7 +132,7 @@ type TurnText = (
     Option<Spanned<Triple>>,
 );
 
-/// How a body turns, if it does, once all else about it is known.
+/// The rotational properties of a body, if it has any, computed after all its other fields.
 fn turn(
     place: &Place,
     (turns, spin, torque, inertia): TurnText,
@@ -160,7 +160,7 @@ fn turn(
         torque: place.vector("torque", torque)?,
         inertia: inertia.map(|value| value.get_ref().0),
     };
-    // As its world will have it: here its line is known.
+    // The inertia is computed here as the world will do it, because errors can name the line here.
     let turning = SceneBody {
         turn: Some(turn),
         ..body.clone()
@@ -184,7 +184,7 @@ fn turn(
     }
 }
 
-/// Why a mesh cannot be turned and scaled so.
+/// The reason why a mesh cannot be rotated and scaled, as text.
 fn baked_what(error: &MeshError, scale: DVec3) -> String {
     let [x, y, z] = scale.to_array().map(shown::number);
     match error {
@@ -198,7 +198,7 @@ fn baked_what(error: &MeshError, scale: DVec3) -> String {
     }
 }
 
-/// The one shape of a table.
+/// The shape of a table, which must have exactly one.
 fn shape(place: &Place, text: &Body, meshes: &mut MeshSource) -> Result<SceneShape, SceneError> {
     match (&text.mesh, &text.sphere, &text.half_space) {
         (Some(name), None, None) => {
@@ -243,7 +243,7 @@ fn second_shape<T>(place: &Place, value: &Spanned<T>, field: &str) -> SceneError
     place.error(value.span(), field, what)
 }
 
-/// Refuses fields that a body of that shape does not have, rather than to ignore them.
+/// Refuses fields that do not apply to a body of that shape.
 fn refuse_senseless(place: &Place, text: &Body, shape: &SceneShape) -> Result<(), SceneError> {
     let wrong = |span, field, what: String| Err(place.error(span, field, what));
     let shape = match shape {

@@ -1,4 +1,4 @@
-//! `copies`: many bodies from one table, at random places where none touches another.
+//! `copies`: many bodies from one table, at random positions without overlap.
 
 use std::ops::Range;
 
@@ -15,14 +15,14 @@ use crate::world::{Baked, baked_field};
 
 /// The most copies of one body.
 const MOST: usize = 10_000;
-/// Places tried for a copy before the box counts as full.
+/// The number of random positions tried for a copy before the box counts as full.
 const TRIES: usize = 10_000;
 
-/// What a table says of its copies.
+/// The fields of a table that concern copies.
 pub(super) struct Copies {
     count: Spanned<usize>,
     speed_span: Range<usize>,
-    /// Least and greatest corner of the box that they are in.
+    /// The least and greatest corner of the box that contains the copies.
     inside: (DVec3, DVec3),
     speed: f64,
     seed: u64,
@@ -92,8 +92,8 @@ fn inside(place: &Place, corners: &Spanned<Vec<Triple>>) -> Result<(DVec3, DVec3
 }
 
 impl Copies {
-    /// The copies of `body`, `cube 1`, `cube 2` and so on: all of each is in the box and apart from
-    /// each other and from the bodies before. The same seed gives the same places everywhere.
+    /// The copies of `body`, named `cube 1`, `cube 2` and so on. Each lies within the box and is apart from the other
+    /// copies and from the bodies before. The same seed gives the same positions on every platform.
     pub(super) fn place(
         &self,
         place: &Place,
@@ -159,24 +159,24 @@ impl Copies {
     }
 }
 
-/// What stands in the way of copies, of all bodies of a file so far.
+/// The obstacles for copies: all bodies of a file so far.
 #[derive(Default)]
 pub(super) struct Obstacles {
     all: Vec<Obstacle>,
     pub(super) baked: Baked,
 }
 
-/// Where no copy can be.
+/// A region in which no copy may be.
 #[derive(Clone, Copy)]
 enum Obstacle {
-    /// A body in its box.
+    /// The bounding box of a body.
     Box { min: DVec3, max: DVec3 },
-    /// Behind a plane.
+    /// The half-space behind a plane.
     HalfSpace { point: DVec3, normal: DVec3 },
 }
 
 impl Obstacles {
-    /// Notes the bodies after those that are noted.
+    /// Adds obstacles for the bodies that have none yet.
     fn note(&mut self, bodies: &[SceneBody]) -> Result<(), (&'static str, String)> {
         for body in &bodies[self.all.len()..] {
             let obstacle = self.of(body)?;
@@ -185,7 +185,7 @@ impl Obstacles {
         Ok(())
     }
 
-    /// Of a body, or the field that makes it impossible and why.
+    /// The obstacle of a body, or the field that makes it invalid and the reason.
     fn of(&mut self, body: &SceneBody) -> Result<Obstacle, (&'static str, String)> {
         let (min, max) = match &body.shape {
             SceneShape::Mesh(mesh) => {
@@ -209,30 +209,31 @@ impl Obstacles {
     }
 }
 
-/// Cells that an obstacle may be listed in.
+/// The most cells in which an obstacle is listed.
 const LISTED: usize = 64;
 
-/// Obstacles by where they are, in cells of the box that copies are in. Cells grow with coordinates,
-/// however these are rounded, so that two boxes that share a point share a cell.
+/// Obstacles by position, in a grid over the box of the copies. The cell index grows monotonically with the coordinate,
+/// however coordinates are rounded, so two boxes that share a point share a cell.
 struct Taken {
     region: (DVec3, DVec3),
-    /// Cells along each axis, and how many there are in a metre.
+    /// Cells along each axis, and cells per metre.
     cells: [usize; 3],
     density: DVec3,
     in_cell: Vec<Vec<Obstacle>>,
-    /// What is in too many cells, or behind a plane.
+    /// Obstacles that cover too many cells, and half-spaces.
     everywhere: Vec<Obstacle>,
 }
 
 impl Taken {
-    /// None yet, in a region for so many copies of a size: about as many cells, none smaller than a copy.
+    /// An empty grid over a region for a number of copies of a size: about as many cells as copies, none smaller than a
+    /// copy.
     fn new((min, max): (DVec3, DVec3), size: DVec3, copies: usize) -> Taken {
         let most = (copies as f64).cbrt().ceil();
-        // More than copies are moved by rounding.
+        // Larger than the rounding errors of the positions of copies.
         let margin = 16.0 * f64::EPSILON * (min.abs() + max.abs());
         let (min, max) = (min - margin, max + margin);
         let cells = ((max - min) / size).clamp(DVec3::ONE, DVec3::splat(most));
-        // NaN, of no size in no room, counts as 1.
+        // NaN, from a copy of no size in a box of no size, counts as 1.
         let cells = cells.to_array().map(|cells| cells.max(1.0) as usize);
         let density = DVec3::from(cells.map(|cells| cells as f64)) / (max - min);
         Taken {
@@ -244,11 +245,11 @@ impl Taken {
         }
     }
 
-    /// The cells that a box reaches into, from the first to the last of each axis.
+    /// The range of cells that a box covers along each axis.
     fn cells(&self, min: DVec3, max: DVec3) -> [(usize, usize); 3] {
         let place = |at: DVec3, axis: usize| {
             let place = (at[axis] - self.region.0[axis]) * self.density[axis];
-            // A conversion takes what is out of range to its end.
+            // The conversion saturates out-of-range values.
             (place as usize).min(self.cells[axis] - 1)
         };
         [0, 1, 2].map(|axis| (place(min, axis), place(max, axis)))
@@ -275,7 +276,7 @@ impl Taken {
         }
     }
 
-    /// Whether a box is clear of all.
+    /// Whether a box is clear of all obstacles.
     fn is_free(&self, min: DVec3, max: DVec3) -> bool {
         let is_apart = |other: &Obstacle| other.is_apart(min, max);
         self.everywhere.iter().all(is_apart)
@@ -284,7 +285,7 @@ impl Taken {
     }
 }
 
-/// The indices of cells in ranges of each axis, of so many along each.
+/// The indices of the cells in ranges along each axis, in a grid with these numbers of cells.
 fn indices([_, ny, nz]: [usize; 3], [x, y, z]: [(usize, usize); 3]) -> impl Iterator<Item = usize> {
     let range = |(first, last): (usize, usize)| first..=last;
     range(x)
@@ -292,7 +293,7 @@ fn indices([_, ny, nz]: [usize; 3], [x, y, z]: [(usize, usize); 3]) -> impl Iter
 }
 
 impl Obstacle {
-    /// Whether a box is clear of it.
+    /// Whether a box is clear of this obstacle.
     fn is_apart(&self, least: DVec3, greatest: DVec3) -> bool {
         match *self {
             Obstacle::Box { min, max } => max.cmplt(least).any() || greatest.cmplt(min).any(),
@@ -304,8 +305,8 @@ impl Obstacle {
     }
 }
 
-/// SplitMix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators), and
-/// nothing but exact operations after it: the same numbers on every platform.
+/// SplitMix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators). Only exact operations follow
+/// it, so the numbers are the same on every platform.
 struct Random(u64);
 
 impl Random {
@@ -317,12 +318,12 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// From 0 to below 1.
+    /// A number in `[0, 1)`.
     fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A direction, all alike: that of the first point of a cube that is in its ball.
+    /// A uniformly distributed direction: of the first random point of a cube that lies in the inscribed ball.
     fn direction(&mut self) -> DVec3 {
         loop {
             let v = DVec3::from([(); 3].map(|()| 2.0 * self.unit() - 1.0));

@@ -12,7 +12,7 @@ use super::parse::{Place, Source, Subject, fields};
 use crate::error::SceneError;
 use crate::shown;
 
-/// The kinds of forces that a file can hold.
+/// The kinds of forces that a file can contain.
 const KINDS: [&str; 8] = [
     "gravity",
     "linear-drag",
@@ -166,7 +166,7 @@ pub(super) fn parse(
         }
         "spring" => {
             let text: Spring = source.read(whole, place.subject)?;
-            // A fixed array would drop a third name without a word.
+            // A fixed array would drop a third name silently.
             let [first, second] = &text.bodies[..] else {
                 let what = format!("must be the names of two bodies, has {}", text.bodies.len());
                 return Err(place.error(at("bodies"), "bodies", what));
@@ -224,7 +224,7 @@ pub(super) fn parse(
     Ok(force)
 }
 
-/// A force in words, unless its law is not data.
+/// The text of a force; `None` if its law is code.
 pub(super) fn write(force: &Force, name: impl Fn(usize) -> String) -> Option<ForceText> {
     let kind = force.kind().to_owned();
     Some(match *force {

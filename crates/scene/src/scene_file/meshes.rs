@@ -1,4 +1,4 @@
-//! Where the meshes of a scene come from.
+//! The sources of the meshes of a scene.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use crate::mesh_file::BUILTIN_MESHES;
 use crate::{MeshRef, shown};
 
-/// Finds meshes by the names in a scene file, each once.
+/// Finds meshes by the names in a scene file, and loads each once.
 pub(crate) struct MeshSource {
     folder: Option<PathBuf>,
     known: HashMap<String, MeshRef>,
 }
 
 impl MeshSource {
-    /// Built-in meshes, for scenes that open no file.
+    /// Built-in meshes only; no file is opened.
     pub(crate) fn builtin_only() -> MeshSource {
         MeshSource {
             folder: None,
@@ -29,7 +29,7 @@ impl MeshSource {
         }
     }
 
-    /// The mesh of that name, or why there is none.
+    /// The mesh of that name, or the reason why there is none.
     pub(super) fn get(&mut self, name: &str) -> Result<MeshRef, String> {
         if let Some(known) = self.known.get(name) {
             return Ok(known.clone());

@@ -1,4 +1,4 @@
-//! Numbers of a scene file: whole ones may be written without a point.
+//! Numbers of a scene file: whole numbers may be written without a decimal point.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! TOML text to a scene, with errors that name line, body and field.
+//! Parses TOML text to a scene, with errors that name line, body and field.
 
 use std::collections::HashMap;
 use std::fmt::Display;
@@ -21,17 +21,17 @@ use crate::scene::Scene;
 use crate::shown;
 use crate::world::{MOST_GROUPS, TOO_MANY_GROUPS, note_groups};
 
-/// The ways to search for collisions, by the names in scene files.
+/// The collision modes, by their names in scene files.
 const COLLISIONS: [(&str, Collision); 3] = [
     ("naive", Collision::Naive),
     ("bvh", Collision::Bvh),
     ("continuous", Collision::Continuous),
 ];
 
-/// The largest number of a body, as a [`World`](sim_core::World) has it.
+/// The largest absolute value of a number of a body, as in a [`World`](sim_core::World).
 pub(super) const LARGEST: f64 = 1e100;
 
-/// The name of a way to search for collisions.
+/// The name of a collision mode.
 pub(super) fn collision_name(collision: Collision) -> &'static str {
     let mut known = COLLISIONS.iter();
     known
@@ -104,16 +104,16 @@ pub(crate) fn parse(text: &str, file: &Path, mut meshes: MeshSource) -> Result<S
     Ok(scene)
 }
 
-/// The text, to tell where an error is.
+/// The text of the file, in which errors are located.
 pub(super) struct Source<'a> {
     text: &'a str,
     file: &'a Path,
 }
 
-/// What a value belongs to.
+/// The part of a file to which a value belongs.
 #[derive(Clone, Copy)]
 pub(super) enum Subject<'a> {
-    /// What stands above the bodies.
+    /// The fields above the bodies.
     Scene,
     /// The body of that name.
     Body(&'a str),
@@ -138,7 +138,7 @@ impl Subject<'_> {
     }
 }
 
-/// The fields of a table, with the text from each name to the end of its value.
+/// The fields of a table: names, and the text ranges from each name to the end of its value.
 pub(super) type Fields = Vec<(String, Range<usize>)>;
 
 pub(super) fn fields(table: &DeTable<'_>) -> Fields {
@@ -156,7 +156,7 @@ impl Source<'_> {
         1 + before.iter().filter(|&&byte| byte == b'\n').count()
     }
 
-    /// Reads a table by serde, which knows the fields and their types.
+    /// Deserializes a table; serde has the fields and their types.
     pub(super) fn read<'t, T: Deserialize<'t>>(
         &self,
         table: Spanned<DeValue<'t>>,
@@ -176,7 +176,7 @@ impl Source<'_> {
         let start = error.span().map(|span| span.start);
         let field = start.and_then(|start| fields.iter().find(|(_, span)| span.contains(&start)));
         let mut what = error.message().trim_end().replace('\n', ", ");
-        // The parser points at the key, but does not say it.
+        // The parser's error points to the key but does not name it.
         if let Some(key) = error.span().and_then(|span| self.text.get(span))
             && what == "duplicate key"
         {
@@ -185,7 +185,7 @@ impl Source<'_> {
         if what == "floating-point number overflowed" {
             what += ": give one within ±1e100";
         }
-        // Types of Rust say little to who writes a scene.
+        // The names of Rust types mean little to the authors of scenes.
         for whole in ["expected usize", "expected u64"] {
             what = what.replace(whole, "expected a whole number from 0");
         }
@@ -199,7 +199,7 @@ impl Source<'_> {
     }
 }
 
-/// A place for errors.
+/// The context of errors.
 pub(super) struct Place<'a> {
     source: &'a Source<'a>,
     pub(super) subject: Subject<'a>,
@@ -220,7 +220,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Three numbers as a [`World`](sim_core::World) has them; zeros where there is no field.
+    /// Three numbers in the range of a [`World`](sim_core::World); zeros if the field is absent.
     pub(super) fn vector(
         &self,
         field: &str,
@@ -230,7 +230,7 @@ impl<'a> Place<'a> {
             return Ok(DVec3::ZERO);
         };
         let Triple(v) = *value.get_ref();
-        // NaN is not below anything.
+        // The test is false for NaN, so NaN is refused.
         if !v.abs().cmple(DVec3::splat(LARGEST)).all() {
             let [x, y, z] = v.to_array().map(shown::number);
             let what = format!("must be three numbers within ±1e100, is [{x}, {y}, {z}]");

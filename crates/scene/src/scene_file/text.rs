@@ -1,4 +1,4 @@
-//! The fields of a scene file, as written, with their places in the text.
+//! The fields of a scene file, as written, with their positions in the text.
 
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
@@ -6,7 +6,7 @@ use toml::Spanned;
 use super::force::ForceText;
 use super::number::{Number, Scale, Triple};
 
-/// What stands above the bodies.
+/// The fields above the bodies.
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Header {

@@ -1,4 +1,4 @@
-//! A scene to TOML text.
+//! Writes a scene as TOML text.
 
 use glam::DVec3;
 use sim_core::Settings;
@@ -13,7 +13,7 @@ use crate::scene::{Scene, SceneBody, SceneShape};
 
 /// The scene file of a scene.
 pub(crate) fn write(scene: &Scene) -> String {
-    // The rate is the friendlier number, where it says the same.
+    // The rate is easier to read, so it is written if it gives exactly the same step.
     let rate = (1.0 / scene.dt).round();
     let has_rate = 1.0 / rate == scene.dt;
     let header = Header {
@@ -89,7 +89,7 @@ fn names(groups: &[String]) -> Vec<Spanned<String>> {
     groups.iter().cloned().map(spanned).collect()
 }
 
-/// A value that stands in no text yet.
+/// A value without a position in a text.
 fn spanned<T>(value: T) -> Spanned<T> {
     Spanned::new(0..0, value)
 }

@@ -24,7 +24,7 @@ pub(super) fn encode(film: &Film) -> Result<Vec<u8>, String> {
         if n > 0 {
             let (width, height) = change.pixels.dimensions();
             let [x, y] = change.at;
-            // First to the corner, where every size fits.
+            // The position is reset first, because every size is valid at the corner.
             writer.reset_frame_position().map_err(told)?;
             writer.set_frame_dimension(width, height).map_err(told)?;
             writer.set_frame_position(x, y).map_err(told)?;

@@ -1,4 +1,4 @@
-//! `cowbell gif`: a scene as a moving picture, without a window.
+//! `cowbell gif`: draws a scene as a moving picture, without a window.
 
 use std::time::Duration;
 
@@ -13,8 +13,7 @@ use crate::session::TICKS;
 use crate::shot::{self, Studio};
 use crate::stopwatch::Stopwatch;
 
-/// Runs a scene, draws its frames and writes the file, as far as it comes before an interrupt; says what was
-/// written.
+/// Runs a scene, draws its frames and writes the file, up to an interrupt. Returns a description of the file.
 pub fn write(scene: Scene, args: &FilmArgs, interrupt: &Interrupt) -> Result<String, Failure> {
     let form = Form::of(&args.output).ok_or_else(|| {
         let path = shown::path(&args.output);
@@ -45,7 +44,7 @@ pub fn write(scene: Scene, args: &FilmArgs, interrupt: &Interrupt) -> Result<Str
             progress.end();
             return Err(failure);
         }
-        // A film has one picture at least.
+        // A film needs at least one picture.
         if interrupt.came() && !film.is_empty() {
             break;
         }
@@ -66,7 +65,7 @@ pub fn write(scene: Scene, args: &FilmArgs, interrupt: &Interrupt) -> Result<Str
     ))
 }
 
-/// Takes the steps up to a simulated time, s, and shows that instant; after an interrupt, the one it has come to.
+/// Takes the steps up to a simulated time, s, and shows that instant. An interrupt ends the steps earlier.
 fn run_to(session: &mut Session, time: f64, interrupt: &Interrupt) -> Result<(), Failure> {
     let stopwatch = Stopwatch::start();
     while session.world().time() < time && !interrupt.came() {

@@ -1,4 +1,4 @@
-//! A film as a GIF: one palette for all frames, so that a colour stays what it is from frame to frame.
+//! Writes a film as a GIF: one palette for all frames, so that colours are equal in all frames.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -7,9 +7,9 @@ use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
 use super::Film;
 
-/// Colours of the palette; the last of 256 is for what stays.
+/// The number of colours of the palette; the last of 256 entries marks unchanged pixels.
 const COLOURS: usize = 255;
-/// Colours that differ by less, in each part, are counted as one when the palette is chosen.
+/// Colours whose components all differ by less than this count as one when the palette is chosen.
 const APART: u8 = 4;
 
 type Colour = [u8; 3];
@@ -86,7 +86,7 @@ impl Palette {
         }
     }
 
-    /// All 256 colours, as a GIF has them.
+    /// All 256 colours, in the format of a GIF.
     fn table(&self) -> Vec<u8> {
         let mut table: Vec<u8> = self.colours.iter().flatten().copied().collect();
         table.resize(3 * (COLOURS + 1), 0);
@@ -113,20 +113,20 @@ impl Palette {
 #[derive(Clone, Copy, Default)]
 struct Alike {
     count: u64,
-    /// Of each part.
+    /// The sums of the components.
     sum: [u64; 3],
 }
 
 impl Alike {
     fn mean(&self) -> Colour {
-        // No greater than the greatest part.
+        // The mean of a component is no greater than its maximum, so it fits.
         self.sum.map(|sum| (sum / self.count.max(1)) as u8)
     }
 }
 
-/// A palette for more colours than fit into it: the space of colours is cut in two where it is widest,
-/// again and again, and a little rather where there are many pixels. So a rare colour, which mostly is a
-/// mark that is to be seen, has a place of its own as long as nothing is near it.
+/// Chooses a palette for more colours than fit into it. The colour space is repeatedly split where it is widest, with a
+/// small preference for many pixels. So a rare colour, mostly a mark that must be visible, has an entry of its own as
+/// long as no other colour is near it.
 fn chosen(all: Vec<Alike>) -> Vec<Colour> {
     let mut cells = vec![Cell::of(all)];
     while cells.len() < COLOURS {
@@ -155,13 +155,13 @@ fn chosen(all: Vec<Alike>) -> Vec<Colour> {
     cells.iter().map(mean).collect()
 }
 
-/// A part of the space of colours.
+/// A region of the colour space.
 struct Cell {
     alike: Vec<Alike>,
-    /// Along which part of a colour it is widest, and the middle there.
+    /// The component along which the region is widest, and the middle there.
     axis: usize,
     middle: u8,
-    /// How much it is worth to cut it; 0 where there is one colour.
+    /// The benefit of splitting the region; 0 for a single colour.
     need: f64,
 }
 

@@ -1,5 +1,5 @@
-//! Moving pictures as files: frames in, of each only what has changed is kept, and a GIF or an
-//! animated PNG comes out.
+//! Moving pictures as files. Of each frame only its changes are stored, and the film is written as a GIF or an animated
+//! PNG.
 
 mod apng;
 mod command;
@@ -14,7 +14,7 @@ pub use shooting::shoot;
 /// The most frames of a film.
 pub const MOST_FRAMES: usize = 3000;
 
-/// Frames in a row.
+/// A sequence of frames.
 #[derive(Debug)]
 pub struct Film {
     size: [u32; 2],
@@ -24,26 +24,26 @@ pub struct Film {
     changes: Vec<Change>,
 }
 
-/// What a frame changes of the picture before it.
+/// The difference of a frame from the one before it.
 #[derive(Debug)]
 struct Change {
-    /// The corner, pixels.
+    /// The upper left corner, pixels.
     at: [u32; 2],
-    /// The rectangle around what changes; what stays in it is transparent.
+    /// The rectangle around the changes; unchanged pixels in it are transparent.
     pixels: RgbaImage,
 }
 
-/// In which form a film is written.
+/// The file format of a film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// 256 colours in what changes from frame to frame.
+    /// 256 colours for the changes from frame to frame.
     Gif,
     /// All colours (APNG).
     Png,
 }
 
 impl Form {
-    /// By the ending of a path.
+    /// The format by the extension of a path.
     pub fn of(path: &std::path::Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
@@ -55,7 +55,7 @@ impl Form {
 }
 
 impl Film {
-    /// Without frames yet, each to be shown for so many hundredths of a second.
+    /// A film without frames; each frame is shown for `delay` hundredths of a second.
     pub fn new(delay: u16) -> Self {
         Self {
             size: [0, 0],
@@ -81,12 +81,12 @@ impl Film {
         self.last = Some(image);
     }
 
-    /// How many frames there are.
+    /// The number of frames.
     pub fn len(&self) -> usize {
         self.changes.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no frames.
     pub fn is_empty(&self) -> bool {
         self.changes.is_empty()
     }
@@ -111,7 +111,7 @@ fn changed(last: &RgbaImage, next: &RgbaImage) -> Change {
             Some([x.min(left), y.min(top), x.max(right), y.max(bottom)])
         }
     });
-    // A frame takes its time even if nothing changes.
+    // A frame without changes still takes its time.
     let [left, top, right, bottom] = bounds.unwrap_or([0, 0, 0, 0]);
     let [width, height] = [right - left + 1, bottom - top + 1];
     let pixels = RgbaImage::from_fn(width, height, |x, y| {

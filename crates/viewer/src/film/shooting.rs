@@ -1,11 +1,11 @@
-//! Pictures that the window wants in a file, drawn on any thread.
+//! Draws the pictures that the window saves in a file, on any thread.
 
 use super::{Film, Form};
 use crate::picture::{self, Picture};
 use crate::render::offscreen::Offscreen;
 use crate::session::Shooting;
 
-/// The bytes of a GIF, or of a PNG if there is one picture only; none where it was cancelled.
+/// The bytes of a GIF, or of a PNG if there is only one picture; `None` if drawing was cancelled.
 pub fn shoot(shooting: &Shooting) -> Result<Option<Vec<u8>>, String> {
     let mut studio = Offscreen::new().map_err(|error| error.to_string())?;
     let mut draw = |picture: &Picture| {

@@ -1,4 +1,4 @@
-//! One scene in several ways, side by side, without a window.
+//! Runs one scene in several ways and compares the results, without a window.
 
 use std::fmt::Write;
 
@@ -14,12 +14,12 @@ use crate::number;
 use crate::session::{Halt, Runner, Sample, csv_head, csv_line, full_name};
 use crate::stopwatch::Stopwatch;
 
-/// How the result is told.
+/// The format of the result.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// A table of the ends.
+    /// A table of the final states.
     Table,
-    /// The same as one JSON object.
+    /// The same data as one JSON array.
     Json,
     /// Every state of every run.
     Csv,
@@ -28,7 +28,7 @@ pub enum Form {
 /// The most runs of one command.
 const MOST_RUNS: usize = 200;
 
-/// What came of one run. Null is unknown.
+/// The result of one run. Null means unknown.
 #[derive(Serialize)]
 struct Standing {
     run: String,
@@ -44,7 +44,7 @@ struct Standing {
     positions: Vec<[f64; 3]>,
 }
 
-/// Runs the scene in each of these ways for `time`, s, and exactly where that is known.
+/// Runs the scene with each of these settings for `time`, s, and compares with the exact solution if it is known.
 pub fn compare(
     scene: &Scene,
     settings: &[Settings],
@@ -66,7 +66,7 @@ pub fn compare(
         let runner = Runner::stepping(&world, *settings).map_err(Failure::refused)?;
         runs.push((full_name(settings), runner));
     }
-    // The exact solution is looked at as often as the run of the shortest steps.
+    // The exact solution is sampled as often as the run with the shortest steps.
     let shortest = settings.iter().min_by(|a, b| a.dt.total_cmp(&b.dt));
     let mut finest = world.clone();
     if let Some(&settings) = shortest {
@@ -96,7 +96,7 @@ pub fn compare(
     })
 }
 
-/// Lets one run come to the end.
+/// Takes the steps of one run up to the end.
 fn follow(
     scene: &Scene,
     name: &str,
@@ -110,7 +110,7 @@ fn follow(
     note(&last);
     let (mut worst, mut cost, mut impacts) = (last.error, None, 0);
     let mut failure = None;
-    // The last step may end a rounding after the time.
+    // Rounding may put the last step slightly after or before the time.
     let nearly = time - 1e-9 * time.abs().max(runner.world().settings().dt);
     while last.time < nearly && !interrupt.came() {
         match runner.step(&|| stopwatch.read()) {

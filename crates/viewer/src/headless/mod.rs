@@ -1,4 +1,4 @@
-//! Runs and checks without a window, as text or JSON. Needs neither display nor graphics adapter.
+//! Runs and checks without a window, as text or JSON. They need neither display nor graphics adapter.
 
 mod compare;
 mod replay;
@@ -20,36 +20,36 @@ use crate::number;
 use crate::session::{Drift, Exact, Halt, Record, Reference, Runner, csv_head, csv_line, turns};
 use crate::stopwatch::Stopwatch;
 
-/// Final state of a run. Numbers are f64 and survive the way through JSON bit for bit.
+/// The final state of a run. Numbers are f64 and stay equal bit for bit in JSON.
 #[derive(Serialize)]
 struct RunReport<'a> {
     time: f64,
     steps: u64,
     impacts: u64,
     kinetic_energy: f64,
-    /// What of that is in how bodies turn, where any does.
+    /// The rotational part of the kinetic energy, if there are turning bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
     turning_energy: Option<f64>,
     potential_energy: Option<f64>,
     total_energy: Option<f64>,
-    /// Change of both together since the start, relative to what they were: none where that is 0.
+    /// The relative change of the total energy since the start; `None` if the energy was 0.
     energy_drift: Option<f64>,
-    /// The same in J.
+    /// The change in J.
     energy_error: Option<f64>,
-    /// Whether friction or an inelastic impact may have taken energy: then a loss is no error.
+    /// Whether friction or an inelastic impact may have dissipated energy; a loss is then no error.
     dissipates: bool,
-    /// Whether something may have given or taken energy: then no change is an error.
+    /// Whether something may have added or removed energy; then no change is an error.
     driven: bool,
     momentum_drift: Option<f64>,
     momentum_error: Option<f64>,
     path_error: Option<f64>,
     momentum: [f64; 3],
     last_impact: Option<ImpactReport<'a>>,
-    /// At the start.
+    /// The overlaps at the start.
     overlaps: Vec<OverlapReport<'a>>,
-    /// Names of the bodies that were moved out of each other before that.
+    /// Names of the bodies that were moved apart before the start.
     separated: Vec<&'a str>,
-    /// At the end.
+    /// The contacts at the end.
     contacts: Vec<ContactReport<'a>>,
     /// [`World::state_hash`], in hexadecimal digits.
     state_hash: String,
@@ -68,12 +68,12 @@ struct ImpactReport<'a> {
     parting: f64,
 }
 
-/// Two bodies in each other.
+/// Two bodies in overlap.
 #[derive(Serialize)]
 struct OverlapReport<'a> {
     bodies: [&'a str; 2],
     depth: f64,
-    /// Whether that is the least; an upper bound otherwise.
+    /// Whether the depth is the least one; otherwise it is an upper bound.
     is_least: bool,
     normal: [f64; 3],
 }
@@ -82,14 +82,14 @@ struct OverlapReport<'a> {
 #[derive(Serialize)]
 struct ContactReport<'a> {
     bodies: [&'a str; 2],
-    /// Features that touch.
+    /// The number of touching features.
     count: usize,
     normal: [f64; 3],
     gap: f64,
     is_overlap: bool,
 }
 
-/// What a run begins with.
+/// The initial data of a run.
 struct Start<'a> {
     overlaps: Vec<OverlapReport<'a>>,
     separated: Vec<&'a str>,
@@ -98,26 +98,26 @@ struct Start<'a> {
 #[derive(Serialize)]
 struct BodyReport<'a> {
     name: &'a str,
-    /// None of an immovable body.
+    /// The mass; `None` for an immovable body.
     mass: Option<f64>,
-    /// Of its origin.
+    /// The position of its origin.
     position: [f64; 3],
     velocity: [f64; 3],
     #[serde(flatten)]
     turn: Option<TurnReport>,
 }
 
-/// What a body has that turns.
+/// The rotational state of a turning body.
 #[derive(Serialize)]
 struct TurnReport {
     /// A unit quaternion: x, y, z, w.
     rotation: [f64; 4],
     spin: [f64; 3],
-    /// About its centre of mass.
+    /// The angular momentum about its centre of mass.
     angular_momentum: [f64; 3],
 }
 
-/// Contents of a mesh file.
+/// The contents of a mesh file.
 #[derive(Serialize)]
 struct CheckReport {
     format: &'static str,
@@ -141,20 +141,19 @@ struct RepairReport {
     count: usize,
 }
 
-/// What `run` prints of the final state.
+/// The output of `run` for the final state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunForm {
-    /// A table for people.
+    /// A table.
     Table,
     /// A JSON object.
     Json,
-    /// Its hash.
+    /// The hash of the state.
     Hash,
 }
 
-/// Takes `steps` steps of a scene, or as many as there are before an interrupt; the final state in a
-/// form. If asked to `separate`, bodies in overlap are moved out of each other first; with a path the run
-/// is recorded there.
+/// Takes `steps` steps of a scene, fewer after an interrupt, and returns the final state in the given format. With
+/// `separate`, bodies in overlap are first moved apart. With a path, the run is recorded in that file.
 pub fn run(
     scene: &Scene,
     steps: u64,
@@ -222,8 +221,7 @@ pub fn run(
     })
 }
 
-/// Takes `steps` steps of a scene, or as many as there are before an interrupt; the figures of every
-/// state as CSV.
+/// Takes `steps` steps of a scene, fewer after an interrupt, and returns the figures of every state as CSV.
 pub fn run_csv(scene: &Scene, steps: u64, interrupt: &Interrupt) -> Result<String, Failure> {
     let world = scene.world().map_err(Failure::refused)?;
     let runner = Runner::stepping(&world, *world.settings()).map_err(Failure::refused)?;
@@ -250,7 +248,7 @@ pub fn run_csv(scene: &Scene, steps: u64, interrupt: &Interrupt) -> Result<Strin
     Ok(text)
 }
 
-/// Reads a mesh file; what is in it as JSON or as text.
+/// Reads a mesh file and returns its figures as JSON or text.
 pub fn check(file: &Path, json: bool) -> Result<String, Failure> {
     let loaded = mesh_file::load(file).map_err(Failure::refused)?;
     let figures = loaded.report();
@@ -277,14 +275,14 @@ pub fn check(file: &Path, json: bool) -> Result<String, Failure> {
 }
 
 fn to_json(report: &impl Serialize) -> String {
-    // Plain structs of numbers and text: nothing in them can be refused.
+    // Serializing cannot fail, because these are plain structs of numbers and text.
     serde_json::to_string(report).map_or_else(
         |error| error.to_string(),
         |text| {
             let mut safe = String::with_capacity(text.len() + 1);
             for character in text.chars() {
                 if shown::is_unsafe(character) {
-                    // Only in strings, and there this says the same.
+                    // Such characters occur only in strings, and there the escape is equivalent.
                     for unit in character.encode_utf16(&mut [0; 2]) {
                         let _ = write!(safe, "\\u{unit:04x}");
                     }
@@ -473,7 +471,7 @@ impl RunReport<'_> {
         }
     }
 
-    /// What overlapped at the start, or was moved apart.
+    /// Adds the overlaps of the start, or the bodies that were moved apart.
     fn add_overlaps(&self, text: &mut String) {
         if !self.separated.is_empty() {
             let names = names(&self.separated);
@@ -519,7 +517,7 @@ impl ImpactReport<'_> {
     }
 }
 
-/// The change of the energy, and whether it is an error where that is not plain.
+/// The change of the energy, and whether it is an error if that is not obvious.
 fn energy_drift(drift: &Drift) -> String {
     let why = match (drift.energy, drift.energy_is_error()) {
         (None, _) => "",
@@ -540,7 +538,7 @@ fn joules(energy: Option<f64>) -> String {
 
 fn vector(v: DVec3) -> String {
     let cell = |part: f64| {
-        // Very small and very large numbers keep the columns in place with an exponent.
+        // Very small and very large numbers get an exponent, so that the columns stay aligned.
         let text = if part == 0.0 || (1e-4..1e5).contains(&part.abs()) {
             format!("{part:.6}")
         } else {

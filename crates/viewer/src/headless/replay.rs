@@ -1,4 +1,4 @@
-//! `cowbell run --record` and `cowbell replay --verify`: runs that must give the same states again.
+//! `cowbell run --record` and `cowbell replay --verify`: runs that must reproduce the same states.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::interrupt::{Interrupt, Progress};
 use crate::session::{MOST_RECORDED, Record, ReplayError, is_run_file, verify};
 
-/// Whether so many steps can be recorded in a file.
+/// Checks that a run of so many steps can be recorded in a file.
 pub(super) fn check_recordable(path: &Path, steps: u64) -> Result<(), Failure> {
     if !is_run_file(path) {
         let path = shown::path(path);
@@ -24,7 +24,7 @@ pub(super) fn check_recordable(path: &Path, steps: u64) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Runs a recorded run again and compares every state; a failure where one differs.
+/// Runs a recorded run again and compares every state. The first different state is a failure.
 pub fn replay(file: &Path, interrupt: &Interrupt) -> Result<String, Failure> {
     let record = Record::read(file).map_err(Failure::refused)?;
     let (scene, recorded) = (record.scene.clone(), record.steps());

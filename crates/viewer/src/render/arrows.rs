@@ -12,14 +12,14 @@ use super::linear;
 use super::pipeline::{Drawing, shader};
 use crate::picture::Arrow;
 
-/// The head, in radii of the shaft.
+/// The radius of the head, in radii of the shaft.
 const HEAD_RADIUS: f64 = 2.4;
 const HEAD_LENGTH: f64 = 6.5;
-/// The most of an arrow that its head takes up; a shorter arrow is thinner throughout.
+/// The largest fraction of an arrow's length that its head takes; a shorter arrow is thinner throughout.
 const HEAD_PART: f64 = 0.5;
 const SIDES: u16 = 24;
 
-/// A corner of the arrow's shape, before it has lengths; as `shaders/arrow.wgsl` has it.
+/// A vertex of the arrow's shape, before it is scaled; the layout matches `shaders/arrow.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Corner {
@@ -101,7 +101,7 @@ impl Arrows {
         }
     }
 
-    /// Takes in the arrows of a picture.
+    /// Collects the arrows of a picture.
     pub(super) fn gather(
         &mut self,
         device: &wgpu::Device,
@@ -123,7 +123,7 @@ impl Arrows {
     }
 }
 
-/// `None` for an arrow that has no direction or no thickness.
+/// The data of an arrow; `None` if it has no direction or no thickness.
 fn instance(arrow: &Arrow, eye: DVec3) -> Option<Instance> {
     let span = arrow.to - arrow.from;
     let length = span.length();
@@ -152,7 +152,7 @@ fn shape() -> Vec<Corner> {
     const LINE: [f32; 2] = [0.0, 0.0];
     const SHAFT: [f32; 2] = [1.0, 0.0];
     const HEAD: [f32; 2] = [0.0, 1.0];
-    // Bands between two rings: each ring's outward and along, and the normal of both.
+    // Bands between two rings. For each ring: radial and axial coordinate; for the band: its normal.
     let bands = [
         ([LINE, TAIL], [SHAFT, TAIL], BACK),
         ([SHAFT, TAIL], [SHAFT, NECK], OUT),

@@ -1,4 +1,4 @@
-//! The upright axis, a ruler with a tick at every spacing of the grid. The two on the ground belong to it.
+//! The vertical axis, a ruler with a tick at every spacing of the grid. The grid draws the two horizontal axes.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use crate::camera::Camera;
 use crate::picture::Line;
 
 const COLOUR: [f32; 4] = [0.16, 0.58, 0.24, 0.75];
-/// Its length and that of a tick to either side, in spacings of the grid.
+/// The length of the axis, and that of a tick to either side, in spacings of the grid.
 const SPACINGS: u32 = 10;
 const TICK: f64 = 0.06;
 
@@ -15,7 +15,7 @@ const TICK: f64 = 0.06;
 pub(super) fn upright(camera: &Camera) -> Vec<Line> {
     let step = grid_step(camera);
     let [right, _, _] = camera.axes();
-    // Seen from above the ticks would only hide the ground.
+    // From above the ticks would only hide the ground, so they become shorter.
     let tick = TICK * step * camera.pitch.cos() * right;
     let line = |from, to, width| Line {
         from,

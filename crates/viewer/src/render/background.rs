@@ -1,4 +1,4 @@
-//! The calm gradient behind everything.
+//! The gradient in the background.
 
 use egui_wgpu::wgpu;
 

@@ -1,4 +1,4 @@
-//! The shadow map made soft.
+//! Blurs the shadow map.
 
 use egui_wgpu::wgpu;
 
@@ -10,7 +10,7 @@ pub(super) struct Blur {
 }
 
 impl Blur {
-    /// Of textures that are bound, each with a sampler, by a layout.
+    /// A blur of textures; `layout` binds each with a sampler.
     pub(super) fn new(device: &wgpu::Device, layout: &wgpu::BindGroupLayout) -> Self {
         let module = shader(device, "blur", include_str!("shaders/blur.wgsl"));
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

@@ -1,8 +1,8 @@
-//! What a renderer asks of an adapter.
+//! The requirements of a renderer on an adapter.
 
 use egui_wgpu::wgpu;
 
-/// The samples per pixel that are multiplied where the adapter can: 4, else 1.
+/// The number of multisampling samples per pixel: 4 if the adapter supports it, else 1.
 pub fn supported_samples(adapter: &wgpu::Adapter) -> u32 {
     let flags = |format| adapter.get_texture_format_features(format).flags;
     let colour = flags(super::targets::COLOUR);
@@ -13,8 +13,8 @@ pub fn supported_samples(adapter: &wgpu::Adapter) -> u32 {
     if able { 4 } else { 1 }
 }
 
-/// A device with textures and buffers as large as the adapter has them, and no more than common limits else,
-/// for older adapters too.
+/// The descriptor of a device with textures and buffers as large as the adapter allows. Its other limits are common
+/// ones, so that older adapters meet them too.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let able = adapter.limits();
     wgpu::DeviceDescriptor {

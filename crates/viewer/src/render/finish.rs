@@ -1,4 +1,4 @@
-//! The finished picture onto its target.
+//! Draws the finished picture onto its target.
 
 use egui_wgpu::wgpu;
 
@@ -10,7 +10,7 @@ pub(super) struct Finish {
 }
 
 impl Finish {
-    /// Onto targets of a format; where that is not sRGB, the shader encodes.
+    /// A pass onto targets of a format; if the format is not sRGB, the shader encodes the colours.
     pub(super) fn new(device: &wgpu::Device, target: wgpu::TextureFormat) -> Self {
         let module = shader(device, "finish", include_str!("shaders/finish.wgsl"));
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

@@ -1,18 +1,18 @@
-//! What every pipeline knows of the picture: camera, light, and the places of grid and shadow.
+//! The data of a picture that all pipelines share: camera, light, and the positions of grid and shadow.
 
 use egui_wgpu::wgpu;
 use glam::{DVec2, DVec3};
 
 use crate::camera::Camera;
 
-/// The heights of the eye over the ground, in spacings, that one set of four grid spacings serves.
+/// The range of heights of the eye above the ground, in spacings, for which one set of four grid spacings is used.
 const HEIGHT_PER_STEP: f64 = 1000.0;
-/// How far the grid is drawn, in distances of the camera or heights of the eye.
+/// The radius of the grid, in distances of the camera or heights of the eye.
 const GRID_REACH: f64 = 30.0;
 /// Half the side of the ground that receives shadows, in distances of the camera.
 const SHADOW_HALF: f64 = 1.6;
 
-/// As `shaders/frame.wgsl` has it.
+/// The layout matches `shaders/frame.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Frame {
@@ -44,7 +44,7 @@ impl Frame {
         let [right, up, backward] = camera.axes();
         let [half_width, half_height] = camera.half_extents(aspect);
 
-        // From over the viewer's left shoulder, so that no side is ever seen in the dark.
+        // The light comes over the viewer's left shoulder, so that no visible side is dark.
         let level = right.cross(DVec3::Y);
         let light = (-0.45 * right + 0.8 * DVec3::Y + 0.55 * level).normalize();
 
@@ -59,7 +59,7 @@ impl Frame {
         Self {
             view_projection: camera.view_projection(aspect).to_cols_array_2d(),
             right: (half_width * right).as_vec3().to_array(),
-            // Without perspective nothing comes near the eye.
+            // In a parallel projection nothing comes near the eye.
             near: if camera.parallel {
                 0.0
             } else {
@@ -84,7 +84,7 @@ impl Frame {
     }
 }
 
-/// The finest spacing of the grid, m: a metre, and powers of ten from so far above that metres are lost.
+/// The finest spacing of the grid, m: one metre, or a power of ten if the camera is so far up that metres are too fine.
 pub(super) fn grid_step(camera: &Camera) -> f64 {
     let decades = (camera.eye().y.abs() / HEIGHT_PER_STEP).log10().floor();
     10f64.powf(decades.max(0.0))

@@ -1,4 +1,4 @@
-//! The grid on the ground with the axes in it, and the shadows.
+//! The grid on the ground with its axes, and the shadows.
 
 use egui_wgpu::wgpu;
 

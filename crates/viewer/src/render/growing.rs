@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use bytemuck::Pod;
 use egui_wgpu::wgpu;
 
-/// Items written anew for each picture; the room only grows, so a steady picture allocates nothing.
+/// A buffer whose items are written for each picture. Its capacity only grows, so constant pictures allocate nothing.
 pub(super) struct Growing<T> {
     label: &'static str,
     usage: wgpu::BufferUsages,
@@ -28,7 +28,7 @@ impl<T: Pod> Growing<T> {
         }
     }
 
-    /// Writes the items, as many as a buffer of the device can hold, and says how many those are.
+    /// Writes the items, as many as a buffer of the device can hold, and returns their number.
     pub(super) fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, items: &[T]) -> u32 {
         let item = size_of::<T>() as u64;
         let most = device.limits().max_buffer_size / item;

@@ -1,4 +1,4 @@
-//! Lines of a width in pixels: rectangles on the screen with soft borders and round ends.
+//! Lines with a width in pixels: rectangles on the screen with soft borders and round ends.
 
 use egui_wgpu::wgpu;
 use glam::DVec3;
@@ -9,7 +9,7 @@ use super::linear;
 use super::pipeline::{Drawing, shader};
 use crate::picture::Line;
 
-/// As `shaders/line.wgsl` has it.
+/// The layout matches `shaders/line.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Instance {
@@ -19,7 +19,7 @@ struct Instance {
     width: f32,
 }
 
-/// Pixels.
+/// The largest width, pixels.
 const MAX_WIDTH: f32 = 1000.0;
 
 const INSTANCE: [wgpu::VertexAttribute; 4] =
@@ -33,7 +33,7 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// Lines that nearer surfaces hide, or that are on top of everything.
+    /// A pipeline for lines that nearer surfaces hide, or for lines on top of everything.
     pub(super) fn new(
         device: &wgpu::Device,
         frame: &FrameBinding,
@@ -69,7 +69,7 @@ impl Lines {
         }
     }
 
-    /// Takes in the lines of a picture.
+    /// Collects the lines of a picture.
     pub(super) fn gather<'a>(
         &mut self,
         device: &wgpu::Device,

@@ -1,4 +1,4 @@
-//! The meshes of a picture on the device, one copy of each, and where each is drawn.
+//! The meshes of a picture on the device, one copy of each, and the places of their instances.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -15,11 +15,11 @@ use super::triangles::Triangles;
 use crate::number;
 use crate::picture::{Ghost, Model};
 
-/// One place a mesh is drawn at, as `shaders/surface.wgsl` has it.
+/// An instance of a mesh; the layout matches `shaders/surface.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Instance {
-    /// From the eye, m.
+    /// The position relative to the eye, m.
     offset: [f32; 3],
     radius: f32,
     colour: [f32; 3],
@@ -47,10 +47,10 @@ pub(super) fn layouts() -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
     ]
 }
 
-/// Which of the meshes and their places to draw.
+/// A selection of the meshes and their instances.
 #[derive(Clone, Copy)]
 pub(super) struct Which {
-    /// Those that have no inside to be seen, or else the others.
+    /// Whether the meshes are those without a visible inside, or the others.
     pub solid: bool,
     pub look: Look,
 }
@@ -59,23 +59,23 @@ pub(super) struct Which {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Look {
     Plain,
-    /// With its edges, and so with the corners of triangles in order.
+    /// With its edges, which require the triangles' corners in order.
     Edged,
-    /// The same, brighter and with a rim.
+    /// With its edges, brighter and with a rim.
     Selected,
-    /// Seen through.
+    /// Translucent.
     Ghost,
 }
 
 impl Look {
-    /// Whether the corners of triangles have to be in order.
+    /// Whether the corners of triangles must be in order.
     fn is_edged(self) -> bool {
         matches!(self, Look::Edged | Look::Selected)
     }
 }
 
 impl Which {
-    /// What is opaque, and so casts shadows.
+    /// The opaque meshes, which cast shadows.
     pub(super) const OPAQUE: [Which; 6] = [
         Which::new(true, Look::Plain),
         Which::new(false, Look::Plain),
@@ -94,10 +94,10 @@ impl Which {
     }
 }
 
-/// Meshes known by the address of their [`Arc`].
+/// The meshes, identified by the address of their [`Arc`].
 pub(super) struct Meshes {
     known: HashMap<usize, DeviceMesh>,
-    /// In the order of the picture, to draw every picture alike.
+    /// The order of the picture, so that drawing is deterministic.
     order: Vec<usize>,
     instances: Vec<Instance>,
     buffer: Growing<Instance>,
@@ -107,14 +107,14 @@ pub(super) struct Meshes {
 /// A mesh that is too large for a buffer of the device.
 #[derive(Clone, Debug)]
 pub struct Cut {
-    /// The geometry of its models.
+    /// The mesh.
     pub mesh: Arc<Mesh>,
-    /// How many of them are drawn.
+    /// The number of its triangles that are drawn.
     pub drawn: usize,
 }
 
 impl Cut {
-    /// What the graphics adapter does, for a message; `mesh` names the geometry there.
+    /// The message about the graphics adapter; `mesh` is the name of the geometry in it.
     pub fn told(&self, mesh: &str) -> String {
         let [drawn, all] =
             [self.drawn, self.mesh.triangles().len()].map(|count| number::count(count as f64));
@@ -133,12 +133,12 @@ impl Meshes {
         }
     }
 
-    /// The meshes that turned out to be too large since this was last asked.
+    /// The meshes found to be too large since the last call.
     pub(super) fn take_cut(&mut self) -> Vec<Cut> {
         std::mem::take(&mut self.cut)
     }
 
-    /// Takes in the models of a picture; forgets the meshes that it does not show.
+    /// Collects the models of a picture, and forgets meshes that the picture does not show.
     pub(super) fn gather(
         &mut self,
         device: &wgpu::Device,
@@ -221,7 +221,7 @@ impl Meshes {
         self.order.is_empty()
     }
 
-    /// Draws some of the meshes, each at all its places at once, with a pipeline of [`layouts`].
+    /// Draws a selection of the meshes, each with all its instances at once, with a pipeline of [`layouts`].
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, which: Which) {
         pass.set_vertex_buffer(1, self.buffer.buffer().slice(..));
         let meshes = self
@@ -242,24 +242,24 @@ impl Meshes {
 
 /// One mesh on the device.
 struct DeviceMesh {
-    /// Keeps the address that the mesh is known by from being used again; its geometry may go.
+    /// Prevents the mesh's address from being used again; the geometry itself may be freed.
     _mesh: Weak<Mesh>,
     shared: Triangles,
-    /// Each corner by itself and in order, since the mesh was first shown with edges.
+    /// The triangles with separate corners in order, once the mesh has been shown with edges.
     apart: Option<Triangles>,
-    /// Whether it has no inside to be seen.
+    /// Whether the mesh has no visible inside.
     solid: bool,
     /// Half the diagonal of its bounds, m.
     radius: f32,
-    /// Where it is drawn in each [`Look`].
+    /// The instances in each [`Look`].
     places: [Places; 4],
 }
 
 #[derive(Default)]
 struct Places {
-    /// Of this picture, while it is gathered.
+    /// The instances of this picture, while they are collected.
     instances: Vec<Instance>,
-    /// Where those are among all.
+    /// Their range among all instances.
     range: Range<u32>,
 }
 

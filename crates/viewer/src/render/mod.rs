@@ -1,7 +1,7 @@
-//! Pictures onto a texture: shaded meshes, ground grid, lines and arrows, with wgpu.
+//! Draws pictures onto a texture: shaded meshes, ground grid, lines and arrows, with wgpu.
 //!
-//! Positions reach the graphics device relative to the eye, subtracted in f64, so that a scene far from
-//! the origin is drawn as steadily as one at it.
+//! Positions are sent to the graphics device relative to the eye, subtracted in f64, so that a scene far from the
+//! origin is drawn as precisely as one near it.
 
 mod arrows;
 mod axes;
@@ -36,7 +36,7 @@ use targets::Targets;
 
 /// Draws pictures onto textures of one format.
 ///
-/// Meshes stay on the device for as long as each picture shows them again.
+/// A mesh stays on the device as long as every picture shows it.
 pub struct Renderer {
     samples: u32,
     targets: Option<Targets>,
@@ -54,8 +54,8 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer onto targets of a format, sRGB or not, with so many samples per pixel:
-    /// 1, or what [`supported_samples`] says.
+    /// A renderer for targets of a format, sRGB or not, with a number of samples per pixel: 1, or the number from
+    /// [`supported_samples`].
     pub fn new(device: &wgpu::Device, target: wgpu::TextureFormat, samples: u32) -> Self {
         let frame = frame::FrameBinding::new(device);
         let shadow = shadow::Shadow::new(device, &frame);
@@ -76,15 +76,15 @@ impl Renderer {
         }
     }
 
-    /// The meshes of which this device can draw a part only, each once since it came into the picture.
+    /// The meshes of which this device can draw only a part, each once per appearance in the picture.
     pub fn take_cut(&mut self) -> Vec<Cut> {
         self.meshes.take_cut()
     }
 
-    /// Records the drawing of a picture over all of a target of a size in pixels.
+    /// Records the commands that draw a picture over the whole of a target of a size in pixels.
     ///
-    /// The picture's data is written to the queue at once, so each submission can hold one drawing.
-    /// Nothing is drawn at size 0. What has a position that is not finite is left out.
+    /// The picture's data is written to the queue at once, so each submission can have only one drawing. At size 0
+    /// nothing is drawn. Objects with a position that is not finite are left out.
     pub fn draw(
         &mut self,
         device: &wgpu::Device,
@@ -146,7 +146,7 @@ impl Renderer {
     }
 }
 
-/// From sRGB to linear light, each part limited to `0..=1`.
+/// Converts sRGB to linear light; each component is clamped to `0..=1`.
 fn linear(colour: [f32; 3]) -> [f32; 3] {
     colour.map(|part| {
         let part = part.clamp(0.0, 1.0);

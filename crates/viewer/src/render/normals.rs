@@ -1,14 +1,14 @@
-//! Normals per corner of a mesh: smooth over gentle folds, apart at sharp ones.
+//! Normals for each corner of a mesh: smooth across gentle folds, separate at sharp ones.
 
 use glam::Vec3;
 use sim_core::Mesh;
 
-/// The cosine of the angle between two faces' normals over which the fold between them is sharp: 35 degrees.
+/// The cosine of the fold angle above which an edge is sharp: 35 degrees between the normals of its faces.
 const CREASE: f32 = 0.819_152;
-/// The cosine of half that: faces this near one face's normal are near each other's too.
+/// The cosine of half that angle: two faces within it of one normal are within the full angle of each other.
 const GENTLE: f32 = 0.953_717;
 
-/// A corner as `shaders/surface.wgsl` has it.
+/// A vertex; the layout matches `shaders/surface.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Vertex {
@@ -16,15 +16,15 @@ pub(super) struct Vertex {
     pub normal: [f32; 3],
 }
 
-/// A mesh's triangles with normals. Corners share a vertex where they share position and normal.
+/// A mesh's triangles with normals. Corners with equal position and normal share a vertex.
 pub(super) struct Shaded {
     pub vertices: Vec<Vertex>,
     pub indices: Vec<u32>,
 }
 
 impl Shaded {
-    /// At each vertex the faces that are joined by gentle folds share the mean of their normals,
-    /// weighted by their angles there.
+    /// Faces at a vertex that are connected by gentle folds share the mean of their normals, weighted by their angles
+    /// there.
     pub(super) fn new(mesh: &Mesh) -> Self {
         let triangles = mesh.triangles();
         let positions = mesh.vertices();
@@ -75,7 +75,7 @@ impl Face {
         let sides = [b - a, c - b, a - c].map(Vec3::normalize_or_zero);
         let angle = |before: Vec3, after: Vec3| (-before.dot(after)).clamp(-1.0, 1.0).acos();
         Self {
-            // From unit sides, so that the smallest faces keep their direction.
+            // The sides are normalized first, so that even the smallest faces have a direction.
             normal: sides[0].cross(sides[1]).normalize_or_zero(),
             angles: [
                 angle(sides[2], sides[0]),
@@ -115,14 +115,14 @@ impl CornersAround {
     }
 }
 
-/// The corners about one vertex, sorted into groups that share a normal. Kept to use its room again.
+/// The corners at one vertex, in groups that share a normal. The structure is reused to save allocations.
 #[derive(Default)]
 struct Fan {
-    /// For each corner the first of its group.
+    /// For each corner, the first corner of its group.
     groups: Vec<usize>,
-    /// For the first corner of each group its vertex in the result.
+    /// For the first corner of each group, its vertex in the result.
     emitted: Vec<u32>,
-    /// The spokes: the vertex at the other end of each side of each corner, and the corner's place.
+    /// The sides at the vertex: the vertex at the other end of each side of each corner, and the corner's place.
     spokes: Vec<(u32, usize)>,
 }
 
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn triangles_about_a_corner_weigh_by_their_angles() {
-        // A quarter to one side of the fold is cut in two, which must not pull the normal there.
+        // The quarter on one side of the fold is cut in two, which must not change the normal there.
         let mut vertices = vec![Vec3::ZERO, Vec3::Z, Vec3::NEG_X];
         let (sin, cos) = 30f32.to_radians().sin_cos();
         let far = Vec3::new(cos, sin, 0.0);

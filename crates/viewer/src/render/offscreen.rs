@@ -1,4 +1,4 @@
-//! Pictures into memory, with no window or display.
+//! Draws pictures into memory, without window or display.
 
 use std::fmt;
 
@@ -8,24 +8,24 @@ use image::RgbaImage;
 use super::{Cut, Renderer, device_descriptor, paint_panels, supported_samples};
 use crate::picture::Picture;
 
-/// Bytes.
+/// Bytes per pixel.
 const PIXEL: u32 = 4;
 
-/// Why there is no picture.
+/// The reason why there is no picture.
 #[derive(Debug)]
 pub enum ShotError {
-    /// This computer has nothing to draw with.
+    /// The computer has no graphics adapter.
     NoAdapter,
-    /// The adapter gives no device.
+    /// The adapter provides no device.
     Device(wgpu::RequestDeviceError),
-    /// A size of 0, or one larger than the device's textures can be.
+    /// The size is 0, or exceeds the device's largest texture.
     Size {
-        /// What was asked for, pixels.
+        /// The requested size, pixels.
         size: [u32; 2],
-        /// The most that this device draws along a side, pixels.
+        /// The largest side of a picture on this device, pixels.
         most: u32,
     },
-    /// The device failed while it drew, most likely for want of memory.
+    /// The device failed while drawing, probably from lack of memory.
     Drawing(String),
 }
 
@@ -67,7 +67,7 @@ pub struct Offscreen {
 }
 
 impl Offscreen {
-    /// On the fastest adapter there is, one that draws in software if there is no other.
+    /// A device on the fastest adapter, or on a software adapter if there is no other.
     pub fn new() -> Result<Self, ShotError> {
         Self::with_format(wgpu::TextureFormat::Rgba8UnormSrgb)
     }
@@ -94,7 +94,7 @@ impl Offscreen {
         })
     }
 
-    /// The same on a device of other limits.
+    /// A device with other limits.
     #[cfg(test)]
     pub(crate) fn limited(
         limited: impl FnOnce(wgpu::Limits) -> wgpu::Limits,
@@ -102,12 +102,12 @@ impl Offscreen {
         Self::made(wgpu::TextureFormat::Rgba8UnormSrgb, limited)
     }
 
-    /// The meshes of which this device can draw a part only, each once since it came into the picture.
+    /// The meshes of which this device can draw only a part, each once per appearance in the picture.
     pub fn take_cut(&mut self) -> Vec<Cut> {
         self.renderer.take_cut()
     }
 
-    /// One picture of a size in pixels.
+    /// Draws one picture of a size in pixels.
     pub fn shot(&mut self, picture: &Picture, size: [u32; 2]) -> Result<RgbaImage, ShotError> {
         let (device, queue, renderer) = (&self.device, &self.queue, &mut self.renderer);
         let target = Target {
@@ -121,20 +121,20 @@ impl Offscreen {
     }
 }
 
-/// A part of the control panel, laid out by `contents` in the style of a context, at two pixels a point.
+/// Draws a part of the control panel, laid out by `contents` in the style of a context, with two pixels per point.
 pub fn panel(
     context: &egui::Context,
     size: [u32; 2],
     mut contents: impl FnMut(&mut egui::Ui),
 ) -> Result<RgbaImage, ShotError> {
-    // What egui mixes colours in.
+    // The format in which egui blends colours.
     let format = wgpu::TextureFormat::Rgba8Unorm;
     let Offscreen { device, queue, .. } = Offscreen::with_format(format)?;
     let pixels_per_point = 2.0;
     let [width, height] = size.map(|side| side as f32 / pixels_per_point);
     let mut painter = egui_wgpu::Renderer::new(&device, format, Default::default());
     let mut primitives = Vec::new();
-    // The first layout learns the sizes that the second one uses.
+    // The first layout measures sizes that the second one uses.
     for _ in 0..2 {
         let mut input = egui::RawInput {
             screen_rect: Some(egui::Rect::from_min_size(
@@ -172,7 +172,7 @@ pub fn panel(
     })
 }
 
-/// Where a picture goes that is then read back.
+/// A target for a picture that is then read back.
 struct Target<'a> {
     device: &'a wgpu::Device,
     queue: &'a wgpu::Queue,
@@ -180,7 +180,7 @@ struct Target<'a> {
 }
 
 impl Target<'_> {
-    /// What `draw` draws on a texture of a size in pixels.
+    /// Draws with `draw` on a texture of a size in pixels, and reads the result.
     fn taken(
         &self,
         size: [u32; 2],
@@ -194,7 +194,7 @@ impl Target<'_> {
         let padded_row = (width * PIXEL).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let bytes = u64::from(padded_row) * u64::from(height);
 
-        // Without these a failure would end the program.
+        // Without error scopes a failure would end the program.
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
@@ -209,7 +209,7 @@ impl Target<'_> {
         let slice = readback.slice(..);
         let (sender, receiver) = std::sync::mpsc::channel();
         slice.map_async(wgpu::MapMode::Read, move |mapped| {
-            // Nobody is left to tell if the receiver has gone.
+            // A failed send means that the receiver is gone; then nobody needs the result.
             let _ = sender.send(mapped);
         });
         self.device
@@ -228,7 +228,7 @@ impl Target<'_> {
             .ok_or_else(|| ShotError::Drawing("too few pixels came back".to_owned()))
     }
 
-    /// Draws, and copies the rows into a buffer that can be read.
+    /// Draws, and copies the rows into a readable buffer.
     fn draw(
         &self,
         draw: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::TextureView),
@@ -277,7 +277,7 @@ impl Target<'_> {
     }
 }
 
-/// An adapter of the backends that the environment asks for, else of the platform's own, and OpenGL's as the last.
+/// An adapter of the backends in the environment, else of the platform's own backends, and last of OpenGL.
 pub fn adapter() -> Option<wgpu::Adapter> {
     let choices = match wgpu::Backends::from_env() {
         Some(backends) => vec![backends],

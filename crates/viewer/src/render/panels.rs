@@ -1,8 +1,8 @@
-//! The shapes of a control panel onto a texture.
+//! Draws the shapes of a control panel onto a texture.
 
 use egui_wgpu::wgpu;
 
-/// Paints a control panel onto a texture, and returns what has to be done before.
+/// Paints a control panel onto a texture. Returns the command buffers that must be submitted before.
 pub fn paint_panels(
     ui: &mut egui_wgpu::Renderer,
     (device, queue): (&wgpu::Device, &wgpu::Queue),

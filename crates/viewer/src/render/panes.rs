@@ -9,7 +9,7 @@ use super::linear;
 use super::pipeline::{Drawing, shader};
 use crate::picture::Pane;
 
-/// As `shaders/pane.wgsl` has it.
+/// The layout matches `shaders/pane.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Corner {
@@ -57,7 +57,7 @@ impl Panes {
         }
     }
 
-    /// Takes in the panes of a picture.
+    /// Collects the panes of a picture.
     pub(super) fn gather(
         &mut self,
         device: &wgpu::Device,

@@ -1,10 +1,10 @@
-//! What the pipelines of a picture have in common.
+//! The common parts of the pipelines of a picture.
 
 use egui_wgpu::wgpu;
 
 use super::targets::{COLOUR, DEPTH};
 
-/// Colours that are already multiplied by their opacity, over what is there.
+/// Blends colours with premultiplied opacity over the existing ones.
 pub(super) const OVER: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
 /// One pipeline of the main pass.
@@ -16,11 +16,11 @@ pub(super) struct Drawing<'a> {
     pub groups: &'a [Option<&'a wgpu::BindGroupLayout>],
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub topology: wgpu::PrimitiveTopology,
-    /// Over what is there, and without hiding what comes later; else opaque.
+    /// Whether it blends over the existing picture and writes no depth; otherwise it is opaque.
     pub blended: bool,
-    /// Without the faces that are seen from behind.
+    /// Whether back faces are culled.
     pub culled: bool,
-    /// Whatever is nearer.
+    /// Whether it ignores depth and draws over nearer surfaces.
     pub on_top: bool,
     pub samples: u32,
 }
@@ -76,7 +76,7 @@ impl Drawing<'_> {
     }
 }
 
-/// A shader module from its WGSL.
+/// Compiles a shader module from WGSL.
 pub(super) fn shader(device: &wgpu::Device, label: &str, wgsl: &str) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),

@@ -1,4 +1,4 @@
-//! Soft shadows straight down onto the ground: they say where over it a body is.
+//! Soft shadows straight down onto the ground. They show above which place a body is.
 
 use egui_wgpu::wgpu;
 
@@ -7,7 +7,7 @@ use super::frame::FrameBinding;
 use super::meshes::{self, Meshes, Which};
 use super::pipeline::shader;
 
-/// Texels along a side, as drawn and once blurred.
+/// Texels along a side, as drawn and after blurring.
 const SIZE: u32 = 512;
 const BLURRED_SIZE: u32 = 256;
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
@@ -81,7 +81,7 @@ impl Shadow {
         }
     }
 
-    /// Draws the gathered meshes into the map.
+    /// Draws the collected meshes into the map.
     pub(super) fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -97,13 +97,13 @@ impl Shadow {
             }
         }
         let mut pass = begin(encoder, &self.blurred);
-        // Without meshes the cleared texture will do.
+        // Without meshes the cleared texture is correct.
         if !meshes.is_empty() {
             self.blur.draw(&mut pass, &self.map_group);
         }
     }
 
-    /// For whoever receives the shadow.
+    /// The layout for pipelines that receive the shadow.
     pub(super) fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
@@ -162,7 +162,7 @@ fn pipeline(device: &wgpu::Device, frame: &FrameBinding) -> wgpu::RenderPipeline
         bind_group_layouts: &[Some(frame.layout())],
         immediate_size: 0,
     });
-    // The nearest to the ground counts, whatever the order.
+    // The body nearest to the ground determines the shadow, in any order of drawing.
     let darkest = wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::One,
         dst_factor: wgpu::BlendFactor::One,

@@ -1,4 +1,4 @@
-//! Shaded meshes, the selected ones with their edges, and ghosts that are seen through.
+//! Shaded meshes, selected ones with their edges, and translucent ghosts.
 
 use egui_wgpu::wgpu;
 
@@ -37,7 +37,7 @@ impl Surface {
                 buffers: &meshes::layouts(),
                 topology: wgpu::PrimitiveTopology::TriangleList,
                 blended: which.look == Look::Ghost,
-                // With no inside to be seen, the far half of the faces is not worth drawing.
+                // If the inside of a mesh is never visible, its back faces are culled.
                 culled: which.solid,
                 on_top: false,
                 samples,
@@ -76,12 +76,12 @@ impl Surface {
         draw(&self.opaque, pass, meshes);
     }
 
-    /// A rim around what is selected, after all that is opaque.
+    /// Draws a rim around the selected meshes, after all opaque ones.
     pub(super) fn draw_rims(&self, pass: &mut wgpu::RenderPass<'_>, meshes: &Meshes) {
         draw(&self.rims, pass, meshes);
     }
 
-    /// After everything that is seen through ghosts.
+    /// Draws the ghosts, after everything that is visible through them.
     pub(super) fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, meshes: &Meshes) {
         draw(&self.ghosts, pass, meshes);
     }

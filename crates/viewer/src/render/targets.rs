@@ -1,17 +1,17 @@
-//! The textures that a picture of one size is drawn into before it goes to its target.
+//! The textures of one size into which a picture is drawn before it is copied to its target.
 
 use egui_wgpu::wgpu;
 
 use super::finish::Finish;
 
-/// Linear light goes in and comes out; the bits are sRGB.
+/// Shaders read and write linear light; the texture stores sRGB.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// Floats, for reversed depth.
+/// A float format, for reversed depth.
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 pub(super) struct Targets {
     size: [u32; 2],
-    /// Several samples per pixel, if so.
+    /// The multisampled texture, if there are several samples per pixel.
     multisampled: Option<wgpu::TextureView>,
     colour: wgpu::TextureView,
     depth: wgpu::TextureView,

@@ -7,16 +7,16 @@ use sim_core::Mesh;
 
 use super::normals::{Shaded, Vertex};
 
-/// Triangles ready to draw. Of a mesh too large for the device's buffers they are the first that fit.
+/// Triangles on the device. If the mesh exceeds the device's buffers, they are the first ones that fit.
 pub(super) struct Triangles {
     vertices: wgpu::Buffer,
-    /// `None` where each corner has a vertex of its own, in order.
+    /// `None` if each corner has a vertex of its own, in order.
     indices: Option<wgpu::Buffer>,
     corners: u32,
 }
 
 impl Triangles {
-    /// Corners share vertices.
+    /// Triangles whose corners share vertices.
     pub(super) fn shared((device, queue): (&wgpu::Device, &wgpu::Queue), mesh: &Mesh) -> Self {
         let shaded = Shaded::new(mesh);
         let vertices = &shaded.vertices[..shaded.vertices.len().min(most::<Vertex>(device))];
@@ -33,7 +33,7 @@ impl Triangles {
         }
     }
 
-    /// Each corner by itself, the three of a triangle in order.
+    /// Triangles with separate corners, the three of a triangle in order.
     pub(super) fn apart((device, queue): (&wgpu::Device, &wgpu::Queue), mesh: &Mesh) -> Self {
         let shaded = Shaded::new(mesh);
         let corners = shaded.indices.iter().take(most::<Vertex>(device));
@@ -47,12 +47,12 @@ impl Triangles {
         }
     }
 
-    /// How many are drawn.
+    /// The number of triangles that are drawn.
     pub(super) fn count(&self) -> usize {
         self.corners as usize / 3
     }
 
-    /// Draws instances of a buffer that is bound already.
+    /// Draws the instances of a buffer that is already bound.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, instances: Range<u32>) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         match &self.indices {
@@ -65,13 +65,14 @@ impl Triangles {
     }
 }
 
-/// How many items a buffer can hold, in whole triangles.
+/// The most items of a buffer, for whole triangles.
 fn most<T>(device: &wgpu::Device) -> usize {
     let items = device.limits().max_buffer_size / size_of::<T>() as u64;
     (items.min(u64::from(u32::MAX)) / 3 * 3) as usize
 }
 
-/// Written by the queue, as a buffer that a device without memory, or a lost one, has not made cannot be mapped.
+/// The queue writes the buffer, because a buffer that the device failed to create, for lack of memory or after a loss,
+/// cannot be mapped.
 fn buffer<T: bytemuck::Pod>(
     (device, queue): (&wgpu::Device, &wgpu::Queue),
     usage: wgpu::BufferUsages,

@@ -1,4 +1,4 @@
-//! Arrows on bodies: velocities, forces, and how they turn, each kind to a scale of its own that is told.
+//! Arrows on bodies: velocities, forces and rotation. Each kind has its own scale, which the picture shows.
 
 use sim_core::{DVec3, Shape};
 
@@ -13,21 +13,21 @@ const SPIN: [f32; 3] = [0.0, 0.47, 0.42];
 const ANGULAR_MOMENTUM: [f32; 3] = [0.72, 0.02, 0.42];
 /// Radius of an arrow's shaft, in half sizes of its body.
 const THICKNESS: f64 = 0.07;
-/// Half the size of what has none.
+/// Half the size assumed for bodies without size.
 const POINT: f64 = 0.05;
 
-/// A kind of arrow that is in the picture, and its scale.
+/// A kind of arrow in the picture, and its scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
-    /// What it shows.
+    /// The quantity that it shows.
     pub name: &'static str,
     /// sRGB.
     pub colour: [f32; 3],
-    /// What a length stands for.
+    /// What a length represents.
     pub text: String,
 }
 
-/// The greatest of 1, 2 and 5 times a power of ten that is no more than a length; that itself if there is none.
+/// The largest of 1, 2 and 5 times a power of ten that is at most `most`; `most` itself if there is none.
 fn round_down(most: f64) -> f64 {
     let power = 10_f64.powf(most.log10().floor());
     let steps = [5.0, 2.0, 1.0].map(|step| step * power);
@@ -35,7 +35,7 @@ fn round_down(most: f64) -> f64 {
 }
 
 impl Session {
-    /// Shortens arrows of how bodies turn, so that none is longer than twice what its body reaches.
+    /// Reduces the scales of the rotation arrows so that none is longer than twice the reach of its body.
     pub(super) fn fit_arrows(&mut self) {
         let fitted = |usual: f64, value: &dyn Fn(usize) -> DVec3| {
             let turning = (0..self.world.len()).filter(|&i| self.world.turns(i));
@@ -56,7 +56,7 @@ impl Session {
         self.display.momentum_metres = momentum;
     }
 
-    /// The arrows of body `i`, and the axis that it turns about.
+    /// Adds the arrows of body `i`, and its axis of rotation.
     pub(super) fn add_arrows(&self, i: usize, picture: &mut Picture) {
         let display = &self.display;
         let selected = self.selection() == Some(i);
@@ -78,7 +78,7 @@ impl Session {
         }
     }
 
-    /// The kinds of arrows that are in the picture now, with their scales.
+    /// The kinds of arrows in the picture now, with their scales.
     pub fn scales(&self) -> Vec<Scale> {
         let (display, world) = (&self.display, self.world());
         let seen = |of_all: bool, value: &dyn Fn(usize) -> DVec3| {
@@ -115,8 +115,8 @@ impl Session {
         scales
     }
 
-    /// From the surface of the body's box, so that a short arrow is not hidden inside it; from a ball around
-    /// what turns, so that the arrow stays where it is while the body turns.
+    /// An arrow from the surface of the body's box, so that a short arrow is not hidden inside it. The arrow of a
+    /// turning body starts at a sphere around the body, so that it does not move while the body rotates.
     fn arrow(&self, i: usize, span: DVec3, colour: [f32; 3]) -> Option<Arrow> {
         let direction = span.try_normalize()?;
         let (from, size) = if self.world().turns(i) {
@@ -143,7 +143,7 @@ impl Session {
         })
     }
 
-    /// The axis that a body turns about, as far as it reaches.
+    /// The axis of rotation of a body, as long as the reach of the body.
     fn axis(&self, i: usize, spin: DVec3) -> Option<Line> {
         let way = self.reach(i) * spin.try_normalize()?;
         let middle = self.shown_centre(i);
@@ -156,7 +156,7 @@ impl Session {
         })
     }
 
-    /// How far a body that turns reaches from its centre of mass, however it is turned, at most, m.
+    /// An upper bound on the distance of a turning body's points from its centre of mass, m.
     fn reach(&self, i: usize) -> f64 {
         if let Some(&Shape::Sphere { radius }) = self.world().shape(i) {
             return radius;

@@ -1,19 +1,19 @@
-//! Where numbers stand on the axes, so that lengths can be read off the picture.
+//! The places of numbers on the axes, from which lengths in the picture can be read.
 
 use sim_core::DVec3;
 
 use super::Session;
 
-/// Numbers on each axis, and how far the first is from the origin, in distances of the camera, before it
-/// is made round.
+/// The count of numbers on each axis, and the distance of the first from the origin in distances of the camera, before
+/// rounding.
 const NUMBERS: u32 = 5;
 const SPACING: f64 = 0.11;
 
-/// The numbers of one axis and its letter.
+/// The numbers and the letter of one axis.
 pub struct AxisMarks {
     /// Its name.
     pub letter: &'static str,
-    /// Where the name stands, m: near the origin, which is in view more often than the far end.
+    /// The position of the letter, m: near the origin, which is more often in view than the far end.
     pub place: DVec3,
     /// sRGB.
     pub colour: [f32; 3],
@@ -42,7 +42,7 @@ impl Session {
     }
 }
 
-/// The nearest of 1, 2 and 5 times a power of ten that is not less.
+/// The least of 1, 2 and 5 times a power of ten that is not less than `length`.
 fn round(length: f64) -> f64 {
     let power = 10_f64.powf(length.log10().floor());
     let times = [1.0, 2.0, 5.0].into_iter();

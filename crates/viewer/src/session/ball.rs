@@ -1,4 +1,4 @@
-//! Meshes to draw spheres with: octahedra whose faces are cut in four again and again.
+//! Meshes for drawing spheres: octahedra whose faces are repeatedly subdivided in four.
 
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
@@ -6,15 +6,15 @@ use std::sync::{Arc, OnceLock};
 use glam::{DQuat, DVec3, Vec3};
 use sim_core::Mesh;
 
-/// Cuts of an octahedron: the outline is then within a thousandth of the radius.
+/// The number of subdivisions: the error of the outline is then below a thousandth of the radius.
 const CUTS: u32 = 5;
 
-/// One mesh for each radius that was drawn.
+/// One mesh for each radius drawn.
 #[derive(Default)]
 pub(super) struct Balls(Vec<(f64, Arc<Mesh>)>);
 
 impl Balls {
-    /// The mesh of a sphere; none where it is too small or too large for one.
+    /// The mesh of a sphere; `None` if the radius is too small or too large for one.
     pub(super) fn mesh(&mut self, radius: f64) -> Option<Arc<Mesh>> {
         if let Some((_, known)) = self.0.iter().find(|known| known.0 == radius) {
             return Some(known.clone());

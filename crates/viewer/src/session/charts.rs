@@ -1,35 +1,35 @@
-//! The curves over time that the plots show: which figures, of which runs, in which colours.
+//! The curves over time in the plots: their figures, runs and colours.
 
 use sim_core::Phase;
 
 use super::{Sample, Session, Variant};
 
-/// Points of a curve; where there are more, the least and the greatest of neighbours stand for them.
+/// The most points of a curve; longer curves keep the least and the greatest value of neighbouring points.
 const MOST_POINTS: usize = 1200;
-/// The run itself, sRGB.
+/// The colour of the run itself, sRGB.
 pub const RUN: [f32; 3] = [0.93, 0.94, 0.96];
-/// Parts of its figures.
+/// The colours of the parts of a figure.
 const FIRST: [f32; 3] = [0.95, 0.62, 0.25];
 const SECOND: [f32; 3] = [0.40, 0.68, 0.95];
 const THIRD: [f32; 3] = [0.45, 0.80, 0.50];
 const FOURTH: [f32; 3] = [0.88, 0.56, 0.92];
 
-/// The part of the energy that only bodies have that turn.
+/// The part of the energy that only turning bodies have.
 const TURNING: &str = "turning";
 
 /// A plot over simulated time.
 pub struct Chart {
-    /// What it shows.
+    /// Its title.
     pub title: &'static str,
-    /// In which unit; may be empty.
+    /// The unit; may be empty.
     pub unit: &'static str,
-    /// What it tells.
+    /// An explanation.
     pub meaning: &'static str,
-    /// Whether its values are shown by their powers of ten.
+    /// Whether the axis of values is logarithmic.
     pub logarithmic: bool,
-    /// The figure that runs are compared by.
+    /// The figure by which runs are compared.
     main: Part,
-    /// What is shown of a run alone, beside that.
+    /// The further figures that are shown for a single run.
     parts: &'static [Part],
 }
 
@@ -195,16 +195,16 @@ pub static CHARTS: [Chart; 6] = [
 /// One curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Of which run, or which part of its figure.
+    /// The name of the run, or of the part of its figure.
     pub name: String,
     /// sRGB, for a dark background.
     pub colour: [f32; 3],
-    /// Times, s, and values; of a logarithmic chart their decimal logarithms.
+    /// Times, s, and values; for a logarithmic chart, decimal logarithms of the values.
     pub points: Vec<[f64; 2]>,
 }
 
 impl Session {
-    /// The curves of a chart: of the run with its parts, or of the run beside its variants.
+    /// The curves of a chart: of the run with its parts, or of the run and its variants.
     pub fn curves(&self, chart: &Chart) -> Vec<Curve> {
         let samples = self.playback().samples();
         let curve = |name: &str, part: &Part| Curve {
@@ -227,21 +227,21 @@ impl Session {
             let samples = variant.record().map(|snapshot| &snapshot.sample);
             let points = thinned(points(chart, &chart.main, samples));
             let colour = on_dark(variant.colour);
-            // The exact solution has no error and costs nothing.
+            // The exact solution has no error and no cost.
             (points.len() > 1).then_some(Curve {
                 name,
                 colour,
                 points,
             })
         });
-        // The run itself last, and so on top.
+        // The run itself is drawn last, on top.
         let mut curves: Vec<Curve> = others.collect();
         curves.push(curve(&own, &chart.main));
         curves
     }
 
-    /// The title of the chart that tells most beside the energy: of what turns, else of errors where they are
-    /// known, else of what moves.
+    /// The title of the most informative chart besides the energy: of rotation if bodies rotate, else of errors if they
+    /// are known, else of motion.
     pub fn telling_chart(&self) -> &'static str {
         let mut samples = self.playback().samples();
         match samples.any(|sample| sample.error.is_some()) {
@@ -251,8 +251,8 @@ impl Session {
         }
     }
 
-    /// Speed against error: of the run and of each variant the decimal logarithms of the real time for
-    /// a simulated second, s, and of the error, m; without those where one is 0 or not known.
+    /// Work against precision: for the run and each variant the decimal logarithms of the real time per simulated
+    /// second, s, and of the error, m. Runs for which one of the two is 0 or unknown are left out.
     pub fn work_precision(&self) -> Vec<Curve> {
         let (own, names) = self.variant_names();
         let dt = self.world().settings().dt;
@@ -314,7 +314,8 @@ fn points<'a>(
     samples.filter_map(point).collect()
 }
 
-/// No more than [`MOST_POINTS`]: of neighbours the least and the greatest, in their order.
+/// Reduces a curve to at most [`MOST_POINTS`] points: of neighbours it keeps the least and the greatest, in their
+/// order.
 fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     if points.len() <= MOST_POINTS {
         return points;
@@ -334,7 +335,7 @@ fn thinned(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     kept
 }
 
-/// A colour for a light background, made light enough for a dark one.
+/// Lightens a colour for a light background so that it suits a dark one.
 pub fn on_dark(colour: [f32; 3]) -> [f32; 3] {
     let [red, green, blue] = colour;
     let light = 0.3 * red + 0.59 * green + 0.11 * blue;

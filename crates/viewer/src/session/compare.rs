@@ -1,8 +1,8 @@
-//! Naive against BVH on the running scene: what one answer costs each way, measured on request.
+//! Compares naive and BVH on the running scene: the cost of one answer each way, measured on request.
 //!
-//! A naive answer can take seconds, so the session only says what is to be measured ([`Trial`]) and
-//! takes the figure in when it comes. Where nothing has moved, nothing is measured again; and
-//! measuring rests for a while after each figure, in proportion to what the figure has cost.
+//! A naive answer can take seconds, so the session only describes the measurement ([`Trial`]) and accepts its result
+//! later. If nothing has moved, nothing is measured again. After each measurement the next one waits for a time
+//! proportional to its cost.
 
 use std::time::Duration;
 
@@ -11,19 +11,19 @@ use sim_core::{DMat3, DQuat, DVec3, World};
 
 use super::Session;
 
-/// Tests of an edge with a triangle, a few nanoseconds each, beyond which the naive way is not tried.
+/// The number of edge-triangle tests, a few nanoseconds each, above which the naive way is not measured.
 const MOST_TESTS: u64 = 2_000_000_000;
-/// A short answer is given so often that it fills this time, but not more often than that.
+/// A short answer is repeated until it fills this time, but no further.
 const MEASURED: Duration = Duration::from_micros(100);
 const MOST_ANSWERS: f64 = 10_000.0;
-/// How often that is done, and the time after which it is not done again.
+/// The number of such repetitions, and the time after which no further one starts.
 const ROUNDS: usize = 7;
 const PATIENCE: Duration = Duration::from_millis(500);
-/// The least time between two measurements, and the rest after one, in its own duration.
+/// The least pause between two measurements, and the pause relative to the duration of a measurement.
 const LEAST_REST: Duration = Duration::from_millis(200);
 const REST: u32 = 3;
 
-/// What one answer costs one way.
+/// The cost of one answer in one way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     /// Pairs of boxes compared.
@@ -32,55 +32,55 @@ pub struct Cost {
     pub tests: u64,
     /// Real time of an answer, s: the median of several means.
     pub seconds: f64,
-    /// What the middle half of these lie between, s.
+    /// The quartiles of these means, s.
     pub spread: [f64; 2],
 }
 
-/// Both ways, on one pair of bodies at one moment.
+/// The costs of both ways, for one pair of bodies at one moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
     /// The bodies.
     pub pair: (usize, usize),
-    /// Simulated time at which they were so, s.
+    /// The simulated time of the comparison, s.
     pub time: f64,
     /// Whether their surfaces meet.
     pub meet: bool,
-    /// Whether both ways say so.
+    /// Whether both ways give the same answer.
     pub agree: bool,
-    /// The naive way; none where it would take too long.
+    /// The naive way; `None` if it would take too long.
     pub naive: Option<Cost>,
-    /// Through hierarchies.
+    /// The way through hierarchies.
     pub tree: Cost,
     placed: Placed,
 }
 
-/// How the second mesh is turned in the frame of the first, and where its origin is there, m.
+/// The rotation of the second mesh in the frame of the first, and the position of its origin there, m.
 type Placed = (DQuat, DVec3);
 
-/// What there is to compare now.
+/// The pair to compare now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contest {
-    /// Fewer than two bodies with meshes, or none with the selected one.
+    /// There are fewer than two bodies with meshes, or no such pair has the selected body.
     NoPair,
-    /// No two boxes overlap; those of these two are nearest each other.
+    /// No two boxes overlap; the boxes of these two are nearest to each other.
     Apart(usize, usize),
     /// The boxes of these two overlap.
     Pair(usize, usize),
 }
 
-/// Comparing, on or off.
+/// The state of the comparison.
 #[derive(Clone, Debug, Default)]
 pub struct Compare {
-    /// Whether anything is measured. Off, it costs nothing.
+    /// Whether measurements are made. While off, it costs nothing.
     pub on: bool,
     last: Option<Comparison>,
-    /// The measurement under way, or else to come; results of others are ignored.
+    /// The number of the current or next measurement; results with other numbers are ignored.
     ticket: u64,
     under_way: bool,
     rest: Duration,
 }
 
-/// A measurement to do on any thread.
+/// A measurement, which can run on any thread.
 #[derive(Debug)]
 pub struct Trial {
     world: World,
@@ -88,7 +88,7 @@ pub struct Trial {
     ticket: u64,
 }
 
-/// A measurement that was done.
+/// The result of a measurement.
 #[derive(Debug)]
 pub struct Tried {
     figure: Option<Comparison>,
@@ -97,17 +97,17 @@ pub struct Tried {
 }
 
 impl Compare {
-    /// The latest figure.
+    /// The latest result.
     pub fn last(&self) -> Option<&Comparison> {
         self.last.as_ref().filter(|_| self.on)
     }
 
-    /// Whether a figure is on its way.
+    /// Whether a measurement is under way.
     pub fn is_under_way(&self) -> bool {
         self.under_way
     }
 
-    /// Forgets the figure, and the one on its way.
+    /// Discards the result and the measurement under way.
     pub(super) fn forget(&mut self) {
         self.last = None;
         self.ticket += 1;
@@ -116,7 +116,7 @@ impl Compare {
 }
 
 impl Trial {
-    /// Measures. `stopwatch` reads real time.
+    /// Runs the measurement. `stopwatch` reads real time.
     pub fn run(self, stopwatch: impl Fn() -> Duration) -> Tried {
         let began = stopwatch();
         let figure = self.measure(&stopwatch);
@@ -166,9 +166,9 @@ impl Trial {
     }
 }
 
-/// Time of an answer, s: the median of several means, and what the middle half of them lie between.
+/// The time of an answer, s: the median of several means, and their quartiles.
 fn time(stopwatch: &impl Fn() -> Duration, answer: impl Fn() -> bool) -> (f64, [f64; 2]) {
-    // What comes first pays for cold caches, and counts only where there is time for no other.
+    // The first answer is slowed by cold caches. It counts only if there is no time for another.
     let (began, first) = timed(stopwatch, &answer, 1);
     let answers = if first < MEASURED {
         let fits = MEASURED.as_secs_f64() / first.as_secs_f64().max(1e-9);
@@ -191,7 +191,7 @@ fn time(stopwatch: &impl Fn() -> Duration, answer: impl Fn() -> bool) -> (f64, [
     }
 }
 
-/// When some answers began, and the mean time of each.
+/// The start of a series of answers, and the mean time of each.
 fn timed(
     stopwatch: &impl Fn() -> Duration,
     answer: &impl Fn() -> bool,
@@ -205,8 +205,8 @@ fn timed(
 }
 
 impl Session {
-    /// Which two bodies are compared: of those whose boxes overlap, and of which one is selected
-    /// if any body is, the two with the most triangles; where none overlap, the two nearest.
+    /// The pair to compare: of the bodies whose boxes overlap, the two with the most triangles; if no boxes overlap,
+    /// the two nearest. If a body is selected, it is one of the two.
     pub fn contest(&self) -> Contest {
         let world = &self.world;
         let solid: Vec<usize> = (0..world.len())
@@ -231,7 +231,7 @@ impl Session {
         contest
     }
 
-    /// Lets `elapsed` real time pass; the measurement that is due then, if one is.
+    /// Advances real time by `elapsed`. Returns the measurement that is due, if there is one.
     pub fn trial_due(&mut self, elapsed: Duration) -> Option<Trial> {
         if !self.compare.on {
             return None;
@@ -253,7 +253,7 @@ impl Session {
         })
     }
 
-    /// Takes in a figure; one from before a reset or another scene is ignored.
+    /// Accepts a result; a result from before a reset or of another scene is ignored.
     pub fn accept_trial(&mut self, tried: Tried) {
         if tried.ticket != self.compare.ticket {
             return;
@@ -263,13 +263,13 @@ impl Session {
         self.compare.last = tried.figure;
     }
 
-    /// Gives up the measurement under way.
+    /// Discards the measurement under way.
     pub fn drop_trial(&mut self) {
         self.compare.forget();
         self.compare.on = false;
     }
 
-    /// Whether the figure is of another moment than now.
+    /// Whether a measurement is wanted: comparing is on, and the last result is not of the present pair and placement.
     pub fn wants_trial(&self) -> bool {
         let (Contest::Pair(i, j) | Contest::Apart(i, j)) = self.contest() else {
             return false;
@@ -286,12 +286,12 @@ pub(super) fn placed(world: &World, i: usize, j: usize) -> Placed {
     (back * world.rotation(j), back * apart)
 }
 
-/// Distance between two boxes along the axis where it is greatest, m; not above 0 where they overlap.
+/// Distance between two boxes along the axis where it is greatest, m; at most 0 if they overlap.
 fn boxes_gap(world: &World, i: usize, j: usize) -> f64 {
     let (Some(first), Some(second)) = (world.mesh(i), world.mesh(j)) else {
         return f64::INFINITY;
     };
-    // The boxes around both as they are turned.
+    // The bounding boxes of both meshes as they are rotated.
     let [(middle, half), (other, other_half)] = [(first, i), (second, j)].map(|(mesh, i)| {
         let turned = DMat3::from_quat(world.rotation(i));
         let bounds = mesh.bounds();

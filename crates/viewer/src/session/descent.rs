@@ -1,8 +1,8 @@
-//! How two hierarchies answer whether two meshes meet, level by level, for teaching: which boxes are
-//! compared, and which of them come into question for the next level.
+//! How two hierarchies determine whether two meshes meet, level by level, for teaching: the pairs of boxes compared,
+//! and the pairs that are candidates for the next level.
 //!
-//! It is the descent of textbooks through the trees of the program, whose own takes many pairs at once,
-//! in another order, and stops at the first hit.
+//! This is the textbook descent through the trees of the program. The program's own descent processes many pairs at
+//! once, in another order, and stops at the first hit.
 
 use sim_core::{Aabb, Bvh, DMat3, DQuat, DVec3};
 
@@ -10,7 +10,7 @@ use super::compare::placed;
 use super::{Contest, Session};
 use crate::picture::Line;
 
-/// Pairs of one level beyond which no further one is looked at.
+/// The number of pairs of one level above which the descent stops.
 const MOST_PAIRS: usize = 20_000;
 const MEET: [f32; 4] = [0.92, 0.35, 0.0, 0.95];
 const APART: [f32; 4] = [0.20, 0.34, 0.58, 0.65];
@@ -20,26 +20,26 @@ const APART: [f32; 4] = [0.20, 0.34, 0.58, 0.65];
 pub struct Level {
     /// Pairs of boxes compared.
     pub compared: usize,
-    /// Those that meet.
+    /// The pairs that meet.
     pub meeting: usize,
-    /// Boxes of the first and of the second mesh, by their place among [`Bvh::boxes`], and whether one
-    /// of their pairs meets.
+    /// Boxes of the first and of the second mesh, by their index in [`Bvh::boxes`], and whether one of their pairs
+    /// meets.
     boxes: [Vec<(usize, bool)>; 2],
 }
 
 /// One comparison of the descent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pair {
-    /// The boxes, by their places among [`Bvh::boxes`].
+    /// The boxes, by their indices in [`Bvh::boxes`].
     boxes: [usize; 2],
     /// Whether they meet.
     pub meet: bool,
-    /// How many pairs of the boxes in them come next if they meet; none where neither has boxes in it, and
-    /// triangles are tested.
+    /// The number of pairs of their children, compared next if the boxes meet; 0 if neither box has children, and
+    /// triangles are tested instead.
     pub below: usize,
 }
 
-/// Where the second tree is in the frame of the first.
+/// The placement of the second tree in the frame of the first.
 struct At {
     turned: DMat3,
     offset: DVec3,
@@ -54,18 +54,18 @@ impl At {
     }
 }
 
-/// The boxes of a tree in the order of [`Bvh::boxes`], each with the places of its children.
+/// The boxes of a tree in the order of [`Bvh::boxes`], each with the indices of its children.
 struct Tree {
     boxes: Vec<Aabb>,
     children: Vec<Vec<usize>>,
-    /// Each place, in order.
+    /// The indices in order.
     itself: Vec<usize>,
 }
 
 impl Tree {
     fn of(bvh: &Bvh) -> Self {
         let (mut boxes, mut children) = (Vec::new(), Vec::new());
-        // Each box comes before those in it.
+        // Each box precedes the boxes in it.
         let mut path: Vec<usize> = Vec::new();
         for (n, (level, aabb)) in bvh.boxes().enumerate() {
             path.truncate(level);
@@ -84,7 +84,7 @@ impl Tree {
         }
     }
 
-    /// What a box is compared by on the way down: the boxes in it, or itself where it is a leaf.
+    /// The boxes compared on the next level: the children, or the box itself if it is a leaf.
     fn below(&self, n: usize) -> &[usize] {
         match self.children[n].is_empty() {
             true => &self.itself[n..=n],
@@ -92,7 +92,7 @@ impl Tree {
         }
     }
 
-    /// The pairs that come after two boxes that meet; none after two leaves.
+    /// The pairs after two boxes that meet; none after two leaves.
     fn after(&self, other: &Self, [a, b]: [usize; 2]) -> Vec<[usize; 2]> {
         if self.children[a].is_empty() && other.children[b].is_empty() {
             return Vec::new();
@@ -103,8 +103,8 @@ impl Tree {
             .collect()
     }
 
-    /// Whether a box meets one of another mesh; of one that is turned, the box around that along the axes of
-    /// the first.
+    /// Whether a box meets one of another mesh. If that mesh is rotated, its box is replaced by the bounding box along
+    /// the axes of the first.
     fn meets(&self, other: &Self, [a, b]: [usize; 2], at: &At) -> bool {
         let (a, b) = (self.boxes[a], other.boxes[b]);
         let apart = at.turned * b.centre() + at.offset - a.centre();
@@ -113,8 +113,7 @@ impl Tree {
     }
 }
 
-/// All comparisons one after the other, each pair of boxes followed by what is in it, as a search goes that
-/// looks for all hits. The second tree is turned, then displaced.
+/// All comparisons in depth-first order, as in a search for all hits. The second tree is rotated, then translated.
 pub fn pairs(first: &Bvh, second: &Bvh, placed: (DQuat, DVec3)) -> Vec<Pair> {
     let (first, second, at) = (Tree::of(first), Tree::of(second), At::new(placed));
     let mut left = vec![[0, 0]];
@@ -137,8 +136,7 @@ pub fn pairs(first: &Bvh, second: &Bvh, placed: (DQuat, DVec3)) -> Vec<Pair> {
     pairs
 }
 
-/// All levels, from the two boxes around everything to pairs of leaves, with the second tree turned, then
-/// displaced.
+/// All levels, from the two root boxes to pairs of leaves; the second tree is rotated, then translated.
 pub fn descent(first: &Bvh, second: &Bvh, placed: (DQuat, DVec3)) -> Vec<Level> {
     let (first, second, at) = (Tree::of(first), Tree::of(second), At::new(placed));
     let mut pairs = vec![[0, 0]];
@@ -149,7 +147,7 @@ pub fn descent(first: &Bvh, second: &Bvh, placed: (DQuat, DVec3)) -> Vec<Level> 
         let listed = |of: usize| {
             let mut boxes: Vec<(usize, bool)> = pairs.iter().map(|p| (p[of], false)).collect();
             boxes.extend(meeting.iter().map(|p| (p[of], true)));
-            // Of each box the last entry, which says whether any pair meets.
+            // The last entry of each box says whether any of its pairs meets.
             boxes.sort_unstable();
             boxes.dedup_by(|later, kept| {
                 let same = later.0 == kept.0;
@@ -163,7 +161,7 @@ pub fn descent(first: &Bvh, second: &Bvh, placed: (DQuat, DVec3)) -> Vec<Level> 
             meeting: meeting.len(),
             boxes: [listed(0), listed(1)],
         });
-        // Both go down; a leaf waits for the other to come to its leaves.
+        // Both trees descend; a leaf is compared again until the other tree reaches its leaves.
         let below = meeting.iter().flat_map(|&pair| first.after(&second, pair));
         pairs = below.collect();
     }
@@ -171,17 +169,17 @@ pub fn descent(first: &Bvh, second: &Bvh, placed: (DQuat, DVec3)) -> Vec<Level> 
 }
 
 impl Session {
-    /// The descent for the two bodies that are compared, as they are now.
+    /// The descent for the two compared bodies in their present state.
     pub fn descent(&mut self) -> Vec<Level> {
         self.descend(descent).unwrap_or_default()
     }
 
-    /// Its comparisons one by one.
+    /// The comparisons of that descent in order.
     pub fn pairs(&mut self) -> Vec<Pair> {
         self.descend(pairs).unwrap_or_default()
     }
 
-    /// Looks at the trees of the two bodies that are compared.
+    /// Applies `look` to the trees of the two compared bodies.
     fn descend<T>(&mut self, look: impl Fn(&Bvh, &Bvh, (DQuat, DVec3)) -> T) -> Option<T> {
         let (Contest::Pair(i, j) | Contest::Apart(i, j)) = self.contest() else {
             return None;
@@ -191,7 +189,7 @@ impl Session {
         Some(look(self.world.bvh(i)?, self.world.bvh(j)?, at))
     }
 
-    /// Goes up or down in the descent that is shown, level by level; shows it if it was not.
+    /// Moves up or down by levels in the descent; shows it if it was hidden.
     pub fn step_descent(&mut self, by: isize) {
         let deepest = self.descent().len().saturating_sub(1);
         self.display.pair = None;
@@ -199,7 +197,7 @@ impl Session {
         *shown = Some(shown.map_or(0, |level| level.saturating_add_signed(by).min(deepest)));
     }
 
-    /// Goes to the next comparison of the descent or to one before, or begins with the first.
+    /// Moves to the next or a previous comparison of the descent, or begins with the first.
     pub fn step_pair(&mut self, by: isize) {
         let last = self.pairs().len().saturating_sub(1);
         self.display.descent.get_or_insert(0);
@@ -207,8 +205,8 @@ impl Session {
         *shown = Some(shown.map_or(0, |pair| pair.saturating_add_signed(by).min(last)));
     }
 
-    /// The boxes of the level shown: those that come into question for the next one, and the others. Or those
-    /// of one comparison, among those that were found to meet before.
+    /// Adds the boxes of the shown level, those that are candidates for the next one and the others. For a single
+    /// comparison: its boxes, among those found to meet before.
     pub(super) fn add_descent(&mut self, lines: &mut Vec<Line>) {
         let Some(shown) = self.display.descent else {
             return;
@@ -278,5 +276,5 @@ impl Session {
     }
 }
 
-/// A box of a tree by its place, its colour, and the width of its edges.
+/// The index of a box in a tree, its colour, and the width of its edges.
 type Drawn = (usize, [f32; 4], f32);

@@ -1,5 +1,5 @@
-//! Edits of bodies. In the layout state they change the set-up, later only the world.
-//! A refused value leaves everything as it was and says why.
+//! Edits of bodies. In the layout state they change the set-up, later only the world. A refused value changes nothing,
+//! and a message gives the reason.
 
 use scene::{SceneBody, SceneShape, SceneTurn};
 use sim_core::DVec3;
@@ -30,7 +30,7 @@ impl Session {
         );
     }
 
-    /// Gives the selected body, which turns, an angular velocity, rad/s.
+    /// Gives the selected turning body an angular velocity, rad/s.
     pub fn set_spin(&mut self, spin: DVec3) {
         self.edit(
             "spin",
@@ -43,14 +43,14 @@ impl Session {
         );
     }
 
-    /// Lets the selected body turn, or only translate. Layout only.
+    /// Makes the selected body a turning body, or one that only translates. Layout only.
     pub fn set_turns(&mut self, turns: bool) {
         self.edit_shape("turns", |body| {
             body.turn = turns.then(SceneTurn::default);
         });
     }
 
-    /// Puts the selected body under a constant force, N.
+    /// Applies a constant force to the selected body, N.
     pub fn set_force(&mut self, force: DVec3) {
         self.edit(
             "force",
@@ -59,11 +59,11 @@ impl Session {
         );
     }
 
-    /// Gives the selected body a mass, kg; positive. It is movable then.
+    /// Gives the selected body a mass, kg, positive; the body becomes movable.
     pub fn set_mass(&mut self, mass: f64) {
         let turns = self.selection.is_some_and(|i| self.world.turns(i));
         if turns && self.state == State::Layout {
-            // Its inertia is another one.
+            // The inertia changes with the mass.
             return self.edit_shape("mass", |body| (body.mass, body.immovable) = (mass, false));
         }
         self.edit(
@@ -73,7 +73,7 @@ impl Session {
         );
     }
 
-    /// Makes the selected body immovable, or movable again with the mass it had.
+    /// Makes the selected body immovable, or movable again with its former mass.
     pub fn set_immovable(&mut self, immovable: bool) {
         let Some(i) = self.selection else { return };
         let turns = self.world.turns(i) && self.state == State::Layout;
@@ -86,7 +86,7 @@ impl Session {
         }
     }
 
-    /// Says which part of the approaching speed the selected body leaves an impact with, 0 to 1.
+    /// Sets the coefficient of restitution of the selected body, 0 to 1.
     pub fn set_restitution(&mut self, restitution: f64) {
         self.edit(
             "restitution",
@@ -109,17 +109,17 @@ impl Session {
         self.edit_shape("shape", |body| body.shape = shape);
     }
 
-    /// Turns the selected body: degrees about the fixed axes x, then y, then z. Layout only.
+    /// Rotates the selected body: degrees about the fixed axes x, then y, then z. Layout only.
     pub fn set_rotation(&mut self, rotation: DVec3) {
         self.edit_shape("rotation", |body| body.rotation = rotation);
     }
 
-    /// Stretches the selected body along its own axes; not 0. Layout only.
+    /// Scales the selected body along its own axes; not 0. Layout only.
     pub fn set_scale(&mut self, scale: DVec3) {
         self.edit_shape("scale", |body| body.scale = scale);
     }
 
-    /// Gives the selected body another name, which no other has.
+    /// Gives the selected body a new name, which must be unique.
     pub fn rename_selected(&mut self, name: &str) {
         let (Some(i), name) = (self.selection, name.trim()) else {
             return;
@@ -144,13 +144,13 @@ impl Session {
         self.edited();
     }
 
-    /// Whether a body is left out of the picture.
+    /// Whether a body is hidden in the picture.
     pub fn is_hidden(&self, body: usize) -> bool {
         let body = self.scene.bodies.get(body);
         body.is_some_and(|body| self.hidden.contains(&body.name))
     }
 
-    /// Leaves a body out of the picture, or shows it again; it moves and collides all the same.
+    /// Hides a body in the picture, or shows it again; it moves and collides in either case.
     pub fn hide(&mut self, body: usize, hidden: bool) {
         let Some(body) = self.scene.bodies.get(body) else {
             return;
@@ -189,7 +189,7 @@ impl Session {
         self.notices.info("delete", text);
     }
 
-    /// Adds a copy of the selected body beside everything else and selects it. Layout only.
+    /// Adds a copy of the selected body beside all others and selects it. Layout only.
     pub fn duplicate_selected(&mut self) {
         let Some(i) = self.selected_in_layout("duplicate") else {
             return;
@@ -197,7 +197,7 @@ impl Session {
         self.add_body(self.scene.bodies[i].clone());
     }
 
-    /// Adds a body beside everything else, with a name of its own, and selects it.
+    /// Adds a body beside all others, with a unique name, and selects it.
     pub(super) fn add_body(&mut self, mut body: SceneBody) {
         body.name = self.unused_name(&body.name);
         body.position = self.free_place(&body);
@@ -210,8 +210,8 @@ impl Session {
         }
     }
 
-    /// Applies a change to the selected body of the world and, in the layout state, of the scene.
-    /// Whether it was made.
+    /// Applies a change to the selected body of the world and, in the layout state, of the scene. Returns whether it
+    /// succeeded.
     fn edit(
         &mut self,
         field: &'static str,
@@ -239,7 +239,7 @@ impl Session {
         }
     }
 
-    /// Applies a change of the set-up that needs new geometry.
+    /// Applies a change of the set-up that requires new geometry.
     fn edit_shape(&mut self, field: &'static str, change: impl FnOnce(&mut SceneBody)) {
         let Some(i) = self.selected_in_layout(field) else {
             return;
@@ -249,7 +249,7 @@ impl Session {
         self.rebuild(field, |scene| scene.bodies[i] = before);
     }
 
-    /// The selected body, if the set-up may be changed now; says so if not.
+    /// The selected body, if the set-up can be changed now; otherwise a message says why not.
     fn selected_in_layout(&mut self, field: &'static str) -> Option<usize> {
         let i = self.selection?;
         if self.state == State::Layout {
@@ -262,7 +262,7 @@ impl Session {
         None
     }
 
-    /// Makes the world anew from a changed scene, or takes the change back. Whether it worked.
+    /// Makes the world again from a changed scene, or reverts the change. Returns whether it succeeded.
     fn rebuild(&mut self, about: &'static str, take_back: impl FnOnce(&mut scene::Scene)) -> bool {
         match self.scene.world() {
             Ok(world) => {
@@ -279,7 +279,7 @@ impl Session {
         }
     }
 
-    /// `wish`, or `wish 2`, `wish 3`, ... if taken.
+    /// `wish`, or `wish 2`, `wish 3`, ... if that name is in use.
     fn unused_name(&self, wish: &str) -> String {
         let taken = |name: &str| self.scene.bodies.iter().any(|body| body.name == name);
         std::iter::once(wish.to_owned())

@@ -1,4 +1,4 @@
-//! Figures of a running world: what a step costs, and how far the result has drifted.
+//! Figures of a running world: the cost of a step, and the drift of energy and momentum.
 
 use std::time::Duration;
 
@@ -6,24 +6,24 @@ use sim_core::{DVec3, Force, World};
 
 use crate::number;
 
-/// A mean in which old values fade: each new one counts a tenth.
+/// An exponential moving average: each new value has the weight 0.1.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Smoothed(Option<f64>);
 
 impl Smoothed {
-    /// Takes in a new duration.
+    /// Adds a duration.
     pub fn add(&mut self, value: Duration) {
         let value = value.as_secs_f64();
         self.0 = Some(self.0.map_or(value, |mean| mean + 0.1 * (value - mean)));
     }
 
-    /// The mean, s; none before the first value.
+    /// The mean, s; `None` before the first value.
     pub fn seconds(&self) -> Option<f64> {
         self.0
     }
 }
 
-/// Speed of the last frames.
+/// The speed of the last frames.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Figures {
     /// Real time that one step takes.
@@ -32,17 +32,17 @@ pub struct Figures {
     pub frame: Smoothed,
     /// Steps taken in the last frame.
     pub steps_per_frame: u32,
-    /// Real time given up since the start, because steps came too late or took too long.
+    /// Real time dropped since the start, because steps came too late or took too long.
     pub behind: Duration,
-    /// Frames since time was last given up, while it still shows.
+    /// Frames since time was last dropped, while that is shown.
     since_behind: Option<u32>,
 }
 
 impl Figures {
-    /// Notes the real time that a frame gave up.
+    /// Records the real time that a frame dropped.
     pub fn fell_behind(&mut self, dropped: Duration) {
         self.behind += dropped;
-        // A second at 60 frames: long enough to be read.
+        // One second at 60 frames per second: long enough to be read.
         self.since_behind = match self.since_behind {
             _ if !dropped.is_zero() => Some(0),
             Some(frames) if frames < 60 => Some(frames + 1),
@@ -50,58 +50,57 @@ impl Figures {
         };
     }
 
-    /// Whether the simulation is slower than real time just now.
+    /// Whether the simulation is slower than real time now.
     pub fn is_behind(&self) -> bool {
         self.since_behind.is_some()
     }
 }
 
-/// The state of a world at the moment that drift is counted from.
+/// The state of a world relative to which drift is computed.
 ///
-/// What constant forces and weight do is known: the work `F . dx` and the impulse `F t`. What other forces do is known where they have a
-/// potential, to the energy, and where they act between movable bodies, to the momentum. Drift is
+/// The effects of constant forces and weight are known: the work `F . dx` and the impulse `F t`. The energy of other
+/// forces is known if they have a potential, and their effect on the momentum is known if they act between movable
+/// bodies. Drift is the rest, the error of method and collisions.
 /// what remains after that is taken away, the error of method and collisions.
 #[derive(Clone, Debug)]
 pub struct Reference {
     time: f64,
     energy: f64,
-    /// Potential energy of forces that are not constant, J.
+    /// Potential energy of the forces that are not constant, J.
     potential: f64,
-    /// Kinetic and potential energy together, J; 0 where it is no more than rounding.
+    /// Sum of kinetic and potential energy, J; 0 if it is only rounding error.
     total: f64,
     momentum: DVec3,
     impacts: u64,
-    /// Steps that ended with bodies in contact.
+    /// The number of steps that ended with bodies in contact.
     contact_steps: u64,
     /// Position and speed of each body.
     motion: Vec<(DVec3, f64)>,
 }
 
-/// Errors since a [`Reference`]. Relative ones are relative to what was there at the start and to
-/// what is known to have been added, never to the present motion: that has the error in it, and
-/// would make one without bound look like one of 100 %.
+/// Errors since a [`Reference`]. Relative errors are relative to the value at the start plus the known changes, never
+/// to the present motion: that contains the error, and an unbounded error would appear as one of 100 %.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
-    /// Change of kinetic plus potential energy, J; none while it is not finite.
+    /// Change of kinetic plus potential energy, J; `None` if it is not finite.
     pub energy: Option<f64>,
-    /// The same relative to the energy at the start; none where that is 0.
+    /// The change relative to the energy at the start; `None` if that is 0.
     pub relative_energy: Option<f64>,
-    /// Whether friction or an inelastic impact may have taken energy away: then a loss is no error.
+    /// Whether friction or an inelastic impact may have dissipated energy; a loss is then no error.
     pub dissipates: bool,
-    /// Whether a moving body that nothing moves, or a law from outside, may have given or taken
-    /// energy: then no change is an error.
+    /// Whether a moving immovable body or an external law may have added or removed energy; then no change is an error.
     pub driven: bool,
-    /// Error of the momentum less the impulse of the forces, kg m/s; known as long as nothing but
-    /// constant forces acts from outside, and nothing has hit what may be immovable.
+    /// Error of the momentum minus the impulse of the forces, kg m/s. It is known while all external forces are
+    /// constant and no body has hit one that may be immovable.
     pub momentum: Option<f64>,
-    /// The same relative to `pushes`; none where that is 0.
+    /// The error relative to `pushes`; `None` if that is 0.
     pub relative_momentum: Option<f64>,
     /// The sum of `m |v|` at the start and of the constant forces' `|F| t` since, kg m/s.
     pub pushes: f64,
 }
 
 impl Reference {
-    /// Counts drift from the present state of `world`.
+    /// A reference at the present state of `world`.
     pub fn of(world: &World) -> Self {
         Self {
             time: world.time(),
@@ -135,12 +134,12 @@ impl Reference {
             + (varying_potential(world) - self.potential);
         let energy = Some(energy).filter(|change| change.is_finite());
         let forces = world.forces();
-        // Nobody has met or lain on anybody.
+        // Whether any bodies have met or been in contact.
         let has_met =
             world.impacts() != self.impacts || world.contact_steps() != self.contact_steps;
         let mut bodies = 0..world.len();
         let inelastic = has_met && bodies.clone().any(|i| world.restitution(i) < 1.0);
-        // One rough body among smooth ones slides freely.
+        // One rough body among smooth ones slides without friction.
         let rough = has_met && bodies.clone().filter(|&i| world.friction(i) > 0.0).count() > 1;
         let pushed = has_met && bodies.clone().any(|i| is_driven(world, i));
         let closed = !has_met || bodies.all(|i| world.kind(i).is_movable());
@@ -160,14 +159,14 @@ impl Reference {
 }
 
 impl Drift {
-    /// Whether the change of the energy is an error: any, unless something may drive the bodies, and
-    /// a gain where something may brake them.
+    /// Whether the change of the energy is an error: every change is, unless something may drive the bodies; only a
+    /// gain is, if something may dissipate energy.
     pub fn energy_is_error(&self) -> bool {
         let gains = self.energy.is_some_and(|change| change > 0.0);
         !self.driven && (!self.dissipates || gains)
     }
 
-    /// The change of the energy, relative where it can be, and in J.
+    /// The change of the energy as text, relative if possible, and in J.
     pub fn energy_text(&self) -> String {
         let Some(change) = self.energy else {
             return "unknown: unbounded".to_owned();
@@ -175,7 +174,7 @@ impl Drift {
         relative_and_absolute(self.relative_energy, change, "J")
     }
 
-    /// The error of the momentum likewise; none where it is not known.
+    /// The error of the momentum as text; `None` if it is not known.
     pub fn momentum_text(&self) -> Option<String> {
         let error = self.momentum?;
         Some(relative_and_absolute(
@@ -198,8 +197,8 @@ fn movable(world: &World) -> impl Iterator<Item = usize> {
     (0..world.len()).filter(|&i| world.kind(i).is_movable())
 }
 
-/// Kinetic and potential energy together, J; 0 where it is no more than the rounding of its parts,
-/// as of bodies at rest on both sides of the height that weight is counted from.
+/// Sum of kinetic and potential energy, J; 0 if it is at most the rounding error of its parts, as for bodies at rest on
+/// both sides of the height of zero potential.
 fn total_energy(world: &World) -> f64 {
     let weight = weight(world);
     let constant = |i| (world.force(i) + world.mass(i) * weight).dot(world.position(i));
@@ -207,12 +206,12 @@ fn total_energy(world: &World) -> f64 {
     let parts = world.kinetic_energy()
         + varying_potential(world).abs()
         + movable(world).map(|i| constant(i).abs()).sum::<f64>();
-    // A unit of rounding for each body in a sum of potentials, and for its products.
+    // One unit of rounding for each body in a sum of potentials, and some for its products.
     let rounding = f64::EPSILON * (world.len() + 4) as f64 * parts;
     if total.abs() > rounding { total } else { 0.0 }
 }
 
-/// The part of the potential energy that is not that of a constant force, J.
+/// The potential energy of the forces that are not constant, J.
 fn varying_potential(world: &World) -> f64 {
     if world.forces().iter().all(is_weight) {
         return 0.0;
@@ -222,7 +221,7 @@ fn varying_potential(world: &World) -> f64 {
     world.potential_energy() + movable(world).map(constant).sum::<f64>()
 }
 
-/// Acceleration by all weights, m/s².
+/// Sum of the accelerations of all weights, m/s².
 fn weight(world: &World) -> DVec3 {
     let weights = world.forces().iter().filter_map(|force| match force {
         Force::Gravity { acceleration } => Some(*acceleration),
@@ -235,10 +234,10 @@ fn is_weight(force: &Force) -> bool {
     matches!(force, Force::Gravity { .. })
 }
 
-/// Whether it acts between movable bodies alone, so that their momentum stays.
+/// Whether a force acts between movable bodies alone, so that it conserves their momentum.
 fn is_internal(world: &World, force: &Force) -> bool {
     match force {
-        // It leaves out immovable bodies, as does a law for every two.
+        // Gravitation, and a law for every two bodies, leave out immovable bodies.
         Force::Gravitation { .. } | Force::Pair { bodies: None, .. } => true,
         Force::Spring { .. } | Force::Pair { .. } => {
             force.bodies().all(|i| world.kind(i).is_movable())
@@ -253,7 +252,7 @@ fn is_internal(world: &World, force: &Force) -> bool {
     }
 }
 
-/// Whether it may take energy away for good.
+/// Whether a force may dissipate energy.
 fn dissipates(force: &Force) -> bool {
     match *force {
         Force::Gravity { .. }
@@ -268,7 +267,7 @@ fn dissipates(force: &Force) -> bool {
     }
 }
 
-/// Whether it may give energy: a law from outside, or a pull by a body that nothing stops.
+/// Whether a force may add energy: an external law, or a tie to a moving immovable body.
 fn drives(world: &World, force: &Force) -> bool {
     match force {
         Force::Body { .. } | Force::Pair { .. } => true,
@@ -283,13 +282,13 @@ fn drives(world: &World, force: &Force) -> bool {
     }
 }
 
-/// Whether a body keeps a velocity or a spin, whatever it meets.
+/// Whether an immovable body moves: it keeps its velocity and spin, whatever it meets.
 fn is_driven(world: &World, i: usize) -> bool {
     let moves = world.velocity(i) != DVec3::ZERO || world.spin(i) != DVec3::ZERO;
     !world.kind(i).is_movable() && moves
 }
 
-/// `error / scale`, where there is a scale.
+/// `error / scale`, if the scale is not 0.
 fn ratio(error: f64, scale: f64) -> Option<f64> {
     (scale > 0.0).then(|| error / scale)
 }

@@ -1,4 +1,4 @@
-//! Scenes and meshes from files, and scenes to files.
+//! Loads scenes and meshes from files, and saves scenes.
 
 use std::path::{Path, PathBuf};
 
@@ -9,16 +9,15 @@ use super::record::is_run_file;
 use crate::number;
 
 impl Session {
-    /// A session on a scene that came from here: the name of one of the gallery, or a path. It is saved to its
-    /// own file.
+    /// A session on a scene from `name_or_path`: the name of a gallery scene, or a path. A scene file is saved to
+    /// itself.
     pub fn of_file(scene: Scene, name_or_path: &Path) -> anyhow::Result<Self> {
         let mut session = Self::new(scene)?;
         session.file = is_scene_file(name_or_path).then(|| name_or_path.to_owned());
         Ok(session)
     }
 
-    /// Opens a scene of the gallery, by name, or of a file, by path. On failure the present one
-    /// stays.
+    /// Opens a scene of the gallery, by name, or of a file, by path. On failure the present scene stays.
     pub fn open(&mut self, name_or_path: impl AsRef<Path>) {
         let name_or_path = name_or_path.as_ref();
         let opened = match is_run_file(name_or_path) {
@@ -54,7 +53,7 @@ impl Session {
         }
     }
 
-    /// Lets another scene take the place of this one; how to look at it stays.
+    /// Replaces this scene by another; the view settings stay.
     fn give_way(&mut self, session: Session) {
         let (mut display, edition) = (self.display, self.edition + 1);
         let (parallel, profiled) = (self.camera.parallel, self.profiled);
@@ -76,8 +75,8 @@ impl Session {
         self.opening = opening;
     }
 
-    /// Looks at the scene's files again, and reads them if they make another scene; edits that no file has are
-    /// kept instead. A file that is half written, wrong or gone leaves everything as it is, which is told.
+    /// Reads the scene's files again, and opens the scene if it has changed. Unsaved edits are kept instead. A file
+    /// that is incomplete, invalid or missing changes nothing; a message says so.
     pub fn reread(&mut self) {
         let Some(path) = self.file.clone() else {
             return;
@@ -103,7 +102,7 @@ impl Session {
         }
     }
 
-    /// Tells of the first of the scene's files that is not there; whether there is one.
+    /// Shows a message about the first missing file of the scene. Returns whether one is missing.
     fn tell_of_gone(&mut self) -> bool {
         let Some(gone) = self.files().find(|path| !path.exists()) else {
             return false;
@@ -121,7 +120,7 @@ impl Session {
         true
     }
 
-    /// The files that the scene is made of, as far as it has one of its own: that, and those of its meshes.
+    /// The files of the scene, if it has one of its own: the scene file and its mesh files.
     pub fn files(&self) -> impl Iterator<Item = &Path> + Clone {
         let meshes = self
             .scene
@@ -137,8 +136,8 @@ impl Session {
         self.file.as_deref()
     }
 
-    /// Adds a body of 1 kg at rest with the mesh of a file, beside all others. Returns to the
-    /// layout state first.
+    /// Adds a body of 1 kg at rest with the mesh of a file, beside all others. The session first returns to the layout
+    /// state.
     pub fn import(&mut self, path: &Path) {
         match MeshRef::load_reporting(path) {
             Ok((mesh, report)) => {
@@ -152,17 +151,17 @@ impl Session {
         }
     }
 
-    /// Adds a body of a shape beside all others, at rest. Returns to the layout state first.
+    /// Adds a body of a shape beside all others, at rest. The session first returns to the layout state.
     pub fn add(&mut self, name: &str, shape: SceneShape) {
         self.reset();
         self.add_body(SceneBody::new(name.to_owned(), shape));
     }
 
-    /// Writes the set-up to a scene file; `.toml` is added where it is missing. A file that is
-    /// not the scene's own is overwritten only with `overwrite`.
+    /// Writes the set-up to a scene file; the extension `.toml` is added if it is missing. A file that is not the
+    /// scene's own is overwritten only with `overwrite`.
     pub fn save(&mut self, path: &Path, overwrite: bool) {
         let mut file = path.as_os_str().to_owned();
-        // Only a name that stays as it is can have been agreed to be overwritten.
+        // The user has agreed to overwrite only a name that does not change here.
         let agreed = overwrite && is_scene_file(path);
         if !is_scene_file(path) {
             file.push(".toml");
@@ -187,7 +186,7 @@ impl Session {
         }
     }
 
-    /// The path of a file beside the program that does not exist, named after the scene.
+    /// An unused path in the working directory, named after the scene.
     pub(super) fn new_file(&self, ending: &str) -> PathBuf {
         let plain = |c: char| match c.is_alphanumeric() || "-_ ".contains(c) {
             true => c,
@@ -200,8 +199,8 @@ impl Session {
         free.next().unwrap_or_default()
     }
 
-    /// Writes something that was made of the run beside the program: to a new file of the scene's name
-    /// and this ending, which is told.
+    /// Writes a result of the run to a new file in the working directory, with the scene's name and this extension. A
+    /// message names the file.
     pub fn export(&mut self, ending: &str, bytes: &[u8]) {
         let path = self.new_file(ending);
         self.export_to(&path, bytes);
@@ -222,7 +221,7 @@ impl Session {
     }
 }
 
-/// What came in, a line for each thing to know.
+/// A report about an imported mesh, with one line for each finding.
 fn report_lines(name: &str, report: &MeshReport) -> Vec<String> {
     let count = |count: usize| number::count(count as f64);
     let [x, y, z] = report.extent.map(number::short);

@@ -5,7 +5,7 @@ use sim_core::Force;
 use super::{Input, Session, State};
 
 impl Session {
-    /// Puts a force in the place of another.
+    /// Replaces a force.
     pub fn replace_force(&mut self, index: usize, force: Force) {
         self.edit_forces(|forces| {
             *forces.get_mut(index)? = force;
@@ -26,7 +26,7 @@ impl Session {
         self.edit_forces(|forces| (index < forces.len()).then(|| drop(forces.remove(index))));
     }
 
-    /// Changes the list of forces, unless what is to be changed is not there.
+    /// Changes the list of forces, unless the force to change does not exist.
     fn edit_forces(&mut self, change: impl FnOnce(&mut Vec<Force>) -> Option<()>) {
         let mut forces = self.world.forces().to_vec();
         if change(&mut forces).is_none() {

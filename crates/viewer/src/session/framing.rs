@@ -1,18 +1,18 @@
-//! The room that bodies take up, and the camera that looks at them.
+//! The region that bodies occupy, and the camera that shows it.
 
 use scene::{SceneBody, SceneShape};
 use sim_core::{Aabb, DMat3, DVec3, Shape};
 
 use super::Session;
 
-/// Largest way that the opening view makes room for, in radii of the body: a bullet would be a
-/// dot in it. Half-spaces farther away are not looked at either.
+/// The longest path that the opening view includes, in radii of the body: for a bullet's path the bullet would be a
+/// dot. Half-spaces farther away are not included either.
 pub(super) const OPENING_REACH: f64 = 8.0;
 
-/// Room below what stands on a new half-space, in sizes of all bodies: more than rounding.
+/// The gap below bodies that stand on a new half-space, in sizes of all bodies: larger than rounding.
 const STAND: f64 = 1e-9;
 
-/// A body's box about its position, m; that of points and half-spaces has no size.
+/// A body's box about its position, m; of zero size for points and half-spaces.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bounds {
     pub(super) centre: DVec3,
@@ -20,7 +20,7 @@ pub(super) struct Bounds {
 }
 
 impl Session {
-    /// Centre and radius, m, of a ball around the selected body, or around all bodies.
+    /// Centre and radius, m, of a sphere around the selected body, or around all bodies.
     pub(super) fn extent(&self) -> Option<(DVec3, f64)> {
         let (min, max) = match self.selection {
             Some(i) if !self.is_half_space(i) => self.body_box(i),
@@ -34,7 +34,7 @@ impl Session {
         Some(((min + max) / 2.0, ((max - min).length() / 2.0).max(1e-3)))
     }
 
-    /// Top of a body's box as drawn, m: where its name goes.
+    /// Top of a body's box as drawn, m: the place of its name.
     pub fn top(&self, body: usize) -> DVec3 {
         if self.is_half_space(body) {
             return self.foot(body, self.room().0);
@@ -44,8 +44,8 @@ impl Session {
         DVec3::new(middle.x, max.y, middle.z)
     }
 
-    /// The middle of a body's box as drawn, m, where its handles are; of a half-space the point of its plane
-    /// that is nearest to all bodies.
+    /// The middle of a body's box as drawn, m: the place of its handles. For a half-space, the point of its plane
+    /// nearest to all bodies.
     pub fn middle(&self, body: usize) -> DVec3 {
         if self.is_half_space(body) {
             return self.foot(body, self.room().0);
@@ -53,8 +53,8 @@ impl Session {
         self.shown_position(body) + self.bounds(body).centre
     }
 
-    /// A place for `body` that touches nothing: beside all others along x, at their height, or for
-    /// a half-space through the origin or else just behind them all.
+    /// A position for `body` without contact: beside all others along x, at their height. A half-space goes through the
+    /// origin, or otherwise just behind all bodies.
     pub(super) fn free_place(&self, body: &SceneBody) -> DVec3 {
         let Some((min, max)) = self.world_box() else {
             return DVec3::ZERO;
@@ -64,13 +64,12 @@ impl Session {
             SceneShape::HalfSpace { normal } => {
                 let normal = normal.normalize_or_zero();
                 let lowest = (middle - 0.5 * normal.signum() * (max - min)).dot(normal);
-                // Through the origin, or where what reaches behind it stands on it; with zeros that
-                // have no sign.
+                // Through the origin, or below the bodies that reach behind it. Zeros have a positive sign.
                 let gap = STAND * (max - min).max_element().max(lowest.abs());
                 return (lowest - gap).min(0.0) * normal + DVec3::ZERO;
             }
             SceneShape::Sphere { radius } => *radius,
-            // However it is turned.
+            // The radius covers every rotation.
             SceneShape::Mesh(mesh) => {
                 let Aabb { min, max } = mesh.mesh().bounds();
                 let corner = min.as_dvec3().abs().max(max.as_dvec3().abs());
@@ -80,7 +79,7 @@ impl Session {
         DVec3::new(max.x + 1.1 * reach + 0.1, middle.y, middle.z)
     }
 
-    /// Box of all bodies as drawn, but for half-spaces.
+    /// Box of all bodies as drawn, without half-spaces.
     pub(super) fn world_box(&self) -> Option<(DVec3, DVec3)> {
         (0..self.world.len())
             .filter(|&i| !self.is_half_space(i))
@@ -94,7 +93,7 @@ impl Session {
         (middle - half, middle + half)
     }
 
-    /// Box of a body about its position, turned as it is drawn.
+    /// Box of a body about its position, rotated as drawn.
     pub(super) fn bounds(&self, i: usize) -> Bounds {
         let Bounds { centre, half } = self.bounds_unturned(i);
         if !self.world.turns(i) {
@@ -107,7 +106,7 @@ impl Session {
         }
     }
 
-    /// Box of a body about its position that it stays in however it turns.
+    /// Box of a body about its position that contains it at any rotation.
     fn bounds_however_turned(&self, i: usize) -> Bounds {
         let bounds = self.bounds_unturned(i);
         match self.world.turns(i) {
@@ -127,7 +126,7 @@ impl Session {
         })
     }
 
-    /// Whether a body stands still for ever.
+    /// Whether a body can never move.
     pub(super) fn is_static(&self, i: usize) -> bool {
         !self.world.kind(i).is_movable() && self.world.velocity(i) == DVec3::ZERO
     }
@@ -136,14 +135,14 @@ impl Session {
         matches!(self.world.shape(i), Some(Shape::HalfSpace { .. }))
     }
 
-    /// Centre and radius, m, of a ball around the room.
+    /// Centre and radius, m, of a sphere around the room box.
     pub(super) fn room(&self) -> (DVec3, f64) {
         let (min, max) = self.room_box();
         (0.5 * (min + max), (0.5 * (max - min).length()).max(1e-3))
     }
 
-    /// Box of all bodies as they were set up and of what they stand before: how much of a
-    /// half-space is worth seeing. It stays while they move.
+    /// Box of all bodies as they were set up and of the half-spaces near them. It determines the drawn part of
+    /// half-spaces and stays constant while bodies move.
     pub(super) fn room_box(&self) -> (DVec3, DVec3) {
         let set_up = |i: usize| self.scene.bodies[i].position;
         let boxes = (0..self.world.len())
@@ -163,7 +162,7 @@ impl Session {
         }
     }
 
-    /// A box grown to where its middle stands on the half-spaces near it, as they were set up.
+    /// Extends a box to the feet of its middle on the half-spaces near it, as they were set up.
     pub(super) fn with_feet(&self, min: DVec3, max: DVec3) -> (DVec3, DVec3) {
         let middle = 0.5 * (min + max);
         let reach = OPENING_REACH * (max - min).length();
@@ -176,7 +175,7 @@ impl Session {
             })
     }
 
-    /// The point of a half-space's plane, as drawn, nearest to another point.
+    /// The point of a half-space's plane, as drawn, that is nearest to `point`.
     pub(super) fn foot(&self, half_space: usize, point: DVec3) -> DVec3 {
         self.foot_at(half_space, self.shown_position(half_space), point)
     }

@@ -1,7 +1,7 @@
-//! Undo and redo of the set-up, and what would be lost with it.
+//! Undo and redo of the set-up, and the question about unsaved edits.
 //!
-//! A snapshot of the scene is taken once it has been left alone for a moment, so that a drag of a number
-//! is one step; meshes are shared, so snapshots are small.
+//! A snapshot of the scene is taken once it has not changed for a moment, so that dragging a number is one edit. Meshes
+//! are shared, so snapshots are small.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -10,9 +10,9 @@ use scene::Scene;
 
 use super::{Session, State};
 
-/// How long a scene is left alone before what has changed counts as one edit.
+/// The time without changes after which the changes count as one edit.
 const PAUSE: Duration = Duration::from_millis(400);
-/// The most edits that can be taken back.
+/// The most edits that can be undone.
 const MOST: usize = 200;
 
 /// The scene after each edit, the oldest first.
@@ -20,37 +20,37 @@ const MOST: usize = 200;
 pub(super) struct History {
     states: Vec<(u64, Scene)>,
     now: usize,
-    /// Number of the state that is in the file, or that came from the gallery.
+    /// The number of the state that is in the file, or that came from the gallery.
     saved: u64,
     next: u64,
-    /// An edit is under way, and how long ago its last change was.
+    /// The time since the last change of an unfinished edit.
     pending: Option<Duration>,
-    /// What is to be done once it is said what happens to the edits.
+    /// The action that waits for the user's answer about the edits.
     leaving: Option<Leaving>,
-    /// The window is to be closed.
+    /// Whether the window must close.
     closing: bool,
 }
 
-/// What takes the scene away.
+/// An action that discards the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Leaving {
-    /// Another scene is opened.
+    /// Opens another scene.
     Open(PathBuf),
-    /// An empty scene is begun.
+    /// Begins an empty scene.
     New,
-    /// A stop of the tour is set up, with one of its attempts; see [`stop`](super::stop).
+    /// Sets up a stop of the tour, with one of its attempts; see [`stop`](super::stop).
     Tour {
         /// The number of the stop.
         stop: usize,
         /// The number of its attempt.
         attempt: usize,
     },
-    /// The window is closed.
+    /// Closes the window.
     Close,
 }
 
 impl History {
-    /// Begins with a scene as it was opened.
+    /// The history of a scene as it was opened.
     pub(super) fn begin(scene: &Scene) -> Self {
         Self {
             states: vec![(0, scene.clone())],
@@ -78,17 +78,17 @@ impl History {
 }
 
 impl Session {
-    /// What has been changed so far is nothing to take back or to lose.
+    /// Discards the history: the changes so far can neither be undone nor lost.
     pub(super) fn begin_history(&mut self) {
         self.history = History::begin(&self.scene);
     }
 
-    /// The scene has been changed, or may have been.
+    /// Records that the scene has, or may have, changed.
     pub(super) fn edited(&mut self) {
         self.history.pending = Some(Duration::ZERO);
     }
 
-    /// Lets real time pass: an edit that has been left alone is done.
+    /// Advances real time; an edit without recent changes is finished.
     pub fn settle(&mut self, elapsed: Duration) {
         if let Some(quiet) = &mut self.history.pending {
             *quiet += elapsed;
@@ -98,35 +98,35 @@ impl Session {
         }
     }
 
-    /// Ends an edit, whether it has been left alone or not.
+    /// Finishes an edit at once.
     pub fn settle_at_once(&mut self) {
         if self.is_settling() {
             self.history.push(&self.scene);
         }
     }
 
-    /// Whether an edit waits for being done.
+    /// Whether an edit is unfinished.
     pub fn is_settling(&self) -> bool {
         self.history.pending.is_some()
     }
 
-    /// Whether there is something to take back.
+    /// Whether there is an edit to undo.
     pub fn can_undo(&self) -> bool {
         self.history.now > 0 || self.differs()
     }
 
-    /// Whether something was taken back.
+    /// Whether there is an undone edit to redo.
     pub fn can_redo(&self) -> bool {
         self.history.now + 1 < self.history.states.len() && !self.differs()
     }
 
-    /// Whether the scene is other than the last snapshot.
+    /// Whether the scene differs from the last snapshot.
     fn differs(&self) -> bool {
         let last = self.history.states.get(self.history.now);
         self.history.pending.is_some() && last.is_none_or(|(_, last)| *last != self.scene)
     }
 
-    /// Takes the last edit of the set-up back. Physics returns to the layout first.
+    /// Undoes the last edit of the set-up. The session first returns to the layout state.
     pub fn undo(&mut self) {
         self.history.push(&self.scene);
         if self.history.now > 0 {
@@ -138,7 +138,7 @@ impl Session {
         }
     }
 
-    /// Does again what was taken back.
+    /// Redoes the last undone edit.
     pub fn redo(&mut self) {
         self.history.push(&self.scene);
         if self.history.now + 1 < self.history.states.len() {
@@ -172,24 +172,24 @@ impl Session {
         }
     }
 
-    /// Whether there is something in the set-up that no file has.
+    /// Whether the set-up has changes that no file has.
     pub fn is_changed(&self) -> bool {
         self.file_gone || self.has_edits()
     }
 
-    /// Whether there are edits that no file has had.
+    /// Whether there are edits that were never in a file.
     pub(super) fn has_edits(&self) -> bool {
         let saved = |(number, _): &(u64, Scene)| *number == self.history.saved;
         self.differs() || !self.history.states.get(self.history.now).is_some_and(saved)
     }
 
-    /// The number of the last edit, if no file has it: another one after each.
+    /// The number of the last edit, if no file has it. Each edit has a different number.
     pub fn unsaved(&self) -> Option<u64> {
         let (number, _) = self.history.states.get(self.history.now)?;
         self.is_changed().then_some(*number)
     }
 
-    /// The set-up is in a file now.
+    /// Records that the set-up is in a file now.
     pub(super) fn mark_saved(&mut self) {
         self.file_gone = false;
         self.history.push(&self.scene);
@@ -198,7 +198,7 @@ impl Session {
         }
     }
 
-    /// The scene is called after its file, and so it stays when edits are taken back.
+    /// Names the scene after its file. Undo keeps the name.
     pub(super) fn name_after(&mut self, file: &Path) {
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         for (_, scene) in &mut self.history.states {
@@ -207,8 +207,7 @@ impl Session {
         self.scene.name = name.to_string();
     }
 
-    /// Opens another scene or closes the window, at once or once it is said what happens to edits
-    /// that no file has.
+    /// Opens another scene or closes the window: at once, or after the user has decided about unsaved edits.
     pub fn leave(&mut self, leaving: Leaving) {
         if self.is_changed() {
             self.history.leaving = Some(leaving);
@@ -217,24 +216,25 @@ impl Session {
         }
     }
 
-    /// What waits for an answer.
+    /// The action that waits for an answer.
     pub fn leaving(&self) -> Option<&Leaving> {
         self.history.leaving.as_ref()
     }
 
-    /// The edits are kept, and so the scene is.
+    /// The user cancels the action; scene and edits stay.
     pub fn stay(&mut self) {
         self.history.leaving = None;
     }
 
-    /// The edits are given up.
+    /// The user discards the edits; the action is done.
     pub fn leave_unsaved(&mut self) {
         if let Some(leaving) = self.history.leaving.take() {
             self.go(leaving);
         }
     }
 
-    /// Saves, to the scene's own file or a new one beside the program, and leaves if that worked.
+    /// Saves to the scene's own file or to a new one in the working directory, and then does the action if that
+    /// succeeded.
     pub fn save_and_leave(&mut self) {
         self.save_own();
         if !self.is_changed() {
@@ -242,7 +242,7 @@ impl Session {
         }
     }
 
-    /// Saves to the scene's own file, or a new one beside the program.
+    /// Saves to the scene's own file, or to a new one in the working directory.
     pub fn save_own(&mut self) {
         let path = match &self.file {
             Some(own) => own.clone(),
@@ -251,7 +251,7 @@ impl Session {
         self.save(&path, false);
     }
 
-    /// Whether the window is to be closed.
+    /// Whether the window must close.
     pub fn is_closing(&self) -> bool {
         self.history.closing
     }
@@ -265,7 +265,7 @@ impl Session {
         }
     }
 
-    /// Opens a scene or adds a mesh, by the name's ending; asks before edits are lost.
+    /// Opens a scene or adds a mesh, depending on the extension; asks before edits are lost.
     pub fn take_in(&mut self, path: &Path) {
         if super::files::is_scene_file(path) || super::record::is_run_file(path) {
             self.leave(Leaving::Open(path.to_path_buf()));

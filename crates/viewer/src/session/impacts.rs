@@ -1,4 +1,4 @@
-//! Impacts of late: where, along which normal, how strong.
+//! Recent impacts: their points, normals and impulses.
 
 use std::collections::VecDeque;
 
@@ -7,19 +7,19 @@ use sim_core::{DVec3, Impact, World};
 use super::Session;
 use crate::picture::{Line, Pane};
 
-/// The most that are shown at a time.
+/// The most impacts shown at a time.
 pub(super) const MOST: usize = 200;
 /// Simulated time in which an impact fades, s.
 const SHOWN: f64 = 0.5;
-/// Rounding of the time of the picture, in steps.
+/// Tolerance of the time of the picture, in steps.
 const NOW: f64 = 1e-6;
 pub(super) const ORANGE: [f32; 3] = [1.0, 0.45, 0.05];
-/// Length of a normal: in half sizes of the smaller body, and at least in distances of the camera.
+/// The length of a normal, in half sizes of the smaller body, and its minimum in distances of the camera.
 const LENGTH: f64 = 1.6;
 const LEAST_LENGTH: f64 = 0.03;
-/// The strongest impulse's arrow, in lengths of its normal.
+/// The length of the strongest impulse's arrow, in lengths of its normal.
 const STRONGEST: f64 = 0.75;
-/// Half the width of an arrow's head, in lengths of the arrow; it is as long as wide.
+/// Half the width of an arrow's head, in lengths of the arrow; its length equals its width.
 const HEAD: f64 = 0.12;
 
 /// The impacts that have not faded, the oldest first.
@@ -27,7 +27,7 @@ const HEAD: f64 = 0.12;
 pub(super) struct Impacts(VecDeque<Impact>);
 
 impl Impacts {
-    /// Takes in those of some steps, and forgets what has faded where the last step of `world` began.
+    /// Adds the impacts of some steps, and removes those that had faded when the last step of `world` began.
     pub(super) fn extend(&mut self, impacts: &[Impact], world: &World) {
         let now = world.time() - world.settings().dt;
         self.0.extend(impacts.iter().cloned());
@@ -38,8 +38,8 @@ impl Impacts {
 }
 
 impl Session {
-    /// What touches, each point as a dot, its normal as a thin line, and on it the impulse on the second body, or on
-    /// the first where nothing moves that, as an arrow, as long as it is strong. The bodies do not hide them.
+    /// Draws each contact point as a dot and its normal as a thin line. On it an arrow, proportional to the impulse,
+    /// shows the impulse on the second body, or on the first if the second is immovable. Bodies do not hide them.
     pub(super) fn add_impacts(&self, panes: &mut Vec<Pane>, marks: &mut Vec<Line>) {
         let slack = self.slack();
         let now = self.shown_time() + slack;
@@ -50,11 +50,11 @@ impl Session {
         for impact in self.seen_impacts() {
             let age = (now - impact.time) / SHOWN;
             let fresh = (1.0 - age).clamp(0.0, 1.0).powi(2) as f32;
-            // Of the latest instant alone, or that of a crowd would be a tangle.
+            // Arrows are drawn for the latest instant alone, because those of a crowd would be confusing.
             if impact.time >= latest && age < 1.0 {
                 self.add_touching(impact, 1.0 - age as f32, panes, marks);
             }
-            // Among stronger ones a weak one is small, or those of a crowd would hide it.
+            // Arrows are relative to the strongest impulse, otherwise the weak ones of a crowd would hide it.
             let strength = impact.impulse / strongest;
             let width = 1.0 + 2.0 * strength as f32;
             let [red, green, blue] = ORANGE;
@@ -67,7 +67,7 @@ impl Session {
                 });
             };
             let along = self.normal_length(impact) * impact.normal;
-            // On what can move: from an immovable second body back to the first.
+            // The impulse on the movable body: if the second is immovable, on the first.
             let along = match self.world.kind(impact.bodies.1).is_movable() {
                 true => along,
                 false => -along,
@@ -83,7 +83,7 @@ impl Session {
         }
     }
 
-    /// Those that the picture has come to.
+    /// The impacts up to the time of the picture.
     fn seen_impacts(&self) -> impl Iterator<Item = &Impact> {
         let now = self.shown_time() + self.slack();
         self.impacts
@@ -92,12 +92,12 @@ impl Session {
             .filter(move |impact| impact.time <= now)
     }
 
-    /// Rounding of the time of the picture, s.
+    /// Tolerance of the time of the picture, s.
     fn slack(&self) -> f64 {
         NOW * self.world.settings().dt
     }
 
-    /// The strongest impulse that is drawn, N s: the arrows are compared with it.
+    /// The strongest impulse drawn, N s: the lengths of arrows are relative to it.
     pub(super) fn strongest_impulse(&self) -> Option<f64> {
         let drawn = self.seen_impacts().filter(|_| self.display.impacts);
         drawn.map(|impact| impact.impulse).reduce(f64::max)

@@ -1,34 +1,32 @@
-//! The instant that is drawn: between two states bodies go straight and turn evenly, and where they have
-//! impacts in the step, through the poses that they have in these at their times.
+//! The instant that is drawn. Between two states bodies move straight and rotate uniformly; bodies with impacts in the
+//! step pass through their poses at these times.
 
 use sim_core::{Collision, DQuat, DVec3, Impact, World};
 
 use super::{Session, State, clock};
 
-/// A state counts as reached this part of a step before it.
+/// A state counts as reached from this fraction of a step before it.
 pub(super) const SAME: f64 = 1e-9;
 
-/// Where bodies have impacts within the step that led to the state looked at, in the order of bodies and
-/// times.
+/// The poses of bodies at their impacts within the last step, in the order of bodies and times.
 #[derive(Debug, Default)]
 pub(super) struct Passes(Vec<Pass>);
 
-/// Where what moves of a body is, m, and how its shape is turned.
+/// The position of a body's moving point, m, and the rotation of its shape.
 type Placed = (DVec3, DQuat);
 
-/// A body at an impact.
+/// The pose of a body at an impact.
 #[derive(Clone, Copy, Debug)]
 struct Pass {
     body: usize,
-    /// Part of the step.
+    /// The time as a fraction of the step.
     part: f64,
     place: DVec3,
     rotation: DQuat,
 }
 
 impl Passes {
-    /// Those of the last step of `world`. In the discrete modes bodies go back from where they touch, so
-    /// nobody passes there.
+    /// The poses of the last step of `world`. None in the discrete modes, which move bodies back from the contact.
     pub(super) fn of(world: &World, impacts: &[Impact]) -> Self {
         let settings = world.settings();
         if settings.collision != Collision::Continuous {
@@ -59,10 +57,10 @@ impl Passes {
 }
 
 impl Session {
-    /// The part of the last step that bodies are drawn at; 1 is the state itself.
+    /// The fraction of the last step at which bodies are drawn; 1 is the state itself.
     pub(super) fn shown_part(&self) -> f64 {
         match self.state {
-            // Before the first state there is none to come from.
+            // The first state has no predecessor.
             _ if self.world.steps() == 0 => 1.0,
             State::Running if self.display.between => self.clock.fraction(),
             State::Paused => self.instant.unwrap_or(1.0),
@@ -80,7 +78,7 @@ impl Session {
         self.shown_part() < 1.0
     }
 
-    /// Where the origin of body `i` is drawn, m.
+    /// The origin of body `i` as drawn, m.
     pub(super) fn shown_position(&self, i: usize) -> DVec3 {
         let centre = self.shown_centre(i);
         match self.world.inertia(i) {
@@ -89,7 +87,7 @@ impl Session {
         }
     }
 
-    /// How body `i` is drawn turned.
+    /// The rotation of body `i` as drawn.
     pub(super) fn shown_rotation(&self, i: usize) -> DQuat {
         match self.shown_part() {
             _ if !self.world.turns(i) => DQuat::IDENTITY,
@@ -101,7 +99,7 @@ impl Session {
         }
     }
 
-    /// Where what moves of body `i` is drawn, m: its centre of mass if it turns, else its origin.
+    /// The moving point of body `i` as drawn, m: its centre of mass if it is a turning body, else its origin.
     pub(super) fn shown_centre(&self, i: usize) -> DVec3 {
         match self.shown_part() {
             1.0 => self.world.position(i),
@@ -112,7 +110,7 @@ impl Session {
         }
     }
 
-    /// Where a point of body `i` is drawn that is given in the frame of its shape, m; without one what moves of it.
+    /// A point of body `i` as drawn, given in the frame of its shape, m; without one, its moving point.
     pub(super) fn shown_point(&self, i: usize, point: Option<DVec3>) -> DVec3 {
         match point {
             Some(point) => self.shown_position(i) + self.shown_rotation(i) * point,
@@ -120,7 +118,7 @@ impl Session {
         }
     }
 
-    /// How fast body `i` moves in the picture, m/s: within a step with impacts on the way between them.
+    /// The velocity of body `i` in the picture, m/s: in a step with impacts, that between two of them.
     pub(super) fn shown_velocity(&self, i: usize) -> DVec3 {
         let part = self.shown_part();
         if part == 1.0 || self.passes.of_body(i).is_empty() {
@@ -130,7 +128,7 @@ impl Session {
         (b.0 - a.0) / ((to - from) * self.world.settings().dt)
     }
 
-    /// Where a body has passed in this step, up to the instant that is drawn, m.
+    /// The positions of a body at its impacts in this step, up to the instant drawn, m.
     pub(super) fn passed_places(&self, i: usize) -> impl Iterator<Item = DVec3> {
         let part = self.shown_part();
         let passes = self.passes.of_body(i).iter();
@@ -138,27 +136,27 @@ impl Session {
         passed.map(|pass| pass.place)
     }
 
-    /// The part of the step and the pose that a body comes from at a part of the step, and those that it
-    /// goes to: places, m, of what moves, and rotations.
+    /// The fractions of the step and the poses before and after a given fraction of the step: positions of the moving
+    /// point, m, and rotations.
     fn legs(&self, i: usize, part: f64) -> [(f64, Placed); 2] {
         let passes = self.passes.of_body(i).iter();
         let start = self.world.interpolated_pose(i, 0.0).1;
         let mut from = (0.0, (self.world.previous_position(i), start));
         for pass in passes {
-            // Of several at one time the first.
+            // Of several impacts at the same time, the first.
             let there = (pass.part, (pass.place, pass.rotation));
             if pass.part >= part && pass.part > from.0 {
                 return [from, there];
             }
             from = there;
         }
-        // At the end of a step that ends with an impact there is no way left.
+        // If the step ends with an impact, the last leg has zero length.
         let end = (self.world.position(i), self.world.rotation(i));
         [from, (1.0_f64.max(from.0 + SAME), end)]
     }
 
-    /// Holds still at a simulated time, s, within the step that leads past it; beyond what is kept at
-    /// its ends.
+    /// Pauses at a simulated time, s, within the step that contains it. A time outside the kept states is clamped to
+    /// them.
     pub fn go_to_time(&mut self, time: f64) {
         let index = self.playback.first_from(time);
         self.go_to(index);
@@ -168,7 +166,7 @@ impl Session {
         }
     }
 
-    /// Holds still at the next impact that is kept, found or missed, or at the one before.
+    /// Pauses at the next or the previous kept impact, found or missed.
     pub fn go_to_impact(&mut self, next: bool) {
         let now = self.shown_time();
         let slack = SAME * self.world.settings().dt;
@@ -189,12 +187,12 @@ impl Session {
         }
     }
 
-    /// Lets the clock go on from the instant that is drawn.
+    /// Continues the clock from the instant drawn.
     pub(super) fn resume_clock(&mut self) {
         let dt = self.world.settings().dt;
         let part = self.instant.take().unwrap_or(1.0).min(1.0 - SAME);
         if let Ok(mut clock) = clock(dt, self.speed) {
-            // Less than a step, so that none is due.
+            // Less than a step, so that no step is due.
             clock.advance(std::time::Duration::from_secs_f64(part * dt));
             self.clock = clock;
         }

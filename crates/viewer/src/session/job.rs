@@ -1,9 +1,8 @@
-//! Steps as a piece of work that can be done on any thread.
+//! Steps as jobs that can run on any thread.
 //!
-//! A step through hierarchies takes microseconds, but a naive one of two detailed meshes can take
-//! seconds. So a session does not step its world itself: it hands out a copy of the world and the
-//! number of steps due, and takes the result in when it comes. What was reset or edited meanwhile
-//! wins over a result that comes late. The meshes are shared, so the copy is small.
+//! A step through hierarchies takes microseconds, but a naive one of two detailed meshes can take seconds. So a session
+//! does not step its world itself: it hands out a copy of the world and the number of steps due, and accepts the result
+//! later. A reset or edit in the meantime makes the result obsolete. The meshes are shared, so the copy is small.
 
 use std::time::Duration;
 
@@ -18,24 +17,24 @@ use super::{
 use crate::stopwatch::nanoseconds;
 use crate::{errors, number};
 
-/// Real time that the steps of one frame may take before the rest of them is given up: leaves
-/// half of a 60 Hz frame to the drawing.
+/// The real time that the steps of one frame may take; the rest of them is then dropped. It leaves half of a 60 Hz
+/// frame for drawing.
 pub const STEP_BUDGET: Duration = Duration::from_millis(8);
 
-/// A world and the steps it is to take.
+/// A world and the number of steps to take.
 #[derive(Debug)]
 pub struct Job {
     world: World,
     exact: Exact,
     steps: u32,
-    /// Positions are to be noted after each step.
+    /// Whether positions are recorded after each step.
     traced: bool,
-    /// Steps are timed by phase.
+    /// Whether steps are timed by phase.
     profiled: bool,
     edition: u64,
 }
 
-/// A world that has taken steps.
+/// The result: a world that has taken steps.
 #[derive(Debug)]
 pub struct Done {
     world: World,
@@ -50,8 +49,8 @@ pub struct Done {
 }
 
 impl Job {
-    /// Takes the steps, as many as fit into [`STEP_BUDGET`] and at least one. `stopwatch` reads
-    /// real time; what is noted of a step does not count as its cost.
+    /// Takes the steps, as many as fit into [`STEP_BUDGET`] and at least one. `stopwatch` reads real time; the time to
+    /// record a step does not count as its cost.
     pub fn run(mut self, stopwatch: impl Fn() -> Duration) -> Done {
         let began = stopwatch();
         let (mut taken, mut time, mut error) = (0, Duration::ZERO, None);
@@ -103,8 +102,8 @@ impl Job {
 }
 
 impl Session {
-    /// Lets `elapsed` real time pass; the steps that are due then, if there are any. While steps
-    /// handed out earlier are still under way, time is given up and counted, never caught up with.
+    /// Advances real time by `elapsed` and returns the steps that are due, if any. While earlier steps are still under
+    /// way, the time is dropped and counted, and never made up.
     pub fn due(&mut self, elapsed: Duration) -> Option<Job> {
         let steps = match self.state {
             State::Running if self.under_way => {
@@ -130,12 +129,12 @@ impl Session {
         };
         let steps = match steps {
             0 => 0,
-            // Inputs come between steps.
+            // Inputs apply between steps.
             due => u64::from(due).min(self.replay_inputs()) as u32,
         };
         (steps > 0).then(|| {
             self.under_way = true;
-            // The copy, which lacks what a world keeps to save time, is only looked at.
+            // The copy is only drawn, so it can lack the cached data of the world.
             let copy = self.world.clone();
             Job {
                 world: std::mem::replace(&mut self.world, copy),
@@ -148,8 +147,8 @@ impl Session {
         })
     }
 
-    /// Takes in the result of a job; one from before a reset, a pause or an edit is ignored. A
-    /// failed step pauses, is shown, and selects the body where it happened.
+    /// Accepts the result of a job; a result from before a reset, a pause or an edit is ignored. A failed step pauses
+    /// the session, shows a message and selects the body where it happened.
     pub fn accept(&mut self, done: Done) {
         if !self.under_way || done.edition != self.edition {
             return;
@@ -194,21 +193,21 @@ impl Session {
         self.hold_at_the_end(left);
     }
 
-    /// Steps until what the scene shows is over, at least one; as many as one likes where it never is, or
-    /// where it is over already.
+    /// The number of steps until the demonstration is over, at least one. Unlimited if it has no end or is over
+    /// already.
     fn steps_to_the_end(&self) -> u32 {
         let left = self.time_left().map(|left| left / self.world.settings().dt);
         left.map_or(u32::MAX, |steps| (steps.ceil() as u32).max(1))
     }
 
-    /// Simulated time until what the scene shows is over, s, where that is to come.
+    /// Simulated time until the demonstration is over, s, if that is in the future.
     fn time_left(&self) -> Option<f64> {
         let slack = SAME * self.world.settings().dt;
         let left = self.scene.ends? - self.world.time();
         (left > slack).then_some(left)
     }
 
-    /// Holds still where what the scene shows is over, once.
+    /// Pauses once when the demonstration is over.
     fn hold_at_the_end(&mut self, came_from: Option<f64>) {
         if let (Some(_), None, Some(ends)) = (came_from, self.time_left(), self.scene.ends)
             && self.state == State::Running
@@ -220,7 +219,7 @@ impl Session {
         }
     }
 
-    /// Says what steps have not seen, and what would see it.
+    /// Shows a message about impacts that steps have missed, and how to detect them.
     fn tell_missed(&mut self, moments: &[Moment]) {
         let Some(last) = moments.iter().flat_map(|moment| &moment.missed).last() else {
             return;
@@ -240,7 +239,7 @@ impl Session {
         self.notices.offer("missed", remedy);
     }
 
-    /// Holds still at a state that has been kept.
+    /// Pauses at a kept state.
     pub fn go_to(&mut self, index: usize) {
         self.pause();
         self.disown_jobs();
@@ -267,19 +266,19 @@ impl Session {
         }
     }
 
-    /// Holds still and goes to the state before, if it is kept.
+    /// Pauses and goes to the previous state, if it is kept.
     pub fn step_back(&mut self) {
         if self.state != State::Layout {
             self.go_to(self.playback.now().saturating_sub(1));
         }
     }
 
-    /// Whether steps are being taken somewhere, or are to be.
+    /// Whether steps are under way or due.
     pub fn awaits_steps(&self) -> bool {
         self.under_way || self.steps_wanted > 0
     }
 
-    /// Makes results of jobs handed out so far be ignored.
+    /// Makes the results of all earlier jobs obsolete.
     pub(super) fn disown_jobs(&mut self) {
         self.edition += 1;
         self.under_way = false;
@@ -288,7 +287,7 @@ impl Session {
     }
 }
 
-/// The least whole rate, Hz, of two digits at which the method is stable, if there is one on offer.
+/// The least whole rate, Hz, of two digits at which the method is stable, if it is in the allowed range.
 fn stable_rate(error: &StepError) -> Option<f64> {
     let dt = match *error {
         StepError::Unstable { stable_dt, .. } => stable_dt,
@@ -297,7 +296,7 @@ fn stable_rate(error: &StepError) -> Option<f64> {
     };
     let least = 1.0 / dt;
     let digit = 10_f64.powf(least.log10().floor() - 1.0).max(1.0);
-    // A whole rate that is just that of the limit loses nothing by rounding.
+    // A rate that equals the limit up to rounding is not rounded up.
     let rate = (least * (1.0 - 1e-9) / digit).ceil() * digit;
     (MIN_RATE..=MAX_RATE).contains(&rate).then_some(rate)
 }

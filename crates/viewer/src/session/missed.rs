@@ -1,7 +1,7 @@
-//! What the discrete modes do not see: bodies that have passed through each other within a step.
+//! Tunnelling, which the discrete modes do not see: bodies that have passed through each other within a step.
 //!
-//! Between two sampled states the bodies are taken to move straight; whether they touch on that way is
-//! answered exactly, as in the continuous mode. Pairs of which one turns are not looked at.
+//! Between two sampled states the bodies are assumed to move straight. An exact test decides whether they touch on the
+//! way, as in the continuous mode. Pairs with a turning body are left out.
 
 use sim_core::{Collision, DQuat, DVec3, Impact, World, query};
 
@@ -9,35 +9,35 @@ use super::Session;
 use crate::number;
 use crate::picture::{Ghost, Line};
 
-/// Bodies up to which it is looked for.
+/// The most bodies for which the search is made.
 const MOST_BODIES: usize = 64;
-/// The most that are told of one step.
+/// The most results for one step.
 const MOST: usize = 8;
-/// Simulated time in which one is shown, s, and at least so many steps.
+/// The simulated time for which a result is shown, s, and the least number of steps.
 const SHOWN: f64 = 0.5;
 const SHOWN_STEPS: f64 = 3.0;
-/// Way past each other from which on it is looked for, in thicknesses of the thinner swept box.
+/// The least relative displacement for the search, in thicknesses of the thinner swept box.
 const LEAST_WAY: f64 = 0.01;
 const RED: [f32; 3] = [0.86, 0.08, 0.10];
 
 /// Two bodies that have passed through each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Missed {
-    /// The bodies; the second one is the one that moved farther.
+    /// The bodies; the second one moved farther.
     pub bodies: (usize, usize),
-    /// When they touched, s.
+    /// The time of contact, s.
     pub time: f64,
-    /// Where the second one was before the step, at the contact, and after the step, m.
+    /// Positions of the second body before the step, at the contact, and after the step, m.
     pub places: [DVec3; 3],
-    /// Where they touched, m.
+    /// The contact point, m.
     pub point: DVec3,
-    /// Way of the second body past the first in the step, m.
+    /// Displacement of the second body relative to the first in the step, m.
     pub way: f64,
-    /// How thick the thinner of them is along that way, m.
+    /// Thickness of the thinner body along that displacement, m.
     pub thickness: f64,
 }
 
-/// All that the last step of `world` has missed, with the impacts that it did find.
+/// All impacts that the last step of `world` missed; `impacts` are those that it found.
 pub(super) fn missed(world: &mut World, impacts: &[Impact]) -> Vec<Missed> {
     let discrete = world.settings().collision != Collision::Continuous;
     if !discrete || world.len() > MOST_BODIES {
@@ -58,14 +58,14 @@ pub(super) fn missed(world: &mut World, impacts: &[Impact]) -> Vec<Missed> {
     found
 }
 
-/// Way of a body in the last step, m.
+/// Displacement of a body in the last step, m.
 fn way(world: &World, i: usize) -> DVec3 {
     world.position(i) - world.previous_position(i)
 }
 
-/// Whether two bodies collide, and the boxes that they swept in the last step meet.
+/// Whether two bodies may collide: by their groups, and because their swept boxes of the last step meet.
 fn may_touch(world: &World, i: usize, j: usize) -> bool {
-    // What turns is on no straight way.
+    // Turning bodies do not move on straight paths.
     if !world.groups(i).collide(world.groups(j)) || world.turns(i) || world.turns(j) {
         return false;
     }
@@ -77,8 +77,8 @@ fn may_touch(world: &World, i: usize, j: usize) -> bool {
     let (Some(first), Some(second)) = (swept(i), swept(j)) else {
         return false;
     };
-    // Who moves less than a small part of the thinner one's thickness passes through no more than that,
-    // and heaps of bodies that hardly move are not worth a search.
+    // A body that moves less than a small fraction of the thinner one's thickness cannot pass farther than that. So
+    // heaps of bodies that hardly move are not searched.
     let thickness = [first, second].map(|(low, high)| (high - low).min_element());
     let past = (way(world, i) - way(world, j)).length();
     past > LEAST_WAY * thickness[0].min(thickness[1])
@@ -86,7 +86,7 @@ fn may_touch(world: &World, i: usize, j: usize) -> bool {
         && second.0.cmple(first.1).all()
 }
 
-/// A body's box about its position, m; none where it has no inside to pass through, or no end.
+/// A body's box about its position, m; `None` if it has no interior or is infinite.
 fn extent(world: &World, i: usize) -> Option<(DVec3, DVec3)> {
     let [low, high] = world.shape(i)?.bounds()?;
     Some((low, high))
@@ -94,13 +94,13 @@ fn extent(world: &World, i: usize) -> Option<(DVec3, DVec3)> {
 
 /// The first contact on the way, if there is one.
 fn passed(world: &World, i: usize, j: usize) -> Option<Missed> {
-    // The one that moves farther is the one that passes.
+    // The body that moves farther counts as the passing one.
     let farther = way(world, j).length() >= way(world, i).length();
     let (still, mover) = if farther { (i, j) } else { (j, i) };
     let motion = way(world, mover) - way(world, still);
     let placed = |i: usize| world.placed(i)?.at(world.previous_position(i)).ok();
     let (first, second) = (placed(still)?, placed(mover)?);
-    // Bodies in overlap are told elsewhere.
+    // Overlaps are reported elsewhere.
     if query::intersects(first, second) {
         return None;
     }
@@ -128,7 +128,7 @@ fn passed(world: &World, i: usize, j: usize) -> Option<Missed> {
 }
 
 impl Missed {
-    /// In words, with the names of the bodies.
+    /// A description with the names of the bodies.
     pub(super) fn text(&self, name: impl Fn(usize) -> String) -> String {
         let (still, mover) = self.bodies;
         format!(
@@ -143,8 +143,7 @@ impl Missed {
 }
 
 impl Session {
-    /// What has been missed of late: where the body was before and after the step, the way between,
-    /// and the contact on it.
+    /// Draws recent results: the body before and after the step, the path between, and the contact on it.
     pub(super) fn add_missed(
         &mut self,
         ghosts: &mut Vec<Ghost>,
@@ -170,13 +169,13 @@ impl Session {
                 ghosts.extend(missed.places.map(|position| Ghost {
                     mesh: mesh.clone(),
                     position,
-                    // Neither of the two turns.
+                    // Neither body rotates.
                     rotation: DQuat::IDENTITY,
                     colour: RED,
                 }));
             }
             if let Some((low, high)) = extent(&self.world, missed.bodies.1) {
-                // The box swept on the way, by its edges along the motion.
+                // The swept box: its edges along the motion.
                 for corner in 0..8 {
                     let pick = |bit: usize, low: f64, high: f64| match corner >> bit & 1 {
                         0 => low,

@@ -1,13 +1,12 @@
-//! A person at work on a scene: set it up, let it run, look at it, put it back.
+//! A session: a user sets up a scene, runs it, looks at it and resets it.
 //!
-//! A session holds two things that must not be confused: the **scene** as it was set up, which is
-//! what gets saved and what a reset returns to, and the **world** that runs. In the layout state
-//! every edit changes the set-up and the world follows it; once physics has begun, edits reach
-//! only the world. How to simulate (method, rate, collision test) is the person's choice rather
-//! than the bodies' and survives a reset.
+//! A session has two objects that must not be confused: the **scene** as it was set up, which is saved and to which a
+//! reset returns, and the **world** that runs. In the layout state every edit changes the set-up, and the world follows
+//! it. Once physics has begun, edits change only the world. The settings of the simulation (method, rate, collision
+//! test) belong to the user rather than to the bodies and survive a reset.
 //!
-//! Nothing here draws, opens windows or reads a clock: see `picture` for what is drawn, and
-//! [`Session::due`] for how time comes in and steps are taken.
+//! This module neither draws nor opens windows nor reads a clock. See `picture` for what is drawn, and [`Session::due`]
+//! for how time is passed in and steps are taken.
 
 mod arrows;
 mod axes;
@@ -91,28 +90,28 @@ pub const MIN_RATE: f64 = 1.0;
 /// Fastest rate offered, in steps per second of simulated time.
 pub const MAX_RATE: f64 = 100_000.0;
 
-/// Real time of one frame that may be caught up with; what exceeds it is dropped, so that a
-/// window that was held still for ten seconds does not have to simulate ten seconds at once.
+/// The most real time of one frame that is simulated. The excess is dropped, so that a window blocked for ten seconds
+/// does not have to simulate ten seconds at once.
 const CATCH_UP: Duration = Duration::from_millis(250);
 
-/// Simulated seconds in a real one that are offered.
+/// The allowed speeds, in simulated seconds per real second.
 pub const SPEEDS: std::ops::RangeInclusive<f64> = 1e-3..=10.0;
 
-/// Bodies up to which their trails are shown at first.
+/// The most bodies whose trails are shown initially.
 const MOST_TRAILS: usize = 20;
 
-/// What the session is doing.
+/// The state of the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// Stopped at the set-up: edits change the scene.
+    /// At the set-up: edits change the scene.
     Layout,
     /// Physics runs with the clock.
     Running,
-    /// Physics has begun and is held still.
+    /// Physics has begun and is paused.
     Paused,
 }
 
-/// A scene, the world made from it, and one person's view of both.
+/// A scene, the world made from it, and one user's view of both.
 pub struct Session {
     scene: Scene,
     world: World,
@@ -127,49 +126,49 @@ pub struct Session {
     opening: Opening,
     overlaps: Overlaps,
     playback: Playback,
-    /// The whole run since the start.
+    /// The record of the whole run since the start.
     record: Record,
-    /// What it is compared with, if it is a replay.
+    /// The record with which it is compared, if it is a replay.
     replay: Option<Replay>,
-    /// Where bodies would be without errors.
+    /// The exact positions of the bodies.
     exact: Exact,
     variants: Variants,
     view: view::View,
     history: history::History,
-    /// Simulated seconds in a real one.
+    /// Simulated seconds per real second.
     speed: f64,
-    /// Names of the bodies that are left out of the picture.
+    /// Names of the hidden bodies.
     hidden: std::collections::BTreeSet<String>,
     selection: Option<usize>,
-    /// What is pulled by a spring.
+    /// The spring with which the user pulls a body.
     pull: Option<pull::Pull>,
-    /// Steps are being taken on a copy of the world.
+    /// Whether a copy of the world takes steps now.
     under_way: bool,
-    /// Steps asked for by hand.
+    /// Steps requested by hand.
     steps_wanted: u32,
     studio: shooting::Studio,
-    /// The part of the last step that is drawn while held still, if not its end.
+    /// The fraction of the last step that is drawn while paused, if it is not the end.
     instant: Option<f64>,
-    /// Impacts that bodies pass through in the last step.
+    /// The poses of bodies at their impacts in the last step.
     passes: instant::Passes,
-    /// Counts what makes results of earlier jobs outdated.
+    /// The number of changes that make results of earlier jobs obsolete.
     edition: u64,
     /// File that the scene was read from or last saved to.
     file: Option<std::path::PathBuf>,
-    /// That file is not there any more.
+    /// Whether that file no longer exists.
     file_gone: bool,
-    /// Where the person looks from.
+    /// The viewpoint of the user.
     pub camera: Camera,
-    /// What is drawn besides the bodies.
+    /// The items drawn besides the bodies.
     pub display: Display,
-    /// Naive against BVH.
+    /// The comparison of naive and BVH.
     pub compare: Compare,
-    /// Whether steps are timed by phase, which costs some readings of a clock in each.
+    /// Whether steps are timed by phase. This costs a few clock readings in each.
     pub profiled: bool,
 }
 
 impl Session {
-    /// A session in the layout state that looks at the whole of `scene` and where it goes.
+    /// A session in the layout state whose view shows all of `scene` and where its bodies go.
     pub fn new(scene: Scene) -> anyhow::Result<Self> {
         let world = scene.world()?;
         let clock = clock(scene.dt, 1.0)?;
@@ -210,10 +209,10 @@ impl Session {
             compare: Compare::default(),
             profiled: false,
         };
-        // Where paths are curved, they show what a method does; those of a crowd hide it.
+        // Curved paths show the errors of a method; those of a crowd would hide it.
         let few = session.world.len() <= MOST_TRAILS;
         session.show_trails(few && session.is_pushed());
-        // Of a crowd that turns they would hide it too.
+        // Rotation arrows of a crowd would hide it too.
         let turning = (0..session.world.len()).filter(|&i| session.world.turns(i));
         session.display.spins = turning.count() == 1;
         session.fit_arrows();
@@ -233,7 +232,7 @@ impl Session {
         &self.world
     }
 
-    /// Whether it is laid out, running or paused.
+    /// The state of the session.
     pub fn state(&self) -> State {
         self.state
     }
@@ -243,12 +242,12 @@ impl Session {
         &self.figures
     }
 
-    /// How far energy and momentum are from where they should be.
+    /// The errors of energy and momentum.
     pub fn drift(&self) -> Drift {
         self.reference.drift(&self.world)
     }
 
-    /// Largest distance of a body from its exact place, m, among those whose place is known.
+    /// Largest distance of a body from its exact position, m, among the bodies whose position is known.
     pub fn path_error(&self) -> Option<f64> {
         self.playback.sample().and_then(|sample| sample.error)
     }
@@ -258,13 +257,12 @@ impl Session {
         &self.playback
     }
 
-    /// Simulated seconds in a real one.
+    /// Simulated seconds per real second.
     pub fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// Lets simulated time go faster or slower than real time; beyond [`SPEEDS`] the nearest of
-    /// these.
+    /// Sets the simulated time per real time. Values outside [`SPEEDS`] are clamped.
     pub fn set_speed(&mut self, speed: f64) {
         let speed = speed.clamp(*SPEEDS.start(), *SPEEDS.end());
         if speed.is_finite()
@@ -274,7 +272,7 @@ impl Session {
         }
     }
 
-    /// Messages to the person, newest last.
+    /// Messages to the user, newest last.
     pub fn notices(&mut self) -> &mut Notices {
         &mut self.notices
     }
@@ -295,7 +293,7 @@ impl Session {
         self.selection.and_then(|i| self.scene.bodies.get(i))
     }
 
-    /// Lets physics run, from the set-up or from where it was paused.
+    /// Runs physics, from the set-up or from where it was paused.
     pub fn start(&mut self) {
         match self.state {
             State::Layout => self.begin(),
@@ -305,7 +303,7 @@ impl Session {
         self.state = State::Running;
     }
 
-    /// Holds physics still at the instant that is drawn. Nothing is lost; the layout state stays as it is.
+    /// Pauses physics at the instant drawn. Nothing is lost; the layout state stays as it is.
     pub fn pause(&mut self) {
         if self.state == State::Running {
             let part = self.shown_part();
@@ -323,7 +321,7 @@ impl Session {
         }
     }
 
-    /// Holds still and makes one more step due, or goes to the next state kept.
+    /// Pauses and requests one more step, or goes to the next kept state.
     pub fn step_once(&mut self) {
         if self.playback.is_back() {
             return self.go_to(self.playback.now() + 1);
@@ -342,7 +340,7 @@ impl Session {
     pub fn reset(&mut self) {
         match self.scene.world() {
             Ok(world) => {
-                // What was refused or failed belongs to what is left behind.
+                // Messages of refusals and failures refer to the discarded state.
                 self.notices.clear();
                 self.adopt(world);
             }
@@ -372,7 +370,7 @@ impl Session {
         });
     }
 
-    /// Changes how meshes are tested for contact, at any time.
+    /// Changes the collision mode, at any time.
     pub fn set_collision(&mut self, collision: Collision) {
         self.set_settings(Settings {
             collision,
@@ -380,7 +378,7 @@ impl Session {
         });
     }
 
-    /// Changes the error that adaptive methods may make in a step.
+    /// Changes the error tolerance of adaptive methods in a step.
     pub fn set_tolerance(&mut self, tolerance: f64) {
         self.set_settings(Settings {
             tolerance,
@@ -408,7 +406,7 @@ impl Session {
         Ok(())
     }
 
-    /// Takes over how the world steps now, in the scene and in the clock.
+    /// Copies the world's present settings to the scene and the clock.
     fn take_settings(&mut self, settings: Settings) {
         if settings.dt != self.clock.dt()
             && let Ok(clock) = clock(settings.dt, self.speed)
@@ -422,7 +420,7 @@ impl Session {
         self.scene.tolerance = settings.tolerance;
     }
 
-    /// Turns the camera's eye on the selected body, or on everything.
+    /// Turns the camera to the selected body, or to everything.
     pub fn frame(&mut self) {
         if let Some((centre, radius)) = self.extent() {
             self.camera.frame(centre, radius);
@@ -444,7 +442,7 @@ impl Session {
         }
     }
 
-    /// Begins anew what is kept, compared and measured of the run, from the world as it is now.
+    /// Restarts the record, the comparisons and the figures of the run from the present world.
     fn begin_record(&mut self) {
         self.instant = None;
         self.passes = instant::Passes::default();
@@ -454,7 +452,7 @@ impl Session {
         self.variants.begin(&self.world);
     }
 
-    /// Takes a world freshly made from the scene.
+    /// Adopts a world newly made from the scene.
     fn adopt(&mut self, world: World) {
         self.world = world;
         self.pull = None;
@@ -465,7 +463,7 @@ impl Session {
     }
 }
 
-/// A clock that lets as much real time wait at every speed.
+/// A clock that can accumulate the same real time at every speed.
 fn clock(dt: f64, speed: f64) -> Result<FixedStep, sim_core::ClockError> {
     FixedStep::new(dt, CATCH_UP.mul_f64(speed.max(1.0)))
 }

@@ -1,4 +1,4 @@
-//! Messages to the person at the window.
+//! Messages to the user at the window.
 
 use scene::shown;
 use std::time::Duration;
@@ -6,26 +6,26 @@ use std::time::Duration;
 /// One message.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// What it is about; a newer message about the same thing takes its place.
+    /// Its subject; a newer message about the same subject replaces it.
     pub about: &'static str,
-    /// Whether something was refused or failed.
+    /// Whether it reports a refusal or a failure.
     pub error: bool,
     /// The message.
     pub text: String,
     /// Whether it stays until it is dismissed.
     stays: bool,
-    /// What would set it right, if one change does.
+    /// A change that would remedy the error, if one change suffices.
     pub remedy: Option<Remedy>,
-    /// Real time since it came.
+    /// Real time since it appeared.
     age: Duration,
 }
 
-/// A change of the settings that the person can agree to.
+/// A change of the settings that the user can accept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Remedy {
     /// Steps per second of simulated time.
     Rate(f64),
-    /// How collisions are found.
+    /// A collision mode.
     Collision(sim_core::Collision),
 }
 
@@ -33,13 +33,13 @@ pub enum Remedy {
 #[derive(Debug, Default)]
 pub struct Notices(Vec<Notice>);
 
-/// Messages shown at once; older ones make room.
+/// The most messages shown at once; older ones are removed.
 const SHOWN: usize = 4;
-/// How long a success is told.
+/// The time for which a success is shown.
 const STAY: Duration = Duration::from_secs(5);
 
 impl Notices {
-    /// Tells of a success.
+    /// Reports a success.
     pub fn info(&mut self, about: &'static str, text: String) {
         self.push(Notice {
             about,
@@ -51,7 +51,7 @@ impl Notices {
         });
     }
 
-    /// Tells of a success that takes time to read, line by line: until it is dismissed.
+    /// Reports a success of several lines, which stays until it is dismissed.
     pub fn keep(&mut self, about: &'static str, lines: &[String]) {
         let lines: Vec<String> = lines.iter().map(|line| shown::message(line)).collect();
         self.push(Notice {
@@ -64,7 +64,7 @@ impl Notices {
         });
     }
 
-    /// Tells of something refused or failed.
+    /// Reports a refusal or a failure.
     pub fn error(&mut self, about: &'static str, text: String) {
         self.push(Notice {
             about,
@@ -81,17 +81,17 @@ impl Notices {
         self.0.iter()
     }
 
-    /// Forgets what was said about something.
+    /// Removes the message about a subject.
     pub fn dismiss(&mut self, about: &str) {
         self.0.retain(|notice| notice.about != about);
     }
 
-    /// Forgets everything.
+    /// Removes all messages.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// Offers to set right what the message about `about` tells.
+    /// Adds a remedy to the message about `about`.
     pub fn offer(&mut self, about: &str, remedy: Remedy) {
         let mut notices = self.0.iter_mut();
         if let Some(notice) = notices.find(|notice| notice.about == about) {
@@ -99,7 +99,7 @@ impl Notices {
         }
     }
 
-    /// Lets real time pass: successes go by themselves.
+    /// Advances real time; successes disappear by themselves.
     pub fn pass(&mut self, elapsed: Duration) {
         for notice in &mut self.0 {
             notice.age += elapsed;
@@ -107,7 +107,7 @@ impl Notices {
         self.0.retain(|notice| notice.stays || notice.age < STAY);
     }
 
-    /// Whether one will go by itself.
+    /// Whether a message will disappear by itself.
     pub fn is_passing(&self) -> bool {
         self.0.iter().any(|notice| !notice.stays)
     }

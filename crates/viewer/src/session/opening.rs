@@ -1,7 +1,7 @@
-//! The view on a scene just opened: all bodies and where they go next.
+//! The view of a scene just opened: all bodies and where they go next.
 //!
-//! Under forces, and where a scene tells when it ends, that takes steps ahead, and steps can be slow, so
-//! they are a job for another thread ([`Outlook`]); until it is done the bodies alone are in view.
+//! Under forces, and if a scene has an end time, this requires steps ahead. Steps can be slow, so they are a job for
+//! another thread ([`Outlook`]). Until it is done, the view shows the bodies alone.
 
 use std::time::Duration;
 
@@ -11,19 +11,18 @@ use super::Session;
 use super::framing::{Bounds, OPENING_REACH};
 use crate::camera::Camera;
 
-/// Depth over width and height below which all is in an upright plane, and where to look at that
-/// from: yaw and pitch, radians.
+/// The ratio of depth to width and height below which all bodies lie in a vertical plane, and the view of that plane:
+/// yaw and pitch, radians.
 const FLAT: f64 = 0.3;
 const FRONT: (f64, f64) = (0.2, 0.16);
-/// How far the view looks ahead: simulated time, s, where the scene does not tell when it ends, steps, and
-/// positions.
+/// The limits of looking ahead: simulated time, s, if the scene has no end time, steps, and positions.
 const TIME: f64 = 6.4;
 const STEPS: f64 = 7200.0;
 const POSITIONS: f64 = 20_000.0;
-/// Real time for looking ahead in a window.
+/// The real time for looking ahead in a window.
 const BUDGET: Duration = Duration::from_secs(1);
 
-/// A world that is to be followed ahead of time, and the box that grows with it.
+/// A world to be stepped ahead, and the box of its bodies, which grows with the steps.
 #[derive(Debug)]
 pub struct Outlook {
     world: World,
@@ -32,30 +31,30 @@ pub struct Outlook {
     high: DVec3,
     min: DVec3,
     max: DVec3,
-    /// Simulated time that is looked ahead, s.
+    /// Simulated time to look ahead, s.
     time: f64,
-    /// Not after this real time.
+    /// The limit of real time.
     budget: Duration,
     ticket: u64,
 }
 
-/// The look ahead of one scene.
+/// The state of the look ahead of one scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Opening {
-    /// It has been handed out, or is not wanted.
+    /// Whether it has been handed out, or is not wanted.
     begun: bool,
-    /// The view that it may change: that of the person since is left alone.
+    /// The view that it may change: a view that the user has changed stays.
     view: Option<Camera>,
     ticket: u64,
 }
 
 impl Opening {
-    /// The view stays as it is, whatever comes.
+    /// Keeps the view, whatever the result.
     pub(super) fn settle(&mut self) {
         self.begun = true;
     }
 
-    /// That of the scene opened after this one's.
+    /// The state for the scene opened after this one.
     pub(super) fn next(self) -> Self {
         Self {
             ticket: self.ticket + 1,
@@ -65,7 +64,7 @@ impl Opening {
 }
 
 impl Outlook {
-    /// Follows the motion for some seconds, or for as long as there is real time, by `stopwatch`.
+    /// Steps the world ahead until the limits of simulated or real time; `stopwatch` reads real time.
     #[must_use]
     pub fn run(mut self, stopwatch: impl Fn() -> Duration) -> Self {
         let began = stopwatch();
@@ -85,7 +84,7 @@ impl Outlook {
                 let (Some(bounds), at) = (bounds, self.world.position(i)) else {
                     continue;
                 };
-                // What falls below all that was there is let go.
+                // A body that falls below all others at the start is not followed.
                 if falls && at.y + bounds.half.y < self.low.y {
                     continue;
                 }
@@ -99,8 +98,8 @@ impl Outlook {
 }
 
 impl Session {
-    /// Looks at the bodies as they were set up, or at a single one and where it goes next, so that
-    /// nothing leaves the first view at once. [`outlook`](Self::outlook) does better where it can.
+    /// Frames the bodies as they were set up, or a single one and where it goes next, so that nothing leaves the first
+    /// view at once. [`outlook`](Self::outlook) gives a better view if it can.
     pub(super) fn frame_opening(&mut self) {
         let mut bodies = (0..self.world.len()).filter(|&i| !self.is_half_space(i));
         let Some(body) = bodies.next() else {
@@ -120,13 +119,13 @@ impl Session {
         self.camera.frame((min + max) / 2.0, ball);
     }
 
-    /// Whether any force acts, so that paths bend.
+    /// Whether any force acts, so that paths are curved.
     pub(super) fn is_pushed(&self) -> bool {
         let pushed = |i| self.world.force(i) != DVec3::ZERO;
         !self.world.forces().is_empty() || (0..self.world.len()).any(pushed)
     }
 
-    /// The look ahead that the opening view waits for, once.
+    /// The look ahead for the opening view; it is returned once.
     pub fn outlook(&mut self) -> Option<Outlook> {
         let begun = std::mem::replace(&mut self.opening.begun, true);
         if begun || !self.is_pushed() && self.scene.ends.is_none() {
@@ -141,9 +140,9 @@ impl Session {
                 (low, high) = (low.min(point), high.max(point));
             }
         }
-        // A stop of the tour has begun to run by now.
+        // A stop of the tour may already have begun to run.
         let mut world = self.playback.first()?.clone();
-        // The same answers in less time.
+        // The hierarchies give the same answers faster.
         if world.settings().collision == Collision::Naive {
             let settings = Settings {
                 collision: Collision::Bvh,
@@ -167,7 +166,7 @@ impl Session {
         })
     }
 
-    /// Looks at what came into sight, unless the person has turned elsewhere meanwhile.
+    /// Frames the result, unless the user has changed the view in the meantime.
     pub fn accept_outlook(&mut self, seen: &Outlook) {
         if seen.ticket != self.opening.ticket || self.opening.view != Some(self.camera) {
             return;
@@ -175,7 +174,7 @@ impl Session {
         self.opening.view = None;
         let (size, middle) = (seen.max - seen.min, 0.5 * (seen.min + seen.max));
         if self.is_pushed() && size.z < FLAT * size.x.max(size.y) {
-            // Motion in an upright plane is looked at nearly from the front.
+            // Motion in a vertical plane is viewed nearly from the front.
             (self.camera.yaw, self.camera.pitch) = FRONT;
         }
         let mut radius = (0.47 * size.length()).max(1e-3);
@@ -186,7 +185,7 @@ impl Session {
         self.view.home = Some(self.camera);
     }
 
-    /// Looks ahead now, for as long as it takes or until `is_over`: for pictures without a window.
+    /// Looks ahead synchronously, without limit or until `is_over`: for pictures without a window.
     pub fn look_ahead(&mut self, is_over: impl Fn() -> bool) {
         if let Some(outlook) = self.outlook() {
             let time = || match is_over() {

@@ -1,4 +1,4 @@
-//! Bodies in each other: told, marked, and moved apart.
+//! Overlapping bodies: reported, marked, and moved apart.
 
 use scene::shown;
 use sim_core::{DVec3, Overlap, Shape};
@@ -7,12 +7,12 @@ use super::framing::Bounds;
 use super::{Input, Session, State};
 use crate::picture::Line;
 
-/// Pairs that are measured at most, and marked.
+/// The most pairs that are measured and marked.
 const MOST: usize = 64;
-/// Boxes around bodies in overlap.
+/// The colour of boxes around overlapping bodies.
 const AMBER: [f32; 4] = [0.95, 0.60, 0.05, 1.0];
 
-/// Overlaps of a state of the world, which take longer to measure than to keep.
+/// The overlaps of a state of the world, cached because measuring them is slow.
 #[derive(Debug, Default)]
 pub(super) struct Overlaps {
     /// Hash of the state.
@@ -21,7 +21,7 @@ pub(super) struct Overlaps {
 }
 
 impl Session {
-    /// The pairs of bodies that are in each other now, with their depths; of many the first ones.
+    /// The overlapping pairs of the present state, with their depths; if there are many, the first ones.
     pub fn overlaps(&mut self) -> &[Overlap] {
         let state = Some(self.world.state_hash());
         if self.overlaps.state != state {
@@ -34,7 +34,7 @@ impl Session {
         &self.overlaps.found
     }
 
-    /// Moves bodies in overlap out of each other, in the layout state in the set-up too.
+    /// Moves overlapping bodies apart; in the layout state also in the set-up.
     pub fn separate(&mut self) {
         let moved = match self.change(Input::Separate) {
             Ok(moved) => moved,
@@ -64,7 +64,7 @@ impl Session {
         self.notices.info("separate", text);
     }
 
-    /// Boxes around the bodies that are in each other.
+    /// Draws boxes around the overlapping bodies.
     pub(super) fn add_overlaps(&mut self, marks: &mut Vec<Line>) {
         let both = |overlap: &Overlap| [overlap.bodies.0, overlap.bodies.1];
         let mut bodies: Vec<usize> = self.overlaps().iter().flat_map(both).collect();

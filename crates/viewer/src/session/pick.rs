@@ -4,10 +4,10 @@ use sim_core::{DVec3, Shape, query};
 
 use super::Session;
 
-/// Half the size, in distances of the camera, up to which a body is drawn as a dot.
+/// The half size, in distances of the camera, up to which a body is drawn as a dot.
 const SPECK: f64 = 0.004;
 
-/// Bodies up to which it is asked whether they hide something.
+/// The most bodies that are tested for hiding something.
 const MOST_HIDING: usize = 200;
 
 impl Session {
@@ -18,13 +18,13 @@ impl Session {
         self.select(hit.map(|(_, i)| i));
     }
 
-    /// The nearest body that a ray meets where it is drawn, and where, in lengths of `direction`. Half-spaces are
-    /// everywhere behind something, and are selected in the list instead.
+    /// The nearest body that a ray meets as drawn, and the ray parameter there, in lengths of `direction`. Half-spaces
+    /// fill the background almost everywhere, so they are selected in the list instead.
     pub(super) fn hit(&self, origin: DVec3, direction: DVec3) -> Option<(f64, usize)> {
         (0..self.world.len())
             .filter(|&i| !self.is_hidden(i) && !self.is_half_space(i))
             .filter_map(|i| {
-                // In the frame of the shape, which may be turned.
+                // In the frame of the shape, which may be rotated.
                 let back = self.shown_rotation(i).inverse();
                 let from = back * (origin - self.shown_position(i));
                 let shown = self.world.placed(i)?.at(DVec3::ZERO).ok()?;
@@ -34,15 +34,15 @@ impl Session {
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Whether a body is drawn before a point that a ray from `origin` along `direction` leads to; not asked of
-    /// a crowd.
+    /// Whether a body is drawn before a point, to which a ray from `origin` along `direction` leads. Not tested for a
+    /// crowd.
     pub fn hides(&self, point: DVec3, (origin, direction): (DVec3, DVec3)) -> bool {
         let along = (point - origin).dot(direction) / direction.length_squared();
         let hit = (self.world.len() <= MOST_HIDING).then(|| self.hit(origin, direction));
         hit.flatten().is_some_and(|(hit, _)| hit < along)
     }
 
-    /// The body drawn as a dot that a ray passes most closely, in distances along it, and close enough.
+    /// The dot that the ray passes most closely, if it is close enough, with its ray parameter.
     fn dot_near(&self, origin: DVec3, direction: DVec3) -> Option<(f64, usize)> {
         (0..self.world.len())
             .filter(|&i| self.is_dot(i))

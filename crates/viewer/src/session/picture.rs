@@ -1,4 +1,4 @@
-//! What the person sees: the world as a [`Picture`].
+//! The view of the user: the world as a [`Picture`].
 
 use sim_core::{DVec3, Shape};
 
@@ -7,66 +7,66 @@ use super::framing::Bounds;
 use super::overlaps::edges;
 use crate::picture::{Line, Model, PALETTE, Picture};
 
-/// Half-spaces that have no colour of their own.
+/// The colour of half-spaces that have none of their own.
 const SLATE: [f32; 3] = [0.40, 0.45, 0.52];
 
-/// What bodies at rest are nearly as light as.
+/// The approximate lightness of bodies at rest.
 const GREY: f32 = 0.62;
 
 /// Which boxes of the bounding volume hierarchies are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BvhView {
-    /// Whether any are.
+    /// Whether any boxes are drawn.
     pub shown: bool,
-    /// Of every body rather than of the selected one; where none is selected, of every one anyway.
+    /// Whether boxes are drawn for every body rather than the selected one. Without a selection they are drawn for
+    /// every body.
     pub every_body: bool,
-    /// All depths rather than [`depth`](Self::depth) alone.
+    /// Whether all depths are drawn rather than [`depth`](Self::depth) alone.
     pub every_depth: bool,
-    /// Which depth; 0 is the box around the whole mesh, and beyond the deepest is the deepest.
+    /// The depth: 0 is the box around the whole mesh; a value beyond the deepest level means the deepest.
     pub depth: usize,
 }
 
-/// What is drawn besides the bodies.
+/// The items drawn besides the bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct Display {
     /// Bounding volume hierarchies.
     pub bvh: BvhView,
     /// Velocity arrows on all bodies rather than on the selected one.
     pub all_velocities: bool,
-    /// Time, s, whose travel an arrow shows: its length is `velocity * arrow_time`.
+    /// The time, s, that gives an arrow its length: `velocity * arrow_time`.
     pub arrow_time: f64,
     /// Force arrows on all bodies rather than none.
     pub forces: bool,
-    /// Metres that a force arrow is long for each newton.
+    /// The length of a force arrow per force, m/N.
     pub arrow_metres: f64,
-    /// Arrows of angular velocity and of angular momentum on all bodies that turn rather than on the
-    /// selected one.
+    /// Arrows of angular velocity and angular momentum on all turning bodies rather than on the selected one.
     pub spins: bool,
-    /// Metres that an arrow is long for each rad/s.
+    /// The length of an arrow per angular velocity, in metres for each rad/s.
     pub spin_metres: f64,
-    /// Metres that an arrow is long for each kg m²/s.
+    /// The length of an arrow per angular momentum, in metres for each kg m²/s.
     pub momentum_metres: f64,
     /// The ground grid.
     pub grid: bool,
-    /// Letters and numbers on the axes, where there is a grid.
+    /// Letters and numbers on the axes, if the grid is shown.
     pub numbers: bool,
     /// The names of all bodies rather than of the selected one.
     pub names: bool,
     /// The edges of all meshes.
     pub wireframe: bool,
-    /// Where bodies have been; see [`Session::show_trails`].
+    /// The trails of bodies; see [`Session::show_trails`].
     pub trails: bool,
-    /// Bodies that stand still in grey.
+    /// Bodies at rest in grey.
     pub rest: bool,
     /// Springs, anchors and centres of attraction.
     pub ties: bool,
-    /// Points, normals and impulses of late impacts. Off, none are listed.
+    /// Points, normals and impulses of recent impacts. While off, none are recorded.
     pub impacts: bool,
-    /// The level of the descent through two hierarchies that is shown, if one is.
+    /// The level of the descent through two hierarchies that is shown, if any.
     pub descent: Option<usize>,
-    /// The comparison of it that is shown instead, if one is.
+    /// The comparison of the descent that is shown instead, if any.
     pub pair: Option<usize>,
-    /// Bodies between the last two states while running, rather than at the last one.
+    /// While running, interpolate bodies between the last two states.
     pub between: bool,
 }
 
@@ -167,7 +167,7 @@ impl Session {
         picture
     }
 
-    /// What body `i` is drawn as, if it is a mesh or a sphere.
+    /// The mesh with which body `i` is drawn, if it is a mesh or a sphere.
     pub(super) fn body_mesh(&mut self, i: usize) -> Option<std::sync::Arc<sim_core::Mesh>> {
         match self.world.shape(i) {
             Some(Shape::Mesh(mesh)) => Some(mesh.clone()),
@@ -185,14 +185,14 @@ impl Session {
         self.scene.bodies[i].colour.unwrap_or(default)
     }
 
-    /// Whether a body that can move stands still, to the last bit.
+    /// Whether a movable body is exactly at rest.
     pub fn is_at_rest(&self, i: usize) -> bool {
         let world = &self.world;
         let still = world.velocity(i) == DVec3::ZERO && world.spin(i) == DVec3::ZERO;
         still && world.kind(i).is_movable()
     }
 
-    /// Number of levels in the deepest hierarchy among the meshes; builds those missing.
+    /// Number of levels in the deepest hierarchy among the meshes; builds missing hierarchies.
     pub fn bvh_depth(&mut self) -> usize {
         self.world.build_bvhs();
         (0..self.world.len())
@@ -201,12 +201,12 @@ impl Session {
             .unwrap_or(0)
     }
 
-    /// Points, and bodies too small to be seen, as dots.
+    /// Draws points, and bodies too small to be visible, as dots.
     fn add_dots(&self, lines: &mut Vec<Line>) {
         for i in (0..self.world.len()).filter(|&i| self.is_dot(i) && !self.is_hidden(i)) {
             let at = self.shown_position(i);
             let [red, green, blue] = self.colour(i);
-            // A line of no length is its round end.
+            // A line of zero length is drawn as its round end.
             lines.push(Line {
                 from: at,
                 to: at,
@@ -216,7 +216,7 @@ impl Session {
         }
     }
 
-    /// Goes to another depth of the boxes shown.
+    /// Changes the depth of the boxes shown.
     pub fn step_depth(&mut self, by: isize) {
         if !self.display.bvh.shown {
             return;
@@ -234,7 +234,7 @@ impl Session {
     fn add_boxes(&self, i: usize, lines: &mut Vec<Line>) {
         let view = self.display.bvh;
         let Some(bvh) = self.world.bvh(i) else {
-            // What has no triangles has one box.
+            // A body without triangles has one box.
             let Bounds { centre, half } = self.bounds(i);
             if half != DVec3::ZERO && (view.every_depth || view.depth == 0) {
                 let edges = edges(self.shown_position(i) + centre, half);
@@ -265,8 +265,8 @@ impl Session {
     }
 }
 
-/// From red at the root over green to violet at the deepest level, dark enough for the light
-/// background; the deeper, the fainter.
+/// The colour of a depth: from red at the root over green to violet at the deepest level, dark enough for the light
+/// background. Deeper levels are fainter.
 fn depth_colour(depth: usize, levels: usize) -> [f32; 4] {
     let t = depth as f32 / levels.saturating_sub(1).max(1) as f32;
     let hue = 4.8 * t;

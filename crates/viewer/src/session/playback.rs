@@ -1,6 +1,6 @@
-//! The states of a run, kept so that one can go back: a ring of bounded size.
+//! The kept states of a run, to which the user can go back: a ring buffer of bounded size.
 //!
-//! Each state is a whole world, so that to go on from it gives the same bits as the first time.
+//! Each state is a whole world, so that continuing from it gives the same bits as the first time.
 
 use std::collections::VecDeque;
 
@@ -8,15 +8,15 @@ use sim_core::{Impact, World};
 
 use super::{Exact, Missed, Sample};
 
-/// The most states kept, and the most bodies in all of them together.
+/// The most states, and the most bodies in all of them together.
 const MOST_STATES: usize = 3600;
 const MOST_BODIES: usize = 200_000;
 
-/// Bytes that a state takes up, beside what grows with its bodies.
+/// Bytes of a state, without the data that grows with its bodies.
 const STATE_BYTES: usize = 4600;
 /// Bytes that each body adds to a state.
 const BODY_BYTES: usize = 350;
-/// Bytes that each contact that lasts adds to a state.
+/// Bytes that each persisting contact adds to a state.
 const CONTACT_BYTES: usize = 300;
 
 /// A world after a step, the impacts of that step, and its figures.
@@ -25,13 +25,13 @@ pub(super) struct Moment {
     pub(super) world: World,
     pub(super) impacts: Vec<Impact>,
     pub(super) sample: Sample,
-    /// Of the world, [`World::state_hash`].
+    /// [`World::state_hash`] of the world.
     pub(super) hash: u64,
-    /// What its step has not seen.
+    /// The impacts that its step has missed.
     pub(super) missed: Vec<Missed>,
 }
 
-/// The states since the start or the last change, the oldest first, and the one that is looked at.
+/// The states since the start or the last change, the oldest first, and the current one.
 #[derive(Debug, Default)]
 pub struct Playback {
     moments: VecDeque<Moment>,
@@ -39,7 +39,7 @@ pub struct Playback {
 }
 
 impl Playback {
-    /// Begins afresh with a world.
+    /// Restarts with a world.
     pub(super) fn begin(&mut self, world: &World, exact: &mut Exact) {
         self.moments.clear();
         self.now = 0;
@@ -62,13 +62,13 @@ impl Playback {
         self.moments.iter().map(|moment| &moment.sample)
     }
 
-    /// The figures of the state looked at.
+    /// The figures of the current state.
     pub fn sample(&self) -> Option<&Sample> {
         self.moments.get(self.now).map(|moment| &moment.sample)
     }
 
-    /// Takes in what came after the state looked at; what was there after it goes, and so does the
-    /// oldest where there is no more room.
+    /// Adds states after the current one. Earlier states after it are removed, and the oldest ones if there is no more
+    /// room.
     pub(super) fn extend(&mut self, moments: Vec<Moment>) {
         self.moments.truncate(self.now + 1);
         self.moments.extend(moments);
@@ -79,18 +79,18 @@ impl Playback {
         self.now = self.moments.len().saturating_sub(1);
     }
 
-    /// Looks at a state; the last one where there are not so many.
+    /// Makes a state the current one; the last one if the index is too large.
     pub(super) fn go_to(&mut self, index: usize) -> Option<&Moment> {
         self.now = index.min(self.moments.len().saturating_sub(1));
         self.moments.get(self.now)
     }
 
-    /// The states up to the one looked at, the oldest first.
+    /// The states up to the current one, the oldest first.
     pub(super) fn past(&self) -> impl DoubleEndedIterator<Item = &Moment> {
         self.moments.range(..self.moments.len().min(self.now + 1))
     }
 
-    /// How many states there are, at least one once a scene is open.
+    /// The number of states, at least one once a scene is open.
     #[expect(
         clippy::len_without_is_empty,
         reason = "it never is, for whoever sees it"
@@ -99,12 +99,12 @@ impl Playback {
         self.moments.len()
     }
 
-    /// The most states that are kept of a world with so many bodies.
+    /// The most states that are kept for a world with so many bodies.
     pub fn capacity(&self) -> usize {
         capacity(self.moments.back().map_or(0, |last| last.world.len()))
     }
 
-    /// About how many bytes the states take up. Meshes are shared with the world, and not counted.
+    /// The approximate size of the states in bytes, without meshes, which are shared with the world.
     pub fn bytes(&self) -> usize {
         let state = |moment: &Moment| {
             let impacts = moment.impacts.capacity() * size_of::<Impact>();
@@ -114,12 +114,12 @@ impl Playback {
         self.moments.iter().map(state).sum()
     }
 
-    /// Index of the state looked at.
+    /// Index of the current state.
     pub fn now(&self) -> usize {
         self.now
     }
 
-    /// Whether there are states after the one looked at.
+    /// Whether there are states after the current one.
     pub fn is_back(&self) -> bool {
         self.now + 1 < self.moments.len()
     }
@@ -141,13 +141,13 @@ impl Playback {
         }
     }
 
-    /// Index of the first state at a simulated time, s, or after it; of the last one if none is.
+    /// Index of the first state at a simulated time, s, or after it; of the last state if there is none.
     pub(super) fn first_from(&self, time: f64) -> usize {
         let after = self.moments.partition_point(|m| m.world.time() < time);
         after.min(self.moments.len().saturating_sub(1))
     }
 
-    /// Simulated times at which bodies passed through each other unseen, s.
+    /// Simulated times at which bodies passed through each other undetected, s.
     pub fn missed_times(&self) -> impl Iterator<Item = f64> {
         let missed = self.moments.iter().flat_map(|moment| &moment.missed);
         missed.map(|missed| missed.time)
@@ -158,7 +158,7 @@ impl Playback {
         self.impact_times().chain(self.missed_times())
     }
 
-    /// Simulated times at which something hit something, s, in order of the steps.
+    /// Simulated times of the detected impacts, s, in order of the steps.
     pub fn impact_times(&self) -> impl Iterator<Item = f64> {
         let impacts = self.moments.iter().flat_map(|moment| &moment.impacts);
         impacts.map(|impact| impact.time)

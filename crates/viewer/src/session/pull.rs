@@ -1,4 +1,4 @@
-//! Pulling a body by a spring while physics runs. Let go, it keeps the speed that it has: it is thrown.
+//! Pulls a body by a spring while physics runs. When released, the body keeps its velocity: it is thrown.
 
 use std::f64::consts::TAU;
 
@@ -6,8 +6,8 @@ use sim_core::{DVec3, Force};
 
 use super::{Session, State};
 
-/// How often the spring alone would swing the body, Hz, and the part of critical damping: firm, and
-/// stable with every method at the usual rates.
+/// The natural frequency of the body on the spring alone, Hz, and the fraction of critical damping: firm, and stable
+/// with every method at the usual rates.
 const FREQUENCY: f64 = 1.5;
 const DAMPING: f64 = 0.7;
 
@@ -15,16 +15,17 @@ const DAMPING: f64 = 0.7;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pull {
     body: usize,
-    /// The place of the spring among the forces.
+    /// The index of the spring among the forces.
     force: usize,
-    /// Where the body is held, from where the spring is tied, m: a body that turns is tied where it is held.
+    /// The point where the body is held, relative to the point of attachment, m. A turning body is attached where it is
+    /// held.
     grip: DVec3,
-    /// How far in front of the eye it is held, along the view, m.
+    /// The depth of the held point in front of the eye, along the view, m.
     depth: f64,
 }
 
 impl Session {
-    /// Takes hold of the body that a ray meets, if physics runs and the body can be moved. Whether it did.
+    /// Takes hold of the body that a ray meets, if physics runs and the body is movable. Returns whether it did.
     pub fn take_hold(&mut self, origin: DVec3, direction: DVec3) -> bool {
         self.let_go();
         if self.state != State::Running {
@@ -79,7 +80,7 @@ impl Session {
         }
     }
 
-    /// Pulls what is held to where a ray is as far away as it was taken hold of.
+    /// Pulls the held body to the point of a ray at the depth at which it was taken.
     pub fn pull(&mut self, origin: DVec3, direction: DVec3) {
         let Some(pull) = self.pull else { return };
         let forward = self.camera.forward();
@@ -120,7 +121,7 @@ impl Session {
         self.pull.is_some()
     }
 
-    /// Lets go of what is held.
+    /// Releases the held body.
     pub fn let_go(&mut self) {
         let Some(pull) = self.pull.take() else {
             return;

@@ -1,4 +1,4 @@
-//! What is noted of a world after each step: the curves of the plots and the columns of their tables.
+//! The figures recorded after each step: the curves of the plots and the columns of their tables.
 
 use std::fmt::Write;
 
@@ -13,28 +13,28 @@ pub struct Sample {
     pub steps: u64,
     /// Kinetic energy, J.
     pub kinetic: f64,
-    /// What of that is in how bodies turn, J; none where nothing turns.
+    /// The rotational part of the kinetic energy, J; `None` if there are no turning bodies.
     pub turning: Option<f64>,
     /// Potential energy, J; not finite at a centre of attraction.
     pub potential: f64,
     /// Momentum, kg m/s.
     pub momentum: DVec3,
-    /// Angular momentum about the origin, kg m²/s: of all that moves, and of how it turns.
+    /// Angular momentum about the origin, kg m²/s: orbital and rotational, of all moving bodies.
     pub angular_momentum: DVec3,
-    /// Largest distance of a body from its exact place, m, where that is known.
+    /// Largest distance of a body from its exact position, m, if known.
     pub error: Option<f64>,
-    /// Real time that the step took, s; none of a state that no step led to.
+    /// Real time of the step, s; `None` for a state that did not result from a step.
     pub cost: Option<f64>,
-    /// Parts of it, s, in the order of [`Phase::ALL`], where they were timed.
+    /// The parts of that time, s, in the order of [`Phase::ALL`], if they were timed.
     pub phases: Option<[f64; Phase::ALL.len()]>,
-    /// Contacts that last.
+    /// Persisting contacts.
     pub contacts: usize,
     /// Impacts in the step.
     pub impacts: u64,
 }
 
 impl Sample {
-    /// Of the present state of a world.
+    /// The figures of the present state of a world.
     pub fn of(world: &World, error: Option<f64>, cost: Option<f64>, impacts: u64) -> Self {
         Self {
             time: world.time(),
@@ -52,28 +52,28 @@ impl Sample {
         }
     }
 
-    /// With what a step has taken in each phase, if that was timed, in ns.
+    /// Adds the times of the phases of a step, in ns, if they were measured.
     pub(super) fn with_profile(self, profile: Option<Profile>) -> Self {
         let phases = profile.map(|p| Phase::ALL.map(|phase| 1e-9 * p.spent(phase) as f64));
         Self { phases, ..self }
     }
 
-    /// What the step has taken in a phase, s.
+    /// The time of a phase of the step, s.
     pub fn phase(&self, phase: Phase) -> Option<f64> {
         self.phases.map(|phases| phases[phase as usize])
     }
 }
 
-/// Whether any body of a world turns.
+/// Whether a world has turning bodies.
 pub fn turns(world: &World) -> bool {
     (0..world.len()).any(|i| world.turns(i))
 }
 
 /// A figure over time.
 pub struct Column {
-    /// Its name in tables for programs, with the unit.
+    /// Its name in the CSV tables, with the unit.
     pub name: &'static str,
-    /// Its value, where it has one.
+    /// Its value, if known.
     pub value: fn(&Sample) -> Option<f64>,
 }
 
@@ -164,7 +164,7 @@ pub fn csv_head(named: bool) -> String {
     names.join(",") + "\n"
 }
 
-/// A line of a table: numbers to the last bit, nothing where a figure is not known.
+/// A line of a table: numbers are exact, unknown figures are empty.
 pub fn csv_line(run: Option<&str>, sample: &Sample) -> String {
     let mut line = String::new();
     if let Some(run) = run {
@@ -184,7 +184,7 @@ pub fn csv_line(run: Option<&str>, sample: &Sample) -> String {
     line
 }
 
-/// A field of a table, in quotation marks where it has to be.
+/// A field of a table, quoted if necessary.
 fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

@@ -1,4 +1,4 @@
-//! Pictures of the run as files: a still of what is seen, and a film of what is kept.
+//! Saves pictures of the run: a still of the view, and a film of the kept states.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use super::{Session, State};
 use crate::picture::Picture;
 
-/// Hundredths of a second, the unit in which films count time, as GIF does.
+/// Hundredths of a second, the time unit of films, as in GIF.
 pub const TICKS: f64 = 100.0;
-/// How long a picture of a film is shown, hundredths of a second.
+/// The duration of each picture of a film, hundredths of a second.
 const DELAY: u16 = 4;
 /// The most pictures of a film: 12 s.
 const MOST_PICTURES: usize = 300;
@@ -17,20 +17,20 @@ const MOST_MODELS: usize = 100_000;
 /// Width of a film, pixels.
 const FILM_WIDTH: u32 = 720;
 
-/// Pictures that are to become a file: one a still, more a film.
+/// Pictures to be saved in a file: one for a still, several for a film.
 #[derive(Clone)]
 pub struct Shooting {
-    /// What is to be seen.
+    /// The pictures.
     pub pictures: Vec<Picture>,
     /// Size of the file's pictures, pixels.
     pub size: [u32; 2],
-    /// How long each is shown, hundredths of a second.
+    /// The duration of each, hundredths of a second.
     pub delay: u16,
-    /// How far it is, seen from outside.
+    /// The progress, shared with the session.
     pub reel: Reel,
 }
 
-/// How far a shooting is, and whether it is to go on: shared between who shoots and who waits.
+/// The progress of a shooting, and whether it is cancelled; shared between the thread that draws and the session.
 #[derive(Clone, Debug, Default)]
 pub struct Reel(Arc<Counts>);
 
@@ -48,52 +48,52 @@ impl Reel {
         reel
     }
 
-    /// Pictures drawn, and pictures to be drawn.
+    /// Pictures drawn, and pictures in all.
     pub fn progress(&self) -> [usize; 2] {
         [&self.0.done, &self.0.total].map(|count| count.load(Ordering::Relaxed))
     }
 
-    /// One more picture is drawn.
+    /// Counts one more picture as drawn.
     pub fn advance(&self) {
         self.0.done.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Lets it end without a file.
+    /// Cancels the shooting; no file is written.
     pub fn cancel(&self) {
         self.0.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it is to end.
+    /// Whether it is cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.0.cancelled.load(Ordering::Relaxed)
     }
 }
 
-/// What is being shot.
+/// The state of the session's shooting.
 #[derive(Default)]
 pub(super) struct Studio {
-    /// Not handed out yet.
+    /// The shooting that has not been handed out yet.
     waiting: Option<Shooting>,
-    /// Of what is waiting or under way, and whether it is a film.
+    /// The progress of the waiting or current shooting, and whether it is a film.
     reel: Option<(Reel, bool)>,
-    /// When the next film begins, s, if not where what is kept does.
+    /// The start of the next film, s, if it is not the oldest kept state.
     from: Option<f64>,
 }
 
 impl Session {
-    /// Lets what is seen be drawn into a file, in a size in pixels.
+    /// Requests a still of the view, in a size in pixels.
     pub fn shoot_still(&mut self, size: [u32; 2]) {
         let picture = self.picture();
         self.shoot(vec![picture], size);
     }
 
-    /// Lets the next film begin at a state that is kept, or no longer if it does.
+    /// Sets the start of the next film to a kept state, or removes the start if it is there already.
     pub fn begin_film_at(&mut self, state: usize) {
         let time = self.playback.samples().nth(state).map(|sample| sample.time);
         self.studio.from = time.filter(|_| self.film_start() != time);
     }
 
-    /// When the next film begins, s, if that was chosen and is kept.
+    /// The start of the next film, s, if it was set and is still kept.
     pub fn film_start(&self) -> Option<f64> {
         let [first, last] = self.playback.span();
         self.studio
@@ -101,8 +101,8 @@ impl Session {
             .filter(|from| (first..=last).contains(from))
     }
 
-    /// Lets the run that is kept, from where the film is to begin up to where it is looked at, be drawn into a file at the speed that is
-    /// set, in the proportions of a size in pixels: its last 12 s where it takes longer.
+    /// Requests a film of the kept run, from the chosen start up to the current state, at the current speed and in the
+    /// proportions of a size in pixels. If it would be longer than 12 s, it shows the last 12 s.
     pub fn shoot_film(&mut self, [width, height]: [u32; 2]) {
         if self.state == State::Layout || self.playback.len() < 2 {
             let text = "There is nothing to film yet: start, or step.";
@@ -151,17 +151,17 @@ impl Session {
         });
     }
 
-    /// What is to be drawn now, once.
+    /// The shooting to draw now; it is returned once.
     pub fn shooting_due(&mut self) -> Option<Shooting> {
         self.studio.waiting.take()
     }
 
-    /// How far the pictures are that are waiting or being drawn.
+    /// The progress of the waiting or current shooting.
     pub fn reel(&self) -> Option<&Reel> {
         self.studio.reel.as_ref().map(|(reel, _)| reel)
     }
 
-    /// Takes in the bytes of a file, or why there are none; nothing where it was cancelled.
+    /// Accepts the bytes of a file, or the reason for a failure; nothing if it was cancelled.
     pub fn accept_shooting(&mut self, outcome: Result<Option<Vec<u8>>, String>) {
         let Some((_, is_film)) = self.studio.reel.take() else {
             return;

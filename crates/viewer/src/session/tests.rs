@@ -26,7 +26,7 @@ mod view;
 
 const FRAME: Duration = Duration::from_millis(17);
 
-/// Two cubes of edge 1 m: `mover` at x = -3 flies at `target` at the origin with 2 m/s.
+/// Two cubes of edge 1 m: `mover` at x = -3 m moves towards `target` at the origin with 2 m/s.
 fn session() -> Session {
     let text = r#"
         title = "Two cubes"
@@ -46,12 +46,12 @@ fn session() -> Session {
     Session::new(scene).expect("the scene makes a world")
 }
 
-/// A stopwatch that never moves: steps cost nothing.
+/// A stopwatch that stands still: steps take no time.
 fn free() -> impl Fn() -> Duration {
     || Duration::ZERO
 }
 
-/// A stopwatch that gains `cost` at each reading: each step takes that long.
+/// A stopwatch that advances by `cost` at each reading: each step takes that long.
 fn slow(cost: Duration) -> impl Fn() -> Duration {
     let time = Cell::new(Duration::ZERO);
     move || {
@@ -60,7 +60,7 @@ fn slow(cost: Duration) -> impl Fn() -> Duration {
     }
 }
 
-/// A frame of the window: the steps due are taken at once.
+/// A frame of the window: the due steps are taken at once.
 fn advance(session: &mut Session, elapsed: Duration, stopwatch: impl Fn() -> Duration) {
     if let Some(job) = session.due(elapsed) {
         session.accept(job.run(stopwatch));
@@ -197,7 +197,7 @@ fn each_step_by_hand_is_one_step() {
     session.step_once();
     session.step_once();
     advance(&mut session, FRAME, free());
-    // The picture goes on from the state that was stepped to, so the next one is due at once.
+    // The picture continues from the state reached by single steps, so the next step is due at once.
     assert_eq!(session.world().steps(), 1 + (1 + 3) + 2);
     assert_eq!(session.state(), State::Paused);
 }
@@ -502,7 +502,7 @@ fn drift_counts_errors_and_not_what_forces_do() {
         change.is_some_and(|change| change.abs() > 1e-4),
         "forward Euler errs"
     );
-    // Forward Euler leaves out a half of F/m dt in each of its steps.
+    // Forward Euler omits a half of F/m dt in each of its steps.
     let world = session.world();
     let missed = 0.5 * world.time() / 60.0;
     let away = session.path_error().unwrap_or(f64::NAN);

@@ -1,13 +1,13 @@
-//! What forces look like: springs as zigzags, anchors and centres of attraction as crosses.
+//! Draws forces: springs as zigzags, anchors and centres of attraction as crosses.
 
 use sim_core::{DVec3, Force};
 
 use super::Session;
 use crate::picture::Line;
 
-/// Springs and what they hang on.
+/// The colour of springs and their attachments.
 const COLOUR: [f32; 4] = [0.16, 0.36, 0.30, 1.0];
-/// Half of a cross, and half the width of a spring, in distances of the camera.
+/// Half the size of a cross, and half the width of a spring, in distances of the camera.
 const SIZE: f64 = 0.012;
 /// Turns of a spring.
 const TURNS: u32 = 14;

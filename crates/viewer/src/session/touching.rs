@@ -1,4 +1,4 @@
-//! Which corner, edge or face of each body an impact is at.
+//! The corner, edge or face of each body at an impact.
 
 use sim_core::{Bvh, DVec3, Feature, Impact, Mesh, Shape, World};
 
@@ -6,9 +6,10 @@ use super::Session;
 use crate::picture::{Line, Pane};
 
 const VIOLET: [f32; 3] = [0.58, 0.05, 0.85];
-/// Distance of a point to what it counts as lying on, and above the surface, in sizes of the mesh.
+/// The distance up to which a point counts as lying on a feature, and its height above the surface, in sizes of the
+/// mesh.
 const NEAR: f64 = 1e-5;
-/// How far what is drawn stands out of the surface, in sizes of the mesh.
+/// The height of the drawing above the surface, in sizes of the mesh.
 const OUT: f64 = 2e-3;
 
 /// A part of a mesh.
@@ -33,7 +34,7 @@ impl Part {
     }
 }
 
-/// What touches in an impact, of the first and of the second body; none of what has no triangles.
+/// The parts of the first and of the second body that touch in an impact; `None` for a body without triangles.
 pub(super) fn parts(world: &World, impact: &Impact) -> [Option<Part>; 2] {
     if let Some(feature) = impact.feature {
         return match feature {
@@ -48,7 +49,7 @@ pub(super) fn parts(world: &World, impact: &Impact) -> [Option<Part>; 2] {
     let sides = [(i, a, first, impact.normal), (j, b, second, -impact.normal)];
     sides.map(|(body, place, rotation, outward)| {
         let mesh = world.mesh(body)?;
-        // In the frame of the mesh; of what turns the centre of mass is what has a place.
+        // In the frame of the mesh. The position of a turning body is its centre of mass.
         let back = rotation.inverse();
         let centre = world.inertia(body).map(|inertia| inertia.centre());
         let point = back * (impact.point - place) + centre.unwrap_or_default();
@@ -56,7 +57,7 @@ pub(super) fn parts(world: &World, impact: &Impact) -> [Option<Part>; 2] {
     })
 }
 
-/// The part of a mesh at a point of its surface, seen from outside.
+/// The part of a mesh at a point of its surface, viewed from outside.
 fn at(mesh: &Mesh, bvh: &Bvh, point: DVec3, outward: DVec3) -> Option<Part> {
     let size = mesh.bounds().half_extent().max_element();
     let hit = bvh.ray(point + 1e3 * NEAR * size * outward, -outward)?;
@@ -79,12 +80,12 @@ fn at(mesh: &Mesh, bvh: &Bvh, point: DVec3, outward: DVec3) -> Option<Part> {
 }
 
 impl Session {
-    /// What touches in an impact, of the first and of the second body; none of what has no triangles.
+    /// The parts of the first and of the second body that touch in an impact; `None` for a body without triangles.
     pub fn touching(&self, impact: &Impact) -> [Option<Part>; 2] {
         parts(&self.world, impact)
     }
 
-    /// Draws what touches in an impact, where its bodies are drawn now.
+    /// Draws the touching parts of an impact on its bodies as drawn now.
     pub(super) fn add_touching(
         &self,
         impact: &Impact,
@@ -112,7 +113,7 @@ impl Session {
                 });
             };
             match part {
-                // Wider than the point of the impact on it.
+                // Wider than the point of the impact drawn on it.
                 Part::Corner(v) => line(vertex(v), vertex(v), 16.0),
                 Part::Edge(e) => {
                     let [a, b] = mesh.edges()[e as usize].map(vertex);

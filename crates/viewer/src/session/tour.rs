@@ -1,4 +1,4 @@
-//! The four labs: in which order their scenes are shown, and a guided tour of them.
+//! The four labs: the order of their scenes, and a guided tour through them.
 
 use sim_core::{Collision, DVec3, Method};
 
@@ -6,17 +6,17 @@ use super::Session;
 
 /// A part of the course.
 pub struct Lab {
-    /// What it is about.
+    /// Its subject.
     pub title: &'static str,
-    /// Scenes of the gallery that belong to it, in the order of a first visit.
+    /// The gallery scenes of the lab, in the order of a first visit.
     pub scenes: &'static [&'static str],
-    /// What to look at.
+    /// What to observe.
     pub stops: &'static [Stop],
 }
 
-/// Something to look at in a scene.
+/// A stop of the tour: something to observe in a scene.
 pub struct Stop {
-    /// What it shows.
+    /// Its title.
     pub title: &'static str,
     /// The scene of the gallery.
     pub scene: &'static str,
@@ -24,7 +24,7 @@ pub struct Stop {
     pub watch: &'static str,
     /// What to try.
     pub attempts: &'static [Attempt],
-    /// A question that can be answered by looking.
+    /// A question that observation answers.
     pub question: &'static str,
     /// Its answer.
     pub answer: &'static str,
@@ -32,22 +32,22 @@ pub struct Stop {
 
 /// A way to run the scene of a stop.
 pub struct Attempt {
-    /// What it does.
+    /// A description.
     pub title: &'static str,
     set_up: fn(&mut Session),
 }
 
-/// Steps to just before the cube hits the cow at 60 Hz.
+/// The number of steps to just before the cube hits the cow at 60 Hz.
 const BEFORE_THE_COW: u32 = 44;
-/// A ball around where it hits her, m.
+/// A sphere around the point of impact on the cow, m.
 const BETWEEN_THE_EYES: (DVec3, f64) = (DVec3::new(-1.4, 1.2, 0.0), 1.0);
-/// A ball around her, and a place for the cube that is in the box around her and not in her, m.
+/// A sphere around the cow, and a position of the cube inside her bounding box but outside the cow, m.
 const COW: (DVec3, f64) = (DVec3::new(-0.1, 1.1, 0.0), 1.6);
 const OVER_HER_BACK: DVec3 = DVec3::new(0.35, 1.85, 0.0);
-/// A ball around both places where the bullet is looked for, and a plate between, m.
+/// A sphere around the plate and both positions where the bullet may be, m.
 const PAST_THE_PLATE: (DVec3, f64) = (DVec3::new(7.5, 0.0, 0.0), 9.5);
 
-/// The four labs of the course, and what is beyond them.
+/// The four labs of the course, and the scenes beyond them.
 pub static LABS: [Lab; 5] = [
     Lab {
         title: "1 Forward Euler",
@@ -406,7 +406,7 @@ pub static LABS: [Lab; 5] = [
     },
 ];
 
-/// What is in no lab.
+/// The heading of scenes that belong to no lab.
 pub const BEYOND: &str = "Beyond the labs";
 
 /// A stop of the tour by its number, counted through all labs.
@@ -416,13 +416,13 @@ pub fn stop(number: usize) -> Option<(&'static Lab, &'static Stop)> {
         .nth(number)
 }
 
-/// How many stops there are.
+/// The number of stops.
 pub fn stop_count() -> usize {
     LABS.iter().map(|lab| lab.stops.len()).sum()
 }
 
 impl Session {
-    /// Opens the scene of a stop and sets it up; what was there is forgotten.
+    /// Opens the scene of a stop and sets it up; the previous scene is discarded.
     pub(super) fn set_up(&mut self, number: usize, attempt: usize) {
         let Some((_, stop)) = stop(number) else {
             return;
@@ -435,7 +435,7 @@ impl Session {
         if let Some(attempt) = stop.attempts.get(attempt) {
             (attempt.set_up)(self);
         }
-        // What the tour has set is no edit of the person's.
+        // The settings of the tour are not edits by the user.
         self.begin_history();
     }
 }
@@ -446,7 +446,7 @@ fn step_by(session: &mut Session, name: &str) {
     }
 }
 
-/// Lets the first body turn in another way.
+/// Changes the spin of the first body.
 fn spin(session: &mut Session, spin: DVec3) {
     session.select(Some(0));
     session.set_spin(spin);

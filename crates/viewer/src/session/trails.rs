@@ -1,4 +1,4 @@
-//! Where bodies have been of late: a fading path behind each.
+//! The recent paths of bodies, which fade with age.
 
 use std::collections::VecDeque;
 
@@ -7,42 +7,42 @@ use sim_core::{DVec3, World};
 use super::Session;
 use crate::picture::Line;
 
-/// Simulated time that a path goes back at least, s, and its points: each is of a step, or where steps are
-/// short, of the last one of several.
+/// The least simulated time of a path, s, and the number of its points. A point is recorded after each step or, if
+/// steps are short, after every few steps.
 const TIME: f64 = 10.0;
 const LONGEST: usize = 600;
-/// Points of all paths together.
+/// The most points of all paths together.
 const MOST_POINTS: usize = 60_000;
 
-/// The latest positions of all bodies, step by step.
+/// The latest positions of all bodies, recorded at regular numbers of steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Trails {
     bodies: usize,
     /// Columns of positions, the latest last.
     points: VecDeque<DVec3>,
-    /// Steps from one column to the next.
+    /// The number of steps between two columns.
     stride: u64,
     /// Steps since the start.
     steps: u64,
 }
 
 impl Trails {
-    /// Begins afresh where the bodies of a world are.
+    /// Restarts at the present positions of a world.
     pub(super) fn begin(&mut self, world: &World) {
         (self.bodies, self.points) = (world.len(), positions(world).collect());
         self.pace(world.settings().dt);
     }
 
-    /// Notes from the latest column on steps of another length, s.
+    /// Adapts to steps of another length, s, from the latest column on.
     pub(super) fn pace(&mut self, dt: f64) {
         let stride = TIME / (LONGEST as f64 * dt);
         (self.stride, self.steps) = ((stride.round() as u64).max(1), 0);
     }
 
-    /// Takes in the positions after some steps, and forgets those of long ago.
+    /// Adds the positions after some steps, and removes the oldest.
     pub(super) fn extend(&mut self, positions: &[DVec3]) {
         for column in positions.chunks_exact(self.bodies.max(1)) {
-            // What is between two columns that stay gives way to the latest.
+            // Between two regular columns, the latest column is replaced.
             if !self.steps.is_multiple_of(self.stride.max(1)) {
                 self.points.truncate(self.points.len() - self.bodies);
             }
@@ -53,26 +53,26 @@ impl Trails {
         self.points.drain(..self.points.len().saturating_sub(kept));
     }
 
-    /// Where a body was, the oldest position first.
+    /// The positions of a body, the oldest first.
     fn of(&self, body: usize) -> impl ExactSizeIterator<Item = DVec3> {
         let points = self.points.iter().copied();
         points.skip(body).step_by(self.bodies.max(1))
     }
 
-    /// Points kept.
+    /// The number of points.
     #[cfg(test)]
     pub(super) fn len(&self) -> usize {
         self.points.len()
     }
 }
 
-/// Where the bodies of a world are.
+/// The positions of the bodies of a world.
 pub(super) fn positions(world: &World) -> impl Iterator<Item = DVec3> {
     (0..world.len()).map(|i| world.position(i))
 }
 
 impl Session {
-    /// Shows or hides the paths; shown, they begin here.
+    /// Shows or hides the paths. They begin when they are shown.
     pub fn show_trails(&mut self, shown: bool) {
         self.display.trails = shown;
         self.trails = Trails::default();
@@ -81,17 +81,17 @@ impl Session {
         }
     }
 
-    /// The path of a body, to where it is drawn.
+    /// Draws the path of a body up to its drawn position.
     pub(super) fn add_trail(&self, i: usize, lines: &mut Vec<Line>) {
         let points = self.trails.of(i);
-        // The last point is yet to come where bodies are drawn between two states.
+        // Between two states, the last point lies in the future of the picture.
         let whole = points.len() - usize::from(self.is_between()).min(points.len());
         let [red, green, blue] = self.colour(i).map(|part| 0.8 * part);
         let end = self.shown_centre(i);
         let mut from = None;
         let passed = self.passed_places(i);
         for (n, to) in points.take(whole).chain(passed).chain([end]).enumerate() {
-            // The oldest part stays in sight.
+            // The oldest part remains visible.
             let age = 0.3 + 0.7 * (n as f32 / whole.max(1) as f32).min(1.0);
             if let Some(from) = from.filter(|&from| from != to) {
                 lines.push(Line {

@@ -1,4 +1,4 @@
-//! Where the person looks: following what moves, the way home, and what has left the view.
+//! The viewpoint of the user: following bodies, the home view, and bodies out of view.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -7,19 +7,19 @@ use sim_core::DVec3;
 use super::Session;
 use crate::camera::Camera;
 
-/// Bodies out of view that are pointed out at a time.
+/// The most bodies out of view that are indicated at a time.
 const MOST_OUT: usize = 12;
 
-/// Following, and the opening view.
+/// The state of following, and the opening view.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct View {
-    /// Where what is followed was in the last picture, m; none while nothing is.
+    /// The position of the followed object in the last picture, m; `None` while nothing is followed.
     followed: Option<DVec3>,
     /// The opening view.
     pub(super) home: Option<Camera>,
 }
 
-/// Where to look from.
+/// A standard viewpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// From `+z`, with `x` to the right.
@@ -30,27 +30,27 @@ pub enum Side {
     Top,
 }
 
-/// A body whose middle is not in the picture.
+/// A body whose middle is outside the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutOfView {
     /// Its index.
     pub body: usize,
-    /// Where it is from the middle of the picture, in halves of its width and height, `y` up.
+    /// Its direction from the middle of the picture, in halves of its width and height, `y` up.
     pub towards: [f64; 2],
 }
 
 impl Session {
-    /// Whether the camera goes along with what moves.
+    /// Whether the camera follows a moving object.
     pub fn is_following(&self) -> bool {
         self.view.followed.is_some()
     }
 
-    /// Lets the camera go along with the selected body, or with the middle of all that moves.
+    /// Makes the camera follow the selected body, or the middle of all moving bodies.
     pub fn follow(&mut self, on: bool) {
         self.view.followed = self.leader().filter(|_| on);
     }
 
-    /// Looks as when the scene was opened, and follows nothing.
+    /// Restores the view of the scene as opened, and stops following.
     pub fn go_home(&mut self) {
         self.view.followed = None;
         if let Some(home) = self.view.home {
@@ -58,7 +58,7 @@ impl Session {
         }
     }
 
-    /// Looks from one of the sides, and keeps what is in the middle.
+    /// Looks from one of the sides, and keeps the middle of the view.
     pub fn look_from(&mut self, side: Side) {
         (self.camera.yaw, self.camera.pitch) = match side {
             Side::Front => (0.0, 0.0),
@@ -67,7 +67,7 @@ impl Session {
         };
     }
 
-    /// Moves the camera with what it follows.
+    /// Moves the camera with the followed object.
     pub(super) fn keep_up(&mut self) {
         let (Some(before), Some(now)) = (self.view.followed, self.leader()) else {
             return;
@@ -76,14 +76,14 @@ impl Session {
         self.view.followed = Some(now);
     }
 
-    /// Looks elsewhere at what is followed, as after another body is selected.
+    /// Restarts following, for example after another body is selected.
     pub(super) fn follow_anew(&mut self) {
         if self.is_following() {
             self.follow(true);
         }
     }
 
-    /// Where what is followed is drawn, m.
+    /// The drawn position of the followed object, m.
     fn leader(&self) -> Option<DVec3> {
         if let Some(selected) = self.selection.filter(|&i| i < self.world.len()) {
             return Some(self.shown_centre(selected));
@@ -95,8 +95,8 @@ impl Session {
         (count > 0.0).then(|| sum / count)
     }
 
-    /// Bodies that could be seen and are not, in a picture so much wider than high: those that move, or
-    /// the selected one.
+    /// Bodies outside a picture of an aspect ratio (width over height) that could be seen: the moving ones, or the
+    /// selected one.
     pub fn out_of_view(&self, aspect: f64) -> Vec<OutOfView> {
         let bodies = (0..self.world.len())
             .filter(|&i| !self.is_half_space(i))
@@ -106,7 +106,7 @@ impl Session {
             let towards = match self.camera.project(at, aspect) {
                 Some([x, y]) if x.abs() <= 1.0 && y.abs() <= 1.0 => return None,
                 Some(towards) => towards,
-                // Behind the eye: the way to turn.
+                // Behind the eye: the direction in which to turn.
                 None => {
                     let [right, up, _] = self.camera.axes();
                     let away = at - self.camera.eye();

@@ -1,28 +1,28 @@
-//! Half-spaces: the part of each plane near the bodies, as glass with a grid. From behind only
-//! the outline is drawn, so that the near walls of a box do not hide its inside.
+//! Half-spaces: the part of each plane near the bodies, drawn as glass with a grid. From behind only the outline is
+//! drawn, so that the near walls of a box do not hide its inside.
 
 use sim_core::{DVec3, Shape};
 
 use super::Session;
 use crate::picture::{Line, Pane, Picture};
 
-/// Cells of a grid across the half of a wall, at least.
+/// The least number of grid cells across half a wall.
 const CELLS: f64 = 4.0;
 /// Opacity of a wall, seen from its front.
 const GLASS: f32 = 0.14;
 const SELECTED: [f32; 3] = [0.10, 0.35, 1.0];
 
-/// The room beside the bodies, and the least part of its radius that is drawn each way.
+/// The factor by which the drawn room exceeds the bodies, and the least part of its radius drawn in each direction.
 const MARGIN: f64 = 1.1;
 const LEAST_PART: f64 = 0.6;
 
 /// A point of a plane and its normal.
 type Plane = (DVec3, DVec3);
 
-/// A half-space as it is drawn.
+/// The geometry of a drawn half-space.
 struct Wall {
     body: usize,
-    /// The middle of what is drawn.
+    /// The middle of the drawn part.
     centre: DVec3,
     normal: DVec3,
     /// Unit vectors along the wall.
@@ -34,7 +34,7 @@ impl Session {
         let (centre, half) = self.room();
         let wall = |body: usize| match self.world.shape(body) {
             Some(&Shape::HalfSpace { normal }) => {
-                // Along the world's axes where it stands or lies along them.
+                // Parallel to the world's axes if the wall is vertical or horizontal.
                 let level = normal.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
                 Some(Wall {
                     body,
@@ -49,7 +49,7 @@ impl Session {
         let (min, max) = self.room_box();
         let size = (MARGIN * 0.5 * (max - min)).max(DVec3::splat(LEAST_PART * half));
         for wall in &walls {
-            // What is inside another half-space is not seen, nor what is beside the room.
+            // Points inside another half-space, or outside the room, are not drawn.
             let others = walls.iter().filter(|other| other.body != wall.body);
             let sides = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
             let sides = sides.filter(|side| side.dot(wall.normal).abs() < 0.5);
@@ -87,7 +87,7 @@ impl Session {
         if !is_front {
             return;
         }
-        // The ground has a grid of its own.
+        // The ground grid replaces the wall's own grid on the ground.
         let is_ground = wall.normal == DVec3::Y && wall.centre.y == 0.0 && self.display.grid;
         if !is_ground {
             let grid = grid(wall, half, bounds);
@@ -100,7 +100,7 @@ impl Session {
     }
 }
 
-/// The corners of what is left of a square, in order.
+/// The corners of the visible part of a square, in order.
 fn outline(wall: &Wall, half: f64, bounds: &[Plane]) -> Vec<DVec3> {
     let [u, v] = wall.axes.map(|axis| half * axis);
     let square = [-u - v, u - v, u + v, v - u].map(|corner| wall.centre + corner);
@@ -120,7 +120,7 @@ fn outline(wall: &Wall, half: f64, bounds: &[Plane]) -> Vec<DVec3> {
     })
 }
 
-/// Lines along both axes at round distances, where they are free.
+/// Adds lines along both axes at round distances, where they are visible.
 fn grid<'a>(
     wall: &'a Wall,
     half: f64,
@@ -131,7 +131,7 @@ fn grid<'a>(
     [(u, v), (v, u)]
         .into_iter()
         .flat_map(move |(across, along)| {
-            // On multiples of the spacing in the world, which stay where they are when others move.
+            // Lines are at multiples of the spacing in world coordinates, so they stay in place when others move.
             let middle = wall.centre.dot(across);
             let (first, last) = ((middle - half) / spacing, (middle + half) / spacing);
             let count = (last.floor() - first.ceil()).clamp(0.0, 100.0) as u32;
@@ -153,12 +153,12 @@ fn grid<'a>(
         })
 }
 
-/// How far a point is in front of a plane, m.
+/// Signed distance of a point from a plane, positive in front, m.
 fn height((at, normal): &Plane, point: DVec3) -> f64 {
     (point - at).dot(*normal)
 }
 
-/// The greatest of 1, 2 and 5 times a power of ten that is not above `length`.
+/// The greatest of 1, 2 and 5 times a power of ten that is at most `length`.
 fn round_below(length: f64) -> f64 {
     let decade = 10_f64.powf(length.log10().floor());
     let factor = [5.0, 2.0]

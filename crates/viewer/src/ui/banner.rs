@@ -1,4 +1,4 @@
-//! Messages over the picture, until dismissed.
+//! Messages over the picture, until they are dismissed.
 
 use egui::{Area, Button, Frame, RichText, Stroke};
 
@@ -7,7 +7,7 @@ use crate::number;
 use crate::session::{Remedy, Session};
 use crate::words::say;
 
-/// A message line by line, since each line is a text of its own.
+/// Translates a message line by line, because each line is a text of its own.
 fn lines(text: &str) -> String {
     let lines: Vec<String> = text.lines().map(say).collect();
     lines.join("\n")

@@ -1,4 +1,4 @@
-//! The bar on top: what runs, and the buttons that start, hold and reset it.
+//! The bar at the top: the scene's title, and the buttons that start, pause and reset it.
 
 use egui::{Button, Panel, RichText};
 use scene::shown;
@@ -13,7 +13,7 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
         egui::Frame::side_top_panel(root.style()).inner_margin(egui::Margin::symmetric(10, 7));
     Panel::top("bar").frame(frame).show(root, |ui| {
         let room = ui.available_width();
-        // Where it does not fit into a line it takes several, in place of buttons over each other.
+        // If the bar does not fit into one line, it takes several, so that buttons do not overlap.
         if state.bar > room {
             ui.horizontal_wrapped(|ui| {
                 buttons(ui, session);
@@ -32,7 +32,7 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
             let size = egui::vec2(room - state.bar, ui.available_height());
             ui.allocate_ui_with_layout(size, right, |ui| title(ui, session));
             let switches = ui.scope(|ui| switches(ui, state)).response.rect;
-            // And the gap after the title.
+            // Includes the gap after the title.
             state.bar = taken + switches.width() + ui.spacing().item_spacing.x;
         });
         if state.bar > room {
@@ -41,7 +41,7 @@ pub(super) fn show(root: &mut egui::Ui, state: &mut Ui, session: &mut Session) {
     });
 }
 
-/// What runs, and whether it has edits; by how much it is behind, if it is.
+/// The scene's title, whether it has edits, and the delay behind real time, if there is one.
 fn title(ui: &mut egui::Ui, session: &Session) {
     if behind(ui, session) {
         return;
@@ -52,7 +52,7 @@ fn title(ui: &mut egui::Ui, session: &Session) {
         .on_hover_text(say(shown::part(&session.scene().about)));
 }
 
-/// What is shown, and how.
+/// Switches for what is shown, and how.
 fn switches(ui: &mut egui::Ui, state: &mut Ui) {
     ui.toggle_value(&mut state.gallery.open, say("Gallery"))
         .on_hover_text(say("Scenes that come with the program (Ctrl+G)"));
@@ -138,7 +138,7 @@ fn buttons(ui: &mut egui::Ui, session: &mut Session) {
     }
 }
 
-/// A button that shows and hides something.
+/// A button that shows or hides something.
 fn hiding(ui: &mut egui::Ui, hidden: &mut bool, name: &str, meaning: &str) {
     let mut shown = !*hidden;
     ui.toggle_value(&mut shown, say(name))
@@ -170,7 +170,7 @@ fn status(ui: &mut egui::Ui, session: &Session) {
         .on_hover_text(say("Simulated time"));
 }
 
-/// Says by how much the simulation is behind real time, if it is.
+/// Shows the delay of the simulation behind real time, if there is one.
 fn behind(ui: &mut egui::Ui, session: &Session) -> bool {
     let figures = session.figures();
     let shown = session.state() == State::Running && figures.is_behind();

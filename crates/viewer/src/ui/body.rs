@@ -109,7 +109,7 @@ fn turned(ui: &mut egui::Ui, session: &mut Session, rotation: DVec3, scale: DVec
     }
 }
 
-/// Why a shape cannot turn, if it cannot.
+/// The reason why a shape cannot rotate, if it cannot.
 fn cannot_turn(shape: &SceneShape) -> Option<&'static str> {
     match shape {
         SceneShape::HalfSpace { .. } => Some("A half-space cannot turn"),
@@ -120,7 +120,7 @@ fn cannot_turn(shape: &SceneShape) -> Option<&'static str> {
     }
 }
 
-/// Whether the body turns, and how fast; or why it cannot.
+/// Whether the body is a turning body, and its spin; or the reason why it cannot rotate.
 fn turning(
     ui: &mut egui::Ui,
     session: &mut Session,
@@ -210,7 +210,7 @@ fn mass_and_restitution(
     });
 }
 
-/// The name as a field: Enter or leaving it takes the new one.
+/// The name as a field: Enter or leaving the field accepts the new name.
 fn rename(ui: &mut egui::Ui, session: &mut Session, i: usize) {
     let now = session.scene().bodies[i].name.clone();
     let id = ui.scope_id().with(("name", i));

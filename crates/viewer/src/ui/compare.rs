@@ -1,4 +1,4 @@
-//! Naive against BVH: what an answer costs each way, on the bodies that are near each other now.
+//! Naive against BVH: the cost of an answer each way, for bodies near each other now.
 
 use egui::{Grid, RichText};
 use scene::shown;
@@ -97,7 +97,7 @@ fn descent(ui: &mut egui::Ui, session: &mut Session) {
     ui.label(RichText::new(say(text)).weak());
 }
 
-/// What a comparison of the descent tells.
+/// The description of a comparison in the descent.
 fn pair_text(session: &mut Session, shown: usize) -> String {
     let pairs = session.pairs();
     let shown = shown.min(pairs.len().saturating_sub(1));

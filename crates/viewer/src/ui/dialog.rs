@@ -1,4 +1,4 @@
-//! File dialogs of the system, on a thread of their own so that the picture goes on.
+//! File dialogs of the system, on a thread of their own so that the window stays responsive.
 
 use std::future::Future;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use rfd::{AsyncFileDialog, FileHandle};
 use crate::stopwatch::Stopwatch;
 use crate::words::say;
 
-/// What a dialog asks for.
+/// The purpose of a dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
     /// A scene or mesh to read.
@@ -19,27 +19,27 @@ pub(super) enum Purpose {
     Save,
 }
 
-/// An answer that comes faster than this came from no person.
+/// No user answers faster than this, so the dialog was not shown.
 const TOO_FAST: Duration = Duration::from_millis(400);
 
-/// A dialog that the person has before them.
+/// An open dialog.
 pub(super) struct Dialog {
     purpose: Purpose,
     thread: JoinHandle<(Option<FileHandle>, Duration)>,
 }
 
-/// How a dialog ended.
+/// The result of a dialog.
 pub(super) enum Answer {
-    /// A file was chosen.
+    /// The user chose a file.
     Chosen(Purpose, PathBuf),
-    /// None was chosen.
+    /// The user chose none.
     Cancelled,
     /// The system showed no dialog.
     Unavailable,
 }
 
 impl Dialog {
-    /// Opens a dialog; none if the system gives no thread for it.
+    /// Opens a dialog; `None` if the system cannot start a thread for it.
     pub(super) fn open(ctx: &egui::Context, purpose: Purpose) -> Option<Self> {
         let dialog = AsyncFileDialog::new();
         match purpose {

@@ -1,4 +1,4 @@
-//! What is drawn besides the bodies.
+//! The settings of what is drawn besides the bodies.
 
 use egui::RichText;
 
@@ -127,7 +127,7 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     boxes(ui, session);
 }
 
-/// Arrows of how bodies turn.
+/// Arrows of angular velocity and angular momentum.
 fn spins(ui: &mut egui::Ui, session: &mut Session) {
     let display = &mut session.display;
     ui.horizontal(|ui| {
@@ -155,7 +155,7 @@ fn spins(ui: &mut egui::Ui, session: &mut Session) {
     for (name, scale, unit, meaning) in rows {
         ui.horizontal(|ui| {
             field::label(ui, name, meaning);
-            // Less room, as the units are long.
+            // The sliders are narrower because the units are long.
             ui.spacing_mut().slider_width = 100.0;
             field::slider(ui, scale, 1e-4..=1e3, unit, |slider| {
                 slider.logarithmic(true)
@@ -201,7 +201,7 @@ fn boxes(ui: &mut egui::Ui, session: &mut Session) {
     tree(ui, session);
 }
 
-/// What the selected body's tree is like.
+/// Figures of the selected body's tree.
 fn tree(ui: &mut egui::Ui, session: &Session) {
     let Some(bvh) = session.selection().and_then(|i| session.world().bvh(i)) else {
         return;

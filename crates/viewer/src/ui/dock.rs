@@ -1,15 +1,15 @@
-//! What stands under the picture and never over it: live figures and plots.
+//! The area below the picture: live figures and plots.
 
 use egui::{Panel, ScrollArea};
 
 use super::{Ui, live};
 use crate::session::Session;
 
-/// Height that is left to the picture, and the least of what is under it, points: where there is room for less, the
-/// picture is alone.
+/// The height reserved for the picture, and the least height of the area below it, points. If there is less room, only
+/// the picture is shown.
 const PICTURE: f32 = 240.0;
 const LEAST: f32 = 120.0;
-/// Width of the live figures where there is room, and of plots beside them, points.
+/// The preferred width of the live figures, and that of plots beside them, points.
 const FIGURES: f32 = 348.0;
 const PLOTS: f32 = 320.0;
 

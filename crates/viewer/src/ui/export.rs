@@ -1,4 +1,4 @@
-//! The curves of the plots as files: a table (CSV) or a picture (PNG).
+//! Saves the curves of the plots: as a table (CSV) or a picture (PNG).
 
 use super::{plots::Plots, style};
 use crate::picture;

@@ -14,7 +14,7 @@ use crate::words::say;
 /// Width of the labels, so that values line up, in points.
 const LABEL: f32 = 76.0;
 
-/// A label of the common width, with what it means on hovering.
+/// A label of the common width; hovering shows its meaning.
 pub(super) fn label(ui: &mut egui::Ui, text: &str, meaning: &str) {
     let size = egui::vec2(LABEL, ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(
@@ -28,7 +28,7 @@ pub(super) fn label(ui: &mut egui::Ui, text: &str, meaning: &str) {
     );
 }
 
-/// A row of three numbers; the new value if one was changed.
+/// A row of three numbers; returns the new value if one was changed.
 pub(super) fn vector(
     ui: &mut egui::Ui,
     name: &str,
@@ -50,7 +50,7 @@ pub(super) fn vector(
     changed.then_some(value)
 }
 
-/// A row of one number and its unit; the new value if it was changed.
+/// A row of one number and its unit; returns the new value if it was changed.
 pub(super) fn scalar(
     ui: &mut egui::Ui,
     name: &str,
@@ -73,7 +73,7 @@ pub(super) fn scalar(
     changed.then_some(value)
 }
 
-/// Tells assistive technology what a list to choose from is about, and what is chosen.
+/// Gives assistive technology the name of a combo box and the chosen entry.
 pub(super) fn named(list: &egui::Response, name: &str, chosen: &str) {
     list.widget_info(|| {
         let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, list.enabled(), say(name));
@@ -92,10 +92,10 @@ pub(super) fn figure(ui: &mut egui::Ui, name: &str, meaning: &str, value: impl I
     });
 }
 
-/// Why what was typed into a field since the last call is not taken.
+/// The reason why the last typed text was refused.
 type Refused = Option<String>;
 
-/// Says why what was typed since the last call is not taken, until a number is.
+/// Shows why the last typed text was refused, until a number is accepted.
 pub(super) fn tell_refused(ctx: &egui::Context, notices: &mut Notices) {
     match ctx.data_mut(|data| data.remove_temp::<Refused>(refused_id())) {
         Some(Some(why)) => notices.error("number", why),
@@ -108,7 +108,7 @@ fn refused_id() -> egui::Id {
     egui::Id::unique("refused number")
 }
 
-/// Reads what is typed, its unit too, and keeps why it is not taken.
+/// Parses the typed text, including a unit, and stores the reason of a refusal.
 fn read(
     typed: &str,
     unit: &str,
@@ -129,7 +129,7 @@ fn read(
     None
 }
 
-/// Hands on what was refused of a field; what it has taken ends the last refusal.
+/// Passes on the refusal of a field; an accepted value ends the last refusal.
 fn settle(ui: &egui::Ui, response: &egui::Response, refused: RefCell<Refused>) {
     let refused = refused.into_inner();
     if refused.is_some() || response.changed() {
@@ -137,8 +137,8 @@ fn settle(ui: &egui::Ui, response: &egui::Response, refused: RefCell<Refused>) {
     }
 }
 
-/// A number that changes when typing ends rather than at each key, so that a mass of 0.5 can be
-/// typed although 0 is refused.
+/// A number that changes when typing ends rather than at each key, so that a mass of 0.5 can be typed although 0 is
+/// refused.
 fn number(ui: &mut egui::Ui, value: &mut f64, width: f32) -> egui::Response {
     let speed = 0.01 * value.abs().clamp(0.1, 1e9);
     let refused = RefCell::new(None);
@@ -156,7 +156,7 @@ fn number(ui: &mut egui::Ui, value: &mut f64, width: f32) -> egui::Response {
     response
 }
 
-/// A number in a range that goes by a factor, typed as in [`number`].
+/// A number in a range, dragged by factors and typed as in [`number`].
 pub(super) fn within(
     ui: &mut egui::Ui,
     value: &mut f64,
@@ -196,9 +196,9 @@ pub(super) fn slider<N: Numeric>(
     response
 }
 
-/// A number as a field shows it, never wider than the field for long.
+/// A number as text that fits a field.
 pub(super) fn shown(value: f64, decimals: usize) -> String {
-    // No zero has a sign, nor has what is rounded to it.
+    // Adding +0 removes the sign of -0, which is also a rounded value.
     let value = value + 0.0;
     if value.abs() >= 1e6 || value != 0.0 && value.abs() < 1e-3 {
         return format!("{value:.2e}");
@@ -210,7 +210,7 @@ pub(super) fn shown(value: f64, decimals: usize) -> String {
     }
 }
 
-/// What a field means, and how it is changed.
+/// The meaning of a field, and how to change it.
 fn typed(meaning: &str) -> String {
     format!("{}\n{}", say(meaning), say("Drag, or click to type."))
 }

@@ -1,4 +1,4 @@
-//! The forces of the scene: one block of fields each, and a list of those that can be added.
+//! The forces of the scene: a block of fields for each, and a menu to add others.
 
 use egui::{ComboBox, RichText};
 use scene::shown;
@@ -10,7 +10,7 @@ use crate::words::say;
 
 pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
     let stopped = session.state() != State::Running;
-    // One line in every state, so that what is below stays where it is.
+    // Always one line, so that the contents below do not move.
     let about = match session.state() {
         State::Layout => "Beside the constant force of each body.",
         State::Running => "Pause to change them.",
@@ -50,7 +50,7 @@ fn list(ui: &mut egui::Ui, session: &mut Session) {
     }
 }
 
-/// The fields of a force; the changed force if one was changed.
+/// The fields of a force; returns the changed force if one was changed.
 fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force> {
     let scalar = |ui: &mut egui::Ui, name, unit, meaning, value: &mut f64| {
         let new = field::scalar(ui, name, unit, meaning, *value);
@@ -155,7 +155,7 @@ fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force
 
 const POINT: &str = "Where the force acts, in the frame of the body's shape";
 
-/// Whether a force acts at points other than positions, and at which. Whether that was changed.
+/// Whether a force acts at other points than positions, and at which. Returns whether this was changed.
 fn maybe_points<T: Default>(
     ui: &mut egui::Ui,
     title: &str,
@@ -170,7 +170,7 @@ fn maybe_points<T: Default>(
     changed | points.as_mut().is_some_and(|points| fields(ui, points))
 }
 
-/// A choice of one body. Whether it was changed.
+/// A choice of one body. Returns whether it was changed.
 fn one_body(ui: &mut egui::Ui, names: &[String], title: &str, body: &mut usize) -> bool {
     let mut chosen = Some(*body);
     let changed = choose(ui, names, title, None, &mut chosen);
@@ -178,7 +178,7 @@ fn one_body(ui: &mut egui::Ui, names: &[String], title: &str, body: &mut usize) 
     changed
 }
 
-/// A choice of one body or every one. Whether it was changed.
+/// A choice of one body or every one. Returns whether it was changed.
 fn maybe_body(ui: &mut egui::Ui, names: &[String], body: &mut Option<usize>) -> bool {
     choose(ui, names, "Body", Some("every body"), body)
 }
@@ -212,7 +212,7 @@ fn choose(
     *body != before
 }
 
-/// The forces that can be added, for the selected body where they need one.
+/// The menu of forces; one that needs a body acts on the selected one.
 fn add(ui: &mut egui::Ui, session: &mut Session) {
     let bodies = session.world().len();
     let body = session.selection().unwrap_or(0);

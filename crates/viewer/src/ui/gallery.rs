@@ -1,4 +1,4 @@
-//! The gallery: the scenes that come with the program, with pictures, in the order of the labs.
+//! The gallery: the built-in scenes with pictures, in the order of the labs.
 
 use std::collections::HashMap;
 
@@ -8,23 +8,23 @@ use scene::GalleryScene;
 use crate::session::{BEYOND, LABS, Leaving, Session};
 use crate::words::{Language, say};
 
-/// Size of a picture, points; the files have two pixels a point.
+/// Size of a picture, points; the files have two pixels per point.
 const PICTURE: [f32; 2] = [216.0, 135.0];
 /// Cards side by side at most.
 const COLUMNS: usize = 3;
 
-/// What the gallery remembers between frames.
+/// The state of the gallery between frames.
 #[derive(Default)]
 pub(super) struct Gallery {
     pub(super) open: bool,
-    /// It was open in the last frame too.
+    /// Whether it was open in the last frame too.
     stays: bool,
     search: String,
     pictures: HashMap<&'static str, TextureHandle>,
 }
 
 impl Gallery {
-    /// Another context has none of the textures.
+    /// The textures are lost when the context changes.
     pub(super) fn forget_pictures(&mut self) {
         self.pictures.clear();
     }
@@ -122,7 +122,7 @@ pub(super) fn show(ctx: &egui::Context, gallery: &mut Gallery, session: &mut Ses
     gallery.open = open && !ctx.input(|input| input.key_pressed(Key::Escape));
 }
 
-/// The labs with their scenes that are found; the scene that was chosen, if one was.
+/// The labs with the scenes that match the search; returns the chosen scene, if any.
 fn sections(ui: &mut egui::Ui, gallery: &mut Gallery, now: &str) -> Option<&'static str> {
     let mut chosen = None;
     let mut any = false;
@@ -141,7 +141,7 @@ fn sections(ui: &mut egui::Ui, gallery: &mut Gallery, now: &str) -> Option<&'sta
         for row in found.chunks(fit) {
             ui.columns(fit, |columns| {
                 for (ui, entry) in columns.iter_mut().zip(row) {
-                    // Columns would spread the words over their width.
+                    // Columns would justify the text.
                     let ragged = egui::Layout::top_down(egui::Align::Min);
                     let card =
                         ui.with_layout(ragged, |ui| card(ui, gallery, entry, entry.name == now));
@@ -158,7 +158,7 @@ fn sections(ui: &mut egui::Ui, gallery: &mut Gallery, now: &str) -> Option<&'sta
     chosen
 }
 
-/// One scene. Whether it was chosen.
+/// One scene. Returns whether it was chosen.
 fn card(ui: &mut egui::Ui, gallery: &mut Gallery, entry: &GalleryScene, now: bool) -> bool {
     let title = say(entry.title());
     let about = say(entry.about());
@@ -216,7 +216,7 @@ fn picture(
     Some(id)
 }
 
-/// All scenes, by lab; those of no lab at the end.
+/// All scenes, by lab; scenes of no lab come last.
 fn labs() -> Vec<(&'static str, Vec<&'static GalleryScene>)> {
     let named = |name: &&str| scene::SCENES.iter().find(|entry| entry.name == *name);
     let mut labs: Vec<(&str, Vec<&GalleryScene>)> = LABS
@@ -229,7 +229,7 @@ fn labs() -> Vec<(&'static str, Vec<&'static GalleryScene>)> {
     labs
 }
 
-/// Whether all words are in the name, title or text of a scene, in any language.
+/// Whether all words occur in the name, title or text of a scene, in any language.
 fn matches(entry: &GalleryScene, words: &str) -> bool {
     let mut text = entry.name.to_lowercase();
     for part in [entry.title(), entry.about()] {
@@ -242,7 +242,7 @@ fn matches(entry: &GalleryScene, words: &str) -> bool {
     words.split_whitespace().all(|word| text.contains(word))
 }
 
-/// What comes before the first full stop that ends a sentence.
+/// The text before the first full stop that ends a sentence.
 fn first_sentence(text: &str) -> &str {
     let ends = text.match_indices(['.', '。']).find_map(|(at, end)| {
         let after = &text[at + end.len()..];

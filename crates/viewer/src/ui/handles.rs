@@ -1,4 +1,4 @@
-//! Handles on the selected body: three knobs, one for each axis, that move, turn or stretch it.
+//! Handles on the selected body: three knobs, one for each axis, that move, rotate or scale it.
 
 use egui::{Color32, Pos2, Rect, Sense, Stroke, Vec2};
 use scene::SceneShape;
@@ -11,13 +11,13 @@ use crate::words::say;
 /// Length of a handle, in distances of the camera, and size of its knob, points.
 const LENGTH: f64 = 0.16;
 const KNOB: f32 = 6.0;
-/// Points on the screen below which an axis is seen too much from its end to be dragged along.
+/// The length on the screen, points, below which an axis is too foreshortened to be dragged along.
 const SHORTEST: f32 = 10.0;
-/// Degrees for each point of a drag, and growth of the logarithm of a scale.
+/// Degrees per point of a drag, and change of the logarithm of a scale per point.
 const TURN: f64 = 0.5;
 const STRETCH: f64 = 0.01;
 
-/// What the handles do.
+/// The operation of the handles.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 enum Tool {
     #[default]
@@ -26,14 +26,14 @@ enum Tool {
     Stretch,
 }
 
-/// The handles, and what they are for now.
+/// The handles, and their present operation.
 #[derive(Default)]
 pub(super) struct Handles {
     tool: Tool,
 }
 
 impl Handles {
-    /// A row to choose what the handles do.
+    /// A row to choose the operation of the handles.
     pub(super) fn choose(&mut self, ui: &mut egui::Ui, session: &Session) {
         let Some(body) = session.selected() else {
             return;
@@ -74,7 +74,7 @@ impl Handles {
         });
     }
 
-    /// Draws the handles over the picture and obeys them; none while physics runs.
+    /// Draws the handles over the picture and applies their drags; none while physics runs.
     pub(super) fn show(&self, ui: &egui::Ui, rect: Rect, aspect: f64, session: &mut Session) {
         let (Some(body), false) = (session.selection(), session.state() == State::Running) else {
             return;
@@ -149,7 +149,7 @@ impl Handles {
         }
     }
 
-    /// Obeys a drag by so many points of a handle that is seen as `seen` and is `length` m long.
+    /// Applies a drag by so many points of a handle that appears as `seen` on the screen and is `length` m long.
     fn drag(
         &self,
         by: Vec2,

@@ -1,4 +1,4 @@
-//! Keys: one table that is obeyed, listed below the picture and explained in a window.
+//! Keys: one table that is handled, listed below the picture and explained in a window.
 
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Key, Modifiers, Panel, RichText, TextStyle};
@@ -7,7 +7,7 @@ use super::Ui;
 use crate::session::{Leaving, Session, Side};
 use crate::words::say;
 
-/// A key and what it does.
+/// A key and its action.
 struct Shortcut {
     keys: &'static [Key],
     label: &'static str,
@@ -174,13 +174,13 @@ static SHORTCUTS: [Shortcut; 25] = [
     },
 ];
 
-/// Something that can be done, kept.
+/// An action that can be stored.
 pub(super) type Doing = Box<dyn Fn(&mut Ui, &mut Session)>;
 
-/// What a key does.
+/// The action of a key.
 type Act = fn(&mut Ui, &mut Session);
 
-/// A key that is held together with Ctrl, or with the command key on a Mac.
+/// A key that is pressed together with Ctrl, or with the command key on a Mac.
 struct WithCtrl {
     modifiers: Modifiers,
     key: Key,
@@ -202,7 +202,7 @@ impl WithCtrl {
 }
 
 static WITH_CTRL: [WithCtrl; 11] = [
-    // With Shift first, since without it does not look at Shift.
+    // Shortcuts with Shift come first, because those without Shift do not test it.
     WithCtrl {
         modifiers: Modifiers::COMMAND.plus(Modifiers::SHIFT),
         ..WithCtrl::new(Key::Z, "Ctrl + Shift + Z", "do again", |_, session| {
@@ -253,13 +253,13 @@ static GESTURES: [(&str, &str); 8] = [
     ("Drag a number", "change it; click to type"),
 ];
 
-/// Magnifies the window: obeyed by egui.
+/// Scales the window; egui handles these keys.
 const MAGNIFY: (&str, &str) = ("Ctrl + +, -, 0", "larger, smaller, as it was");
 
-/// All that keys do: the keys, what they do, and the doing.
+/// All actions: their keys, descriptions and functions.
 pub(super) fn commands() -> impl Iterator<Item = (&'static str, &'static str, Doing)> {
     let plain = SHORTCUTS.iter().flat_map(|shortcut| {
-        // Keys that do different things, such as the sides to look from, are a command each.
+        // Keys with several actions, such as the sides to look from, are one command for each.
         let keys = match shortcut.label {
             "1 2 3" | "[ ]" | "U I" | "J K" => shortcut.keys,
             _ => &shortcut.keys[..1],
@@ -288,8 +288,8 @@ pub(super) fn commands() -> impl Iterator<Item = (&'static str, &'static str, Do
     plain.chain(held)
 }
 
-/// Obeys the keys pressed. While a field has the keyboard these are the keys with Ctrl that no field has a use for:
-/// the gallery closes by the key that opens it, though its search has the keyboard.
+/// Handles the pressed keys. While a field has the keyboard, only the keys with Ctrl that no field uses are handled:
+/// the gallery closes by the key that opens it, although its search field has the keyboard.
 pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session) {
     if session.leaving().is_some() || state.palette.open {
         return;
@@ -304,14 +304,14 @@ pub(super) fn handle(ctx: &egui::Context, state: &mut Ui, session: &mut Session)
             (held.act)(state, session);
         }
     }
-    // While the right button is held, keys fly.
+    // While the right button is pressed, keys fly the camera.
     if is_typing || ctx.input(|i| i.pointer.secondary_down()) {
         return;
     }
     for shortcut in &SHORTCUTS {
         for &key in shortcut.keys {
             let presses = ctx.input(|i| {
-                // Ctrl and Alt belong to the system and to egui.
+                // Keys with Ctrl and Alt belong to the system and to egui.
                 let foreign = i.modifiers.ctrl || i.modifiers.alt || i.modifiers.command;
                 if foreign { 0 } else { i.num_presses(key) }
             });
@@ -329,14 +329,14 @@ pub(super) fn show_line(root: &mut egui::Ui) {
             ui.spacing_mut().item_spacing = egui::vec2(14.0, 1.0);
             ui.spacing_mut().interact_size.y = 12.0;
             for shortcut in &SHORTCUTS {
-                // A key stays beside its meaning.
+                // A key and its meaning stay on one line.
                 ui.add(egui::Label::new(line(ui, shortcut)).extend());
             }
         });
     });
 }
 
-/// A key and its meaning as one text, so that they stay on one line.
+/// A key and its meaning as one text, so that no line break separates them.
 fn line(ui: &egui::Ui, shortcut: &Shortcut) -> LayoutJob {
     let font = TextStyle::Small.resolve(ui.style());
     let mut text = LayoutJob::default();
@@ -360,12 +360,12 @@ pub(super) fn show_help(ctx: &egui::Context, open: &mut bool) {
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(ctx.content_rect().center())
         .show(ctx, |ui| {
-            // All of them in a window of 600 points.
+            // The reduced height fits all keys into a window of 600 points.
             ui.spacing_mut().interact_size.y = 16.0;
             let plain = SHORTCUTS.iter().map(|s| (s.label, s.meaning));
             let held = WITH_CTRL.iter().map(|held| (held.label, held.meaning));
             let all: Vec<_> = plain.chain(held).chain([MAGNIFY]).chain(GESTURES).collect();
-            // Two beside each other, since they are many.
+            // In two columns, because there are many.
             let (left, right) = all.split_at(all.len().div_ceil(2));
             egui::Grid::new("keys")
                 .num_columns(4)

@@ -9,7 +9,7 @@ use crate::number;
 use crate::session::{Session, State, turns};
 use crate::words::say;
 
-/// Pairs in overlap that are named; more would cover the picture.
+/// The most overlapping pairs that are named; more would cover the picture.
 const OVERLAPS: usize = 4;
 
 /// Shows the figures.
@@ -135,7 +135,7 @@ fn figures(ui: &mut egui::Ui, session: &Session) {
     );
 }
 
-/// The time of the picture, with digits that tell instants within a step apart.
+/// The time of the picture, with enough digits to distinguish instants within a step.
 fn time(session: &Session) -> String {
     match session.is_between() && session.state() == State::Paused {
         true => format!("{:.6} s, within a step", session.shown_time()),
@@ -213,7 +213,7 @@ fn impacts(ui: &mut egui::Ui, session: &Session) {
     }
 }
 
-/// What of a body touches in an impact.
+/// The part of a body that touches in an impact.
 fn part_name(session: &Session, impact: &Impact, which: usize) -> &'static str {
     let (i, j) = impact.bodies;
     let body = [i, j][which];

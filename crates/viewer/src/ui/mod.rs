@@ -1,7 +1,7 @@
-//! The control panel: what the person sees around the picture and can do to the session.
+//! The control panel: everything around the picture by which the user sees and changes the session.
 //!
-//! Each panel is one file with one `show`. Panels call the session's methods and nothing else;
-//! the picture arrives as a texture, drawn elsewhere.
+//! Each panel is one file with one function `show`. Panels only call methods of the session; the picture is a texture
+//! that is drawn elsewhere.
 
 mod banner;
 mod bar;
@@ -36,7 +36,7 @@ use crate::words::{Language, say, speak};
 
 pub use style::apply as apply_style;
 
-/// What the control panel remembers between frames.
+/// The state of the control panel between frames.
 #[derive(Default)]
 pub struct Ui {
     help: bool,
@@ -53,12 +53,12 @@ pub struct Ui {
     palette: palette::Palette,
     handles: handles::Handles,
     language: Language,
-    /// Whether a font has Chinese characters; not known before the first frame.
+    /// Whether a font has Chinese characters; `None` before the first frame.
     has_chinese: Option<bool>,
     light: bool,
-    /// How much room the bar on top takes in one line, without the title, points.
+    /// The width of the top bar in one line, without the title, points.
     bar: f32,
-    /// Naive against BVH is measured, and a figure of it has come since it is.
+    /// Whether naive against BVH is measured, and whether a result has come since.
     measured: [bool; 2],
 }
 
@@ -97,7 +97,7 @@ impl Ui {
         rect
     }
 
-    /// Takes up what was preferred when the window was closed last.
+    /// Applies the preferences saved when the window was last closed.
     pub fn prefer(&mut self, ctx: &egui::Context, session: &mut Session, wanted: &Preferences) {
         self.language = wanted.language;
         self.light = wanted.light;
@@ -112,7 +112,7 @@ impl Ui {
         ctx.set_zoom_factor(wanted.zoom.clamp(0.5, 4.0));
     }
 
-    /// Goes on in another context: as large as before, with what is open still open. Textures stay behind.
+    /// Moves to another context: keeps the scale and the open windows. Textures are lost.
     pub fn move_to(&mut self, from: &egui::Context, to: &egui::Context) {
         let memory = from.memory(egui::Memory::clone);
         to.memory_mut(|known| *known = memory);
@@ -120,7 +120,7 @@ impl Ui {
         self.gallery.forget_pictures();
     }
 
-    /// What is preferred now.
+    /// The present preferences.
     pub fn preferences(&self, ctx: &egui::Context, session: &Session) -> Preferences {
         Preferences {
             language: self.language,
@@ -138,12 +138,12 @@ impl Ui {
         }
     }
 
-    /// Speaks another language from the next frame on.
+    /// Changes the language from the next frame on.
     pub fn set_language(&mut self, language: Language) {
         self.language = language;
     }
 
-    /// Speaks the language chosen, or English where the system has no font for that.
+    /// Uses the chosen language, or English if the system has no font for it.
     fn speak(&mut self, ctx: &egui::Context, session: &mut Session) {
         let has_chinese = *self.has_chinese.get_or_insert_with(|| {
             let font = egui::FontId::proportional(13.0);
@@ -179,7 +179,7 @@ impl Ui {
                         let measuring = section(ui, "Naive against BVH", |ui| {
                             compare::show(ui, session);
                         });
-                        // It is at the end of the panel, and the tour switches it on as well.
+                        // The switch is at the end of the panel, and the tour can set it too.
                         let on = session.compare.on;
                         let figure = self.measured[1] || session.compare.last().is_some();
                         let before = std::mem::replace(&mut self.measured, [on, on && figure]);
@@ -232,7 +232,7 @@ mod tests {
                 textures += output.textures_delta.set.len();
                 output.textures_delta.clear();
             }
-            // Those of the fonts besides.
+            // Includes the textures of fonts.
             let whole = textures > ::scene::SCENES.len();
             (whole, ui.preferences(context, &session))
         };

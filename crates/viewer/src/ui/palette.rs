@@ -1,4 +1,4 @@
-//! The command palette: everything that can be done, found by typing a part of its name.
+//! The command palette: all commands, found by a part of their names.
 
 use egui::{Id, Key, Modal, RichText, ScrollArea, TextEdit};
 use sim_core::METHODS;
@@ -7,7 +7,7 @@ use super::{Ui, keys};
 use crate::session::{LABS, Leaving, PRESETS, Session};
 use crate::words::{Language, say};
 
-/// What the palette remembers between frames.
+/// The state of the palette between frames.
 #[derive(Default)]
 pub(super) struct Palette {
     pub(super) open: bool,
@@ -15,9 +15,9 @@ pub(super) struct Palette {
     marked: usize,
 }
 
-/// Something that can be done.
+/// A command.
 struct Command {
-    /// In English.
+    /// The name in English.
     name: String,
     keys: &'static str,
     act: keys::Doing,
@@ -32,7 +32,7 @@ impl Command {
         }
     }
 
-    /// Whether all words are in its name, in any language.
+    /// Whether all words occur in its name, in any language.
     fn matches(&self, words: &str) -> bool {
         let names = Language::ALL.map(|language| language.say(&self.name).to_lowercase());
         let words = words.to_lowercase();
@@ -42,7 +42,7 @@ impl Command {
     }
 }
 
-/// Everything that can be done.
+/// All commands.
 fn commands(has_chinese: bool) -> Vec<Command> {
     let mut all: Vec<Command> = keys::commands()
         .map(|(keys, name, act)| Command {
@@ -94,7 +94,7 @@ pub(super) fn show(ctx: &egui::Context, state: &mut Ui, session: &mut Session) {
     let mut chosen = None;
     let modal = Modal::new(Id::unique("palette")).show(ctx, |ui| {
         ui.set_width(460.0_f32.min(ctx.content_rect().width() - 40.0));
-        // Before the field takes the keys.
+        // These keys are read before the field receives them.
         let (up, down, enter) = ui.input_mut(|input| {
             (
                 input.consume_key(egui::Modifiers::NONE, Key::ArrowUp),

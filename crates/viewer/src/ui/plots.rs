@@ -1,4 +1,4 @@
-//! The plots under the picture: curves over all kept time, and speed against error.
+//! The plots below the picture: curves over all kept time, and work against precision.
 
 use egui::{Color32, Rangef, RichText, Sense, Vec2b, Visuals};
 use egui_plot::{
@@ -13,12 +13,12 @@ use crate::words::say;
 /// Which plots are shown.
 #[derive(Default)]
 pub(super) struct Plots {
-    /// Those that the person has chosen; until then those that suit the scene.
+    /// The plots that the user has chosen; `None` selects those that suit the scene.
     chosen: Option<[bool; CHARTS.len()]>,
     precision: bool,
 }
 
-/// Width below which a plot is not worth drawing, points.
+/// The least width of a plot, points.
 const LEAST_WIDTH: f32 = 150.0;
 
 impl Plots {
@@ -49,7 +49,7 @@ impl Plots {
         self.draw(ui, session);
     }
 
-    /// The plots chosen, or else energy and what more can be told of this scene.
+    /// The chosen plots, or by default the energy and the most informative plot of this scene.
     fn shown(&self, session: &Session) -> [bool; CHARTS.len()] {
         self.chosen.unwrap_or_else(|| {
             let second = session.telling_chart();
@@ -59,7 +59,7 @@ impl Plots {
         })
     }
 
-    /// The plots alone.
+    /// Draws the plots without controls.
     pub(super) fn draw(&self, ui: &mut egui::Ui, session: &mut Session) {
         let chosen: Vec<&Chart> = CHARTS
             .iter()
@@ -91,7 +91,7 @@ impl Plots {
     }
 }
 
-/// What a plot shows, in which unit, and the names of its curves in their colours.
+/// The title and unit of a plot, and the names of its curves in their colours.
 fn heading(ui: &mut egui::Ui, title: &str, unit: &str, meaning: &str, curves: &[Curve]) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(8.0, 0.0);
@@ -105,15 +105,15 @@ fn heading(ui: &mut egui::Ui, title: &str, unit: &str, meaning: &str, curves: &[
     });
 }
 
-/// Why there is no curve.
+/// The reason why there is no curve.
 fn note(ui: &mut egui::Ui, text: &str) {
-    // Columns would spread the words over their width.
+    // Columns would justify the text.
     ui.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
         ui.label(RichText::new(say(text)).weak());
     });
 }
 
-/// The names of all runs, in the colours that they have in every plot.
+/// The names of all runs, in their colours.
 fn legend(ui: &mut egui::Ui, curves: &[Curve]) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(10.0, 0.0);
@@ -131,7 +131,7 @@ fn names(ui: &mut egui::Ui, curves: &[Curve]) {
     }
 }
 
-/// The colour of a run; the run itself is as strong as text, in either theme.
+/// The colour of a run; the run itself has the contrast of text, in either theme.
 fn ink(colour: [f32; 3], visuals: &Visuals, other: fn([f32; 3], &Visuals) -> Color32) -> Color32 {
     match colour == RUN {
         true => visuals.strong_text_color(),
@@ -175,7 +175,7 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
             _ if session.playback().len() < 2 => "Start, and curves grow here.",
             _ if chart.title == "Path error" => match session.path_error() {
                 None => "The exact path is not known here.",
-                // It has no logarithm.
+                // 0 has no logarithm.
                 Some(0.0) => "The error is 0: every body is where it would be exactly.",
                 Some(_) => "Nothing yet.",
             },
@@ -196,7 +196,7 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
             AxisHints::new_x()
                 .label_spacing(Rangef::new(30.0, 45.0))
                 .formatter(|mark, range| match is_at(*range.end(), mark, range) {
-                    // It would be cut.
+                    // The label would be cut off.
                     true => String::new(),
                     false => format!("{} s", tidy(mark.value)),
                 }),
@@ -221,11 +221,11 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
             Some(format!("{plot_name}\n{value} {unit}\n{:.4} s", position.x))
         });
     let plot = match flat(&curves) {
-        // Rounding is not to fill the plot.
+        // The range must not shrink to rounding errors.
         Some((value, size)) if !logarithmic => plot.include_y(value - size).include_y(value + size),
         _ => plot,
     };
-    // What is rounding lies at the bottom, below a nanometre.
+    // Rounding errors lie at the bottom, below a nanometre.
     let plot = match chart.title {
         "Path error" => plot.include_y(-9.0),
         _ => plot,
@@ -259,7 +259,7 @@ fn over_time(ui: &mut egui::Ui, chart: &Chart, session: &mut Session, height: f3
     }
 }
 
-/// Speed against error, a point for each run.
+/// Work against precision, one point for each run.
 fn precision(ui: &mut egui::Ui, session: &Session, height: f32) {
     let top = ui.cursor().top();
     let runs = session.work_precision();
@@ -301,7 +301,7 @@ fn precision(ui: &mut egui::Ui, session: &Session, height: f32) {
         });
 }
 
-/// Where all values are equal but for rounding: that value, and how much to show about it.
+/// If all values are equal up to rounding: that value, and the range to show around it.
 fn flat(curves: &[Curve]) -> Option<(f64, f64)> {
     let values = || curves.iter().flat_map(|c| c.points.iter().map(|p| p[1]));
     let (least, most) = (values().reduce(f64::min)?, values().reduce(f64::max)?);
@@ -310,7 +310,7 @@ fn flat(curves: &[Curve]) -> Option<(f64, f64)> {
     (most - least < shown).then_some((0.5 * (least + most), shown))
 }
 
-/// At most so many grid lines and one more, at round numbers.
+/// At most about `most` grid lines, at round numbers.
 fn round(input: GridInput, most: f64) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let least = ((high - low) / most).max(f64::MIN_POSITIVE);
@@ -326,7 +326,7 @@ fn round(input: GridInput, most: f64) -> Vec<GridMark> {
         .collect()
 }
 
-/// Grid lines at whole powers of ten, as many as fit; at 2 and 5 times these too, where there are few.
+/// Grid lines at whole powers of ten, as many as fit; if there are few, also at 2 and 5 times these.
 fn powers(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     if high - low < 2.5 {
@@ -363,7 +363,7 @@ fn axis_text(mark: GridMark, range: &std::ops::RangeInclusive<f64>, logarithmic:
     if logarithmic {
         return format!("{:.0e}", 10_f64.powf(mark.value));
     }
-    // It would meet the number of the other axis.
+    // The label would overlap the one of the other axis.
     if is_at(*range.start(), mark, range) {
         return String::new();
     }

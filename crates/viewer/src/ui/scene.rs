@@ -1,4 +1,4 @@
-//! Scenes and their bodies: the gallery, files, and the list to select from.
+//! Scenes and their bodies: the gallery, files, and the list for selection.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -14,24 +14,24 @@ use crate::preferences::MOST_RECENT;
 use crate::session::{Leaving, Session};
 use crate::words::say;
 
-/// The path typed, and the dialog opened instead.
+/// The typed path, and the dialog that replaces it.
 #[derive(Default)]
 pub(super) struct Files {
     path: String,
     dialog: Option<Dialog>,
-    /// A dialog is to be opened.
+    /// Whether a dialog must be opened.
     asked: bool,
     /// Files that were opened or saved, the latest first.
     pub(super) recent: Vec<PathBuf>,
 }
 
 impl Files {
-    /// Asks for a file to open, in the next frame.
+    /// Requests the dialog for opening a file, in the next frame.
     pub(super) fn ask(&mut self) {
         self.asked = true;
     }
 
-    /// Remembers the scene's file as the latest one.
+    /// Records the scene's file as the latest one.
     fn remember(&mut self, session: &Session) {
         let Some(file) = session.file() else { return };
         let file = std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf());
@@ -42,8 +42,7 @@ impl Files {
         }
     }
 
-    /// Opens the dialog that was asked for, takes the answer of one once there is one, and remembers
-    /// which files were open.
+    /// Opens a requested dialog, handles the answer of an open one, and records recent files.
     pub(super) fn poll(&mut self, ctx: &egui::Context, session: &mut Session) {
         if std::mem::take(&mut self.asked) && self.dialog.is_none() {
             self.dialog = Dialog::open(ctx, Purpose::Read);
@@ -52,7 +51,7 @@ impl Files {
         match Dialog::answer(&mut self.dialog) {
             None | Some(Answer::Cancelled) => {}
             Some(Answer::Chosen(Purpose::Read, path)) => session.take_in(&path),
-            // The dialog has asked before overwriting.
+            // The dialog has already asked before overwriting.
             Some(Answer::Chosen(Purpose::Save, path)) => session.save(&path, true),
             Some(Answer::Unavailable) => session.notices().error(
                 "dialog",
@@ -196,7 +195,7 @@ fn bodies(ui: &mut egui::Ui, session: &mut Session) {
     }
 }
 
-/// The bodies by name, row after row, of which only those in sight are laid out; tells a choice.
+/// The bodies by name in rows; only visible rows are laid out. Returns a choice.
 fn list(ui: &mut egui::Ui, session: &Session) -> Option<Option<usize>> {
     let labels: Vec<Arc<Galley>> = (0..session.scene().bodies.len())
         .map(|i| label(ui, session, i))
@@ -244,8 +243,8 @@ fn label(ui: &egui::Ui, session: &Session, i: usize) -> Arc<Galley> {
     ui.fonts_mut(|fonts| fonts.layout_job(text))
 }
 
-/// Which of a row of things stand side by side, from one to the next of some widths with gaps between them, where
-/// there is so much room.
+/// Distributes items over rows: the ranges of items side by side, for their widths, the gap between them and the
+/// available room.
 fn rows(widths: impl Iterator<Item = f32>, gap: f32, room: f32) -> Vec<Range<usize>> {
     let mut rows: Vec<Range<usize>> = Vec::new();
     let mut end = 0.0;

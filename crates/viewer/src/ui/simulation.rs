@@ -1,4 +1,4 @@
-//! How to simulate: integrator, rate and collision test, all changeable while running.
+//! The settings of the simulation: integrator, rate and collision mode, all changeable while running.
 
 use egui::ComboBox;
 use sim_core::{Collision, METHODS, Settings};
@@ -8,7 +8,7 @@ use crate::number;
 use crate::session::{MAX_RATE, MIN_RATE, Session};
 use crate::words::say;
 
-/// What each method does in a step: positions x, velocities v, accelerations a.
+/// The formulas of a step of each method: positions x, velocities v, accelerations a.
 const FORMULAS: [(&str, &str); METHODS.len()] = [
     ("forward-euler", "x₁ = x₀ + v₀ dt,  v₁ = v₀ + a(x₀, v₀) dt"),
     ("backward-euler", "x₁ = x₀ + v₁ dt,  v₁ = v₀ + a(x₁, v₁) dt"),
@@ -87,9 +87,9 @@ pub(super) fn show(ui: &mut egui::Ui, session: &mut Session) {
         field::label(ui, "Rate", "Steps per second of simulated time");
         let mut rate = 1.0 / now.dt;
         let slider = field::slider(ui, &mut rate, MIN_RATE..=MAX_RATE, " Hz", |slider| {
-            // A file may have a rate beyond.
+            // A file may have a rate outside the range of the slider.
             let slider = slider.clamping(egui::SliderClamping::Edits);
-            // What is typed is taken as it is, and shown in short.
+            // A typed value is accepted exactly, and shown rounded.
             let slider = slider.custom_formatter(|rate, _| field::shown(rate, 1));
             slider.logarithmic(true)
         });

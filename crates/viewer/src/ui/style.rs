@@ -2,7 +2,7 @@
 
 use egui::{Color32, CornerRadius, FontId, TextStyle, Theme, Vec2, Visuals};
 
-/// A colour that says something, in the tones that are legible in either theme.
+/// A colour with a meaning, in tones that are legible in the two themes.
 #[derive(Clone, Copy)]
 pub(super) struct Tone {
     dark: Color32,
@@ -17,7 +17,7 @@ impl Tone {
         }
     }
 
-    /// The tone over the picture, where text stands on a dark ground in both themes.
+    /// The tone over the picture, where text has a dark background in both themes.
     pub(super) const fn over_picture(self) -> Color32 {
         self.dark
     }
@@ -31,30 +31,30 @@ impl Tone {
     }
 }
 
-/// Things that run, and the way to make them run.
+/// Running things, and the button to run them.
 pub(super) const GREEN: Tone = Tone::new([116, 196, 138], [20, 104, 52]);
-/// Things that are held still or late.
+/// Paused or late things.
 pub(super) const AMBER: Tone = Tone::new([232, 180, 92], [126, 78, 0]);
-/// Things refused or failed.
+/// Refusals and failures.
 pub(super) const RED: Tone = Tone::new([240, 120, 110], [176, 32, 24]);
-/// The selection, like the edges drawn over it.
+/// The selection, as the edges of selected bodies.
 pub(super) const BLUE: Tone = Tone::new([110, 168, 254], [22, 84, 184]);
 
-/// The ground of text over the picture, whatever is below it.
+/// The background of text over the picture.
 pub(super) const OVER_PICTURE: Color32 = Color32::from_black_alpha(210);
-/// The ground of the numbers on the axes, which stand in the light picture, and their ink.
+/// The background of the numbers on the axes over the light picture, and their text colour.
 pub(super) const OVER_AXES: Color32 = Color32::from_rgba_premultiplied(150, 150, 150, 150);
 pub(super) const AXIS_INK: Color32 = Color32::from_gray(30);
 
-/// Least contrast of text with what is behind it: that of the accessibility guidelines for small text.
+/// The least contrast of text against its background: that of the accessibility guidelines for small text.
 const CONTRAST: f32 = 4.5;
 /// Least contrast of curves and dots.
 const CURVE_CONTRAST: f32 = 3.0;
 
-/// Sets the style of a new egui context: quiet, with room around things, and with the system's fonts for
-/// writing that egui's own fonts lack.
+/// Sets the style of a new egui context: calm, with generous spacing, and with the system's fonts for scripts that
+/// egui's own fonts lack.
 pub fn apply(ctx: &egui::Context) {
-    // Han characters look as in China rather than as in Japan.
+    // Han characters in their Chinese rather than Japanese forms.
     let fonts = egui_system_font_provider::SystemFontProvider::new().with_locale(Some("zh-Hans"));
     ctx.add_font_provider(std::sync::Arc::new(fonts));
     ctx.set_theme(Theme::Dark);
@@ -63,7 +63,7 @@ pub fn apply(ctx: &egui::Context) {
             (TextStyle::Heading, FontId::proportional(14.5)),
             (TextStyle::Body, FontId::proportional(13.0)),
             (TextStyle::Button, FontId::proportional(13.0)),
-            // Its digits are all as wide as each other, and its zeros are no eights from afar.
+            // Its digits have equal widths, and its zeros cannot be mistaken for eights.
             (TextStyle::Monospace, FontId::proportional(13.0)),
             (TextStyle::Small, FontId::proportional(11.0)),
         ]
@@ -114,13 +114,12 @@ fn light(visuals: &mut Visuals) {
     visuals.widgets.inactive.bg_fill = Color32::from_rgb(206, 210, 217);
 }
 
-/// A colour of the picture for a curve or dot on the background of plots, made darker or lighter
-/// until it is seen there.
+/// A colour of the picture for a curve or dot on the background of plots, darkened or lightened until it is visible.
 pub(super) fn curve(colour: [f32; 3], visuals: &Visuals) -> Color32 {
     apart(colour, visuals.extreme_bg_color, CURVE_CONTRAST)
 }
 
-/// The same for words on a panel.
+/// A colour of the picture for text on a panel.
 pub(super) fn word(colour: [f32; 3], visuals: &Visuals) -> Color32 {
     apart(colour, visuals.panel_fill, CONTRAST)
 }
@@ -137,7 +136,7 @@ fn apart([red, green, blue]: [f32; 3], from: Color32, least: f32) -> Color32 {
     seen.next().unwrap_or(end)
 }
 
-/// How two colours are told apart, from 1 to 21, as WCAG 2 has it.
+/// The contrast ratio of two colours, from 1 to 21, by WCAG 2.
 fn contrast(a: Color32, b: Color32) -> f32 {
     let (a, b) = (luminance(a), luminance(b));
     (a.max(b) + 0.05) / (a.min(b) + 0.05)
@@ -203,7 +202,7 @@ mod tests {
                 assert!(told >= CONTRAST, "{text:?} over {below:?}: {told}");
             }
         }
-        // What numbers of axes stand on: the sky, the ground, and the darkest bodies of the gallery.
+        // The backgrounds of numbers on axes: the sky, the ground, and the darkest bodies of the gallery.
         for below in [0.84, 0.66, 0.35] {
             let below = Color32::from_gray((255.0 * below) as u8);
             let told = contrast(AXIS_INK, over(below, OVER_AXES));

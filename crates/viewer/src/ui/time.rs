@@ -1,4 +1,4 @@
-//! The line of time under the picture: what is kept of the run, its impacts, and the speed.
+//! The timeline below the picture: the kept states of the run, its impacts, and the speed.
 
 use egui::{Button, Color32, Panel, Sense, Stroke};
 
@@ -7,9 +7,9 @@ use crate::number;
 use crate::session::{SPEEDS, Session, State};
 use crate::words::say;
 
-/// The most impacts that are marked; more would be one colour.
+/// The most impacts that are marked; more would merge into one colour.
 const MARKS: usize = 2000;
-/// How near a click is to an impact that it means, points.
+/// The distance up to which a click selects an impact, points.
 const SNAP: f32 = 5.0;
 
 pub(super) fn show(root: &mut egui::Ui, state: &Ui, session: &mut Session) {
@@ -67,7 +67,7 @@ fn speed(ui: &mut egui::Ui, session: &mut Session) {
     }
 }
 
-/// What makes files of the run.
+/// The buttons that save the run to files.
 fn keep(ui: &mut egui::Ui, state: &Ui, session: &mut Session) {
     if let Some(reel) = session.reel() {
         let [done, total] = reel.progress();

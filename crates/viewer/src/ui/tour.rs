@@ -1,11 +1,11 @@
-//! The guided tour of the labs: what to watch, what to try, a question and its answer.
+//! The guided tour of the labs: what to observe, what to try, a question and its answer.
 
 use egui::{CollapsingHeader, Panel, RichText, ScrollArea};
 
 use crate::session::{Leaving, Session, stop, stop_count};
 use crate::words::say;
 
-/// Where the tour is.
+/// The state of the tour.
 #[derive(Default)]
 pub(super) struct Tour {
     pub(super) open: bool,
@@ -52,7 +52,7 @@ pub(super) fn show(root: &mut egui::Ui, tour: &mut Tour, session: &mut Session) 
         });
 }
 
-/// Which stop it is, and the ways to the others.
+/// The number of the stop, and the buttons to the others.
 fn turning(ui: &mut egui::Ui, tour: &mut Tour) {
     ui.horizontal(|ui| {
         let last = stop_count() - 1;

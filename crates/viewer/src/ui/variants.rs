@@ -1,4 +1,4 @@
-//! Comparing: other ways to run the scene beside it, what each costs and how far each is off.
+//! Comparisons: other ways to run the scene along with it, their costs and errors.
 
 use egui::{ComboBox, Grid, RichText};
 use sim_core::{Collision, METHODS, Settings};
@@ -8,7 +8,7 @@ use crate::number;
 use crate::session::{MAX_RATE, MIN_RATE, PRESETS, Session};
 use crate::words::say;
 
-/// The variant that is to be added next: as the scene is run, until something else is chosen for it.
+/// The variant to add next; its settings are those of the scene until they are changed.
 #[derive(Default)]
 pub(super) struct Choice {
     scene: String,
@@ -40,7 +40,7 @@ pub(super) fn show(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session
     }
 }
 
-/// A row to put together one more variant.
+/// A row to define one more variant.
 fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
     let own = *session.world().settings();
     if choice.scene != session.scene().name {
@@ -53,7 +53,7 @@ fn add(ui: &mut egui::Ui, choice: &mut Choice, session: &mut Session) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let list = ui.scope(|ui| {
-            // Names are cut where the list ends, not where the panel does.
+            // Names are truncated at the width of the list, not of the panel.
             ui.set_max_width(118.0);
             ComboBox::from_id_salt("variant method")
                 .selected_text(say(settings.method.title))
@@ -114,7 +114,7 @@ fn collision_name(how: Collision) -> &'static str {
     }
 }
 
-/// What each run costs, and how far it is off.
+/// The cost and the error of each run.
 fn table(ui: &mut egui::Ui, session: &mut Session) {
     let (own, names) = session.variant_names();
     let none = || "-".to_owned();
@@ -172,7 +172,7 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
                 let text = text.color(super::style::word(variant.colour, ui.visuals()));
                 run_name(ui, text, name);
                 if let Some(why) = &variant.failure {
-                    // When and why on hovering, as the table is narrow.
+                    // Time and reason are shown on hovering, because the table is narrow.
                     let when = say(format!("stopped at {:.3} s", variant.time()));
                     let colour = super::style::AMBER.of(ui.visuals());
                     ui.label(RichText::new(say("stopped")).color(colour))
@@ -222,7 +222,7 @@ fn table(ui: &mut egui::Ui, session: &mut Session) {
     }
 }
 
-/// The name of a run, cut where it is too long.
+/// The name of a run, truncated if it is too long.
 fn run_name(ui: &mut egui::Ui, name: RichText, more: &str) {
     let size = egui::vec2(102.0, ui.spacing().interact_size.y);
     let left = egui::Layout::left_to_right(egui::Align::Center);

@@ -1,4 +1,4 @@
-//! The picture, and what the mouse does on it.
+//! The picture, and the actions of the mouse on it.
 
 use egui::{Align2, Color32, CornerRadius, Key, PointerButton, Pos2, Rect, Sense, TextureId};
 
@@ -10,19 +10,19 @@ use super::style;
 use crate::session::Session;
 use crate::words::say;
 
-/// Turn of the camera by a drag across the whole height of the picture, radians.
+/// Rotation of the camera by a drag across the whole height of the picture, radians.
 const TURN: f64 = 4.0;
-/// Distances to the target that are flown in a second of real time, and the longest frame, s, that counts.
+/// The speed of flight, in distances to the target per second of real time, and the longest frame that counts, s.
 const FLIGHT: f64 = 1.0;
 const LONGEST_FRAME: f32 = 0.1;
-/// Names written at a time.
+/// The most names shown at a time.
 const MOST_NAMES: usize = 300;
-/// Growth of the zoom by a wheel's travel of one point.
+/// The relative change of the zoom per point of wheel travel.
 const ZOOM: f64 = 0.003;
 /// Width of the arrows beside their scales, points.
 const ARROW: f32 = 26.0;
 
-/// Shows the picture in the room that is left; returns its rectangle, in points.
+/// Shows the picture in the remaining area; returns its rectangle, in points.
 pub(super) fn show(
     ui: &mut egui::Ui,
     handles: &mut Handles,
@@ -43,7 +43,7 @@ pub(super) fn show(
         let (origin, direction) = ray(rect, at, aspect, session);
         session.pick(origin, direction);
     }
-    // Before the handles, which lie over the picture.
+    // Before the handles, which are drawn over the picture.
     let held = pull(ui, &response, aspect, session);
     if !held && !fly(ui, &response, session) {
         drag(ui, &response, session);
@@ -51,7 +51,7 @@ pub(super) fn show(
     if response.hovered() {
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let factor = (ZOOM * f64::from(scroll)).exp() * f64::from(pinch);
-        // Nothing is to be drawn anew while the wheel stands still.
+        // No redraw is needed while the wheel does not move.
         if factor != 1.0
             && let Some(at) = response.hover_pos()
         {
@@ -69,14 +69,14 @@ pub(super) fn show(
     rect
 }
 
-/// The ray through a place of the picture.
+/// The ray through a point of the picture.
 fn ray(rect: Rect, at: Pos2, aspect: f64, session: &Session) -> (DVec3, DVec3) {
     let at = (at - rect.center()) / rect.size();
     let [x, y] = [2.0 * f64::from(at.x), -2.0 * f64::from(at.y)];
     session.camera.ray(x, y, aspect)
 }
 
-/// Pulls a body where the drag began on one with Ctrl held. Whether a body is held.
+/// Pulls a body if a drag with Ctrl began on it. Returns whether a body is held.
 fn pull(ui: &egui::Ui, response: &egui::Response, aspect: f64, session: &mut Session) -> bool {
     let place = response.interact_pointer_pos();
     if let Some(at) = place.filter(|_| response.dragged_by(PointerButton::Primary)) {
@@ -96,7 +96,7 @@ fn pull(ui: &egui::Ui, response: &egui::Response, aspect: f64, session: &mut Ses
     session.is_pulling()
 }
 
-/// Flies while the right button and keys are held. Whether it does.
+/// Flies while the right button and keys are pressed. Returns whether it does.
 fn fly(ui: &egui::Ui, response: &egui::Response, session: &mut Session) -> bool {
     let held = response.is_pointer_button_down_on();
     let way = ui.input(|i| {
@@ -136,7 +136,7 @@ fn drag(ui: &egui::Ui, response: &egui::Response, session: &mut Session) {
     }
 }
 
-/// Writes names above bodies: that of the selected one, or all that do not cover each other.
+/// Writes names above bodies: that of the selected one, or all names that do not overlap.
 fn name_bodies(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
     let selected = session.selection();
     let others =
@@ -168,13 +168,13 @@ fn name_bodies(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
     }
 }
 
-/// Where in the window a point is seen.
+/// The position of a point in the window.
 pub(super) fn place(rect: Rect, aspect: f64, session: &Session, point: DVec3) -> Option<Pos2> {
     let [x, y] = session.camera.project(point, aspect)?;
     Some(rect.center() + 0.5 * egui::vec2(x as f32, -y as f32) * rect.size())
 }
 
-/// Writes letters and numbers, m, on the axes, where no body is before them.
+/// Writes letters and numbers, m, on the axes, unless a body is in front of them.
 fn number_axes(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
     if !session.display.grid || !session.display.numbers {
         return;
@@ -211,7 +211,7 @@ fn number_axes(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
     }
 }
 
-/// Tells in a corner what the arrows in the picture are, and to which scale.
+/// Shows in a corner the kinds of arrows in the picture and their scales.
 fn tell_scales(ui: &egui::Ui, rect: Rect, session: &Session) {
     let scales = session.scales();
     let font = egui::TextStyle::Small.resolve(ui.style());
@@ -230,7 +230,7 @@ fn tell_scales(ui: &egui::Ui, rect: Rect, session: &Session) {
     );
     let margin = egui::vec2(6.0, 4.0);
     let room = egui::vec2(ARROW + width, height) + 2.0 * margin;
-    // Not where it would cover the picture.
+    // Not if it would cover too much of the picture.
     if texts.is_empty() || room.x > 0.5 * rect.width() || room.y > 0.3 * rect.height() {
         return;
     }
@@ -249,7 +249,7 @@ fn tell_scales(ui: &egui::Ui, rect: Rect, session: &Session) {
     }
 }
 
-/// Points from the border to bodies that are out of view, by their names.
+/// Indicates at the border the directions of bodies that are out of view, with their names.
 fn point_out(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let painter = ui.painter().with_clip_rect(rect);
@@ -257,7 +257,7 @@ fn point_out(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
     for out in session.out_of_view(aspect) {
         let [x, y] = out.towards.map(|part| part as f32);
         let way = egui::vec2(x, -y);
-        // To the border from the middle, a little inside.
+        // From the middle to slightly inside the border.
         let half = 0.5 * rect.size() - egui::vec2(16.0, 16.0);
         let tip = rect.center() + way * (half.x / way.x.abs()).min(half.y / way.y.abs());
         let along = (way * rect.size()).normalized();
@@ -284,7 +284,7 @@ fn point_out(ui: &egui::Ui, rect: Rect, aspect: f64, session: &Session) {
     }
 }
 
-/// Says what happens to files that hang over the window.
+/// Shows the effect of dropping files that are dragged over the window.
 fn offer_drop(ui: &egui::Ui, rect: Rect) {
     if ui.input(|i| i.raw.hovered_files.is_empty()) {
         return;

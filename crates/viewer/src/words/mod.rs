@@ -1,5 +1,5 @@
-//! The languages of the window. Every text stands in English where it is used, and goes through
-//! [`say`] on its way to the screen, which looks it up in one table.
+//! The languages of the window. Every text is written in English where it is used. [`say`] translates it for the
+//! screen, by a lookup in one table.
 
 mod chinese;
 
@@ -19,10 +19,10 @@ pub enum Language {
 }
 
 impl Language {
-    /// All of them.
+    /// All languages.
     pub const ALL: [Language; 2] = [Language::English, Language::Chinese];
 
-    /// Its name in itself.
+    /// The name of the language in the language itself.
     pub fn name(self) -> &'static str {
         match self {
             Language::English => "English",
@@ -30,12 +30,12 @@ impl Language {
         }
     }
 
-    /// A text in this language: as it is where the table has nothing for it.
+    /// Translates a text to this language; a text that is not in the table stays unchanged.
     pub fn say(self, text: &str) -> String {
         self.translated(text).unwrap_or_else(|| text.to_owned())
     }
 
-    /// A text in this language, if it has to be another one and the table has it.
+    /// The translation of a text to this language, if it differs and the table has it.
     pub fn translated(self, text: &str) -> Option<String> {
         match self {
             Language::English => None,
@@ -45,33 +45,32 @@ impl Language {
 }
 
 thread_local! {
-    /// Each thread that draws panels has its own, so that windows of tests do not disturb each other.
+    /// Each thread that draws panels has a language of its own, so that windows of tests do not influence each other.
     static LANGUAGE: Cell<Language> = const { Cell::new(Language::English) };
 }
 
-/// Lets what this thread draws be said in a language from now on.
+/// Sets the language for everything that this thread draws from now on.
 pub fn speak(language: Language) {
     LANGUAGE.set(language);
 }
 
-/// The language that is spoken on this thread.
+/// The language of this thread.
 pub fn spoken() -> Language {
     LANGUAGE.get()
 }
 
-/// A text in the language of the window. Texts with figures and names in them are found by what stands
-/// around these.
+/// Translates a text to the language of the window. A text with figures and names is found by the parts around these.
 pub fn say(text: impl AsRef<str>) -> String {
     spoken().say(text.as_ref())
 }
 
 static CHINESE: LazyLock<Table> = LazyLock::new(|| Table::new(&chinese::TEXTS));
 
-/// Texts and what they are in another language.
+/// Texts and their translations.
 struct Table {
     whole: HashMap<&'static str, &'static str>,
-    /// Those with `{}` in them: first those that tell a place and go on in a text of the table, and what is
-    /// longest before others, so that the most special one is found.
+    /// Texts with `{}`. First come those that give a place and continue with a text of the table, and longer ones come
+    /// before shorter ones, so that the most specific one is found.
     patterns: Vec<(Vec<&'static str>, &'static str)>,
 }
 
@@ -108,7 +107,7 @@ impl Table {
             .find_map(|(pieces, other)| Some(self.fill(other, &parts(text, pieces)?)))
     }
 
-    /// Puts parts into a text: `{0}` as it is, `{0!}` in the language too.
+    /// Inserts parts into a text: `{0}` unchanged, `{0!}` translated too.
     fn fill(&self, text: &str, parts: &[&str]) -> String {
         let mut filled = String::new();
         let mut rest = text;
@@ -131,7 +130,7 @@ impl Table {
     }
 }
 
-/// What stands between the pieces of a pattern, if the text is of it.
+/// The parts of a text between the pieces of a pattern, if the text matches it.
 fn parts<'a>(text: &'a str, pieces: &[&str]) -> Option<Vec<&'a str>> {
     let (first, others) = pieces.split_first()?;
     let (last, between) = others.split_last()?;
@@ -192,7 +191,7 @@ mod tests {
     #[test]
     fn what_tables_offer_is_in_every_language() {
         use crate::session::{BEYOND, CHARTS, LABS, PRESETS, Session};
-        // One in which bodies turn, so that there are all curves.
+        // A scene with turning bodies, so that all curves exist.
         let scene = scene::Scene::load("tennis-racket").expect("in the gallery");
         let session = Session::new(scene).expect("a session");
         let mut texts: Vec<&str> = vec![BEYOND];
@@ -209,7 +208,7 @@ mod tests {
         for chart in &CHARTS {
             texts.extend([chart.title, chart.meaning]);
         }
-        // Those along an axis are called by its letter.
+        // Curves of components along an axis have its letter as their name.
         let names = curves.iter().map(|curve| curve.name.as_str());
         texts.extend(names.filter(|name| name.len() > 1));
         for preset in &PRESETS {

@@ -18,7 +18,7 @@ pub fn on_floor(method: &'static Method, dt: f64, body: Body, floor: Body) -> Wo
     world
 }
 
-/// What is below y = 0.
+/// The half-space below y = 0.
 pub fn floor() -> Body {
     wall(DVec3::Y, DVec3::ZERO, DVec3::ZERO)
 }
@@ -39,7 +39,7 @@ fn bounce(n: i32, restitution: f64) -> (f64, f64) {
     (fall + flights, GRAVITY * fall * restitution.powi(n))
 }
 
-/// Methods of the first order are not exact in flight.
+/// The reason why methods of the first order fail.
 const NOT_EXACT: &str = "it is not exact in flight";
 
 pub(crate) fn damped(method: &'static Method) -> Tried {
@@ -57,7 +57,7 @@ pub(crate) fn damped(method: &'static Method) -> Tried {
         });
         let height = (world.position(1).y - 0.06870746096576577).abs();
         figure = worst([figure, height, worst(errors)]);
-        // There are infinitely many bounces in 4.0637 s.
+        // The infinitely many bounces end at 4.0637 s.
         let after = run(&mut world, (7.0 / dt).round() as u64)?.len();
         let (height, speed) = (world.position(1).y, world.velocity(1).length());
         let is_at_rest = height.abs() < 1e-9 && speed < 1e-9;
@@ -79,7 +79,7 @@ pub(crate) fn elastic(method: &'static Method) -> Tried {
     let mut world = dropped(method, DT, 1.0);
     let bounces = run(&mut world, 6000)?.len();
     let height = world.position(1).y;
-    // Flights under other methods than those for free fall round at each step.
+    // Methods other than those that are exact in free fall round at each step.
     let energy = ((world.kinetic_energy() + GRAVITY * height) / GRAVITY - 1.0).abs();
     let why = format!("{bounces} bounces; energy is off by {energy:.1e}");
     let error = (height - 0.7215811544474912).abs();
@@ -88,7 +88,7 @@ pub(crate) fn elastic(method: &'static Method) -> Tried {
     Ok(Finding::within(figure, 1e-11, why))
 }
 
-/// Greatest way from where it lay, m, or gain of energy, J, over 1,000 s.
+/// The greatest displacement from the initial position, m, or gain of energy, J, over 1,000 s.
 pub(crate) fn resting(method: &'static Method) -> Tried {
     let cube = mesh_body(&cube(0.5), 0.5 * DVec3::Y, DVec3::ZERO);
     let slab = boxes(&[[Vec3::new(-8.0, -1.0, -8.0), Vec3::new(8.0, 0.0, 8.0)]]);

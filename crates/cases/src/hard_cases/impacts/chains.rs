@@ -1,4 +1,4 @@
-//! Cases 15, 16, 17: many impacts one after the other.
+//! Cases 15, 16, 17: many impacts in succession.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use sim_core::{Body, DVec3, World};
 
 use super::{DT, Finding, Tried, ULP, lost, motions, worst};
 
-/// A wall, a block at rest, and one of 100^k times its mass that comes; of a radius, m.
+/// A wall, a block at rest, and an approaching block of 100^k times its mass; `radius` in m.
 pub fn galperin(k: i32, radius: f64) -> World {
     let heavy = Body {
         mass: 100f64.powi(k),
@@ -19,7 +19,7 @@ pub fn galperin(k: i32, radius: f64) -> World {
     world_of(precise(DT), [wall, light, heavy])
 }
 
-/// Steps in which the blocks part for good, and the wrong count of impacts and the error of energy after them.
+/// Steps until the blocks have separated for good, and checks the number of impacts and the energy after that.
 pub(crate) fn digits_of_pi() -> Tried {
     let (mut wrong, mut energy): (u64, f64) = (0, 0.0);
     let mut counts = Vec::new();
@@ -46,10 +46,10 @@ pub(crate) fn digits_of_pi() -> Tried {
     Ok(Finding::within(figure, 3e-13, why))
 }
 
-/// A point between a wall and one that comes with 1 m/s from 1 m.
+/// A point between a wall at rest and one that approaches with 1 m/s from 1 m.
 ///
-/// The wall comes with t; hit n of it is where 1 - t = 10 / (2n + 9) and makes v = 10 + 2n; the
-/// point is back where 1 - t = 10 / v.
+/// The wall's position is 1 - t. Hit n occurs when 1 - t = 10 / (2n + 9) and changes the speed to v = 10 + 2n. The
+/// point is back at the fixed wall when 1 - t = 10 / v.
 pub fn closing_walls(dt: f64) -> World {
     let bodies = [
         wall(DVec3::X, DVec3::ZERO, DVec3::ZERO),
@@ -73,7 +73,7 @@ pub(crate) fn walls() -> Tried {
         (impact.speeds.0 / v - 1.0).abs()
     });
     let error = worst(in_time.chain(speeds));
-    // Infinitely many hits come before t = 1: an error, and never a hang.
+    // Infinitely many hits occur before t = 1: the step must fail and not hang.
     let mut world = closing_walls(DT);
     let end = match (0..70).find_map(|_| world.step().err()) {
         Some(error) => format!("then: {error}"),
@@ -86,7 +86,7 @@ pub(crate) fn walls() -> Tried {
     Ok(Finding::within(figure, 1e-11, why))
 }
 
-/// Balls of radius 1/2 in a row on the x axis; the first `arriving` come with 3 m/s.
+/// Balls of radius 1/2 m in a row on the x axis; the first `arriving` move with 3 m/s.
 pub fn cradle(gap: f64, arriving: usize) -> World {
     let balls = (0..5).map(|i| {
         let (start, speed) = if i < arriving {
@@ -100,7 +100,7 @@ pub fn cradle(gap: f64, arriving: usize) -> World {
     world_of(precise(DT), balls)
 }
 
-/// As many leave as arrive, and a symmetric break is its own mirror image.
+/// As many balls leave as arrive, and a symmetric break stays symmetric.
 pub(crate) fn newton() -> Tried {
     let mut figure: f64 = 0.0;
     for gap in [0.0, 1e-12, 1e-3, 0.1] {
@@ -124,8 +124,8 @@ pub(crate) fn newton() -> Tried {
     Ok(Finding::within(figure, 1e-14, why))
 }
 
-/// One ball comes upon two that lie side by side: how many ends, over orders of the bodies, are not
-/// symmetric, or have lost energy.
+/// One ball hits two that lie side by side. Returns the number of final states, over orders of the bodies, that are not
+/// symmetric or have lost energy.
 fn broken_mirrors() -> anyhow::Result<u32> {
     let mut broken = 0;
     for (apart, radius) in [(0.5, 0.5), (0.5 + 1e-12, 0.5), (0.6, 0.5), (0.9, 0.625)] {

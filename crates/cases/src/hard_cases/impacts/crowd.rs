@@ -1,4 +1,4 @@
-//! Cases 24, 26: what a hit puts back; a hundred cubes in a box.
+//! Cases 24, 26: the state restored after a hit; a hundred cubes in a box.
 
 use kit::bodies::mesh_body;
 use kit::meshes::{builtin, cube, star};
@@ -8,7 +8,7 @@ use sim_core::{Collision, DVec3, Settings};
 use super::{DT, Finding, PHASES, Tried, worst};
 use crate::scenes::{Form, HALF, continuous, crowd};
 
-/// Steps with a hit are lost whole, and no others.
+/// A step with a hit is undone as a whole, and no other step is.
 pub(crate) fn rollback() -> Tried {
     let cube = cube(0.5);
     let (mut hits, mut wrong) = (0, 0);
@@ -53,7 +53,7 @@ pub(crate) fn rollback() -> Tried {
     Ok(Finding::within(figure, 1e-12, why))
 }
 
-/// s
+/// The duration, s.
 const LONG: u64 = 1000;
 
 pub(crate) fn cubes() -> Tried {

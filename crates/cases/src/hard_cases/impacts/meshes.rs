@@ -1,4 +1,4 @@
-//! Cases 11, 12, 22, 23: meshes on meshes, through them, past them, in them.
+//! Cases 11, 12, 22, 23: meshes that hit, pass through, pass by and overlap other meshes.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use sim_core::{Body, Bvh, DVec3, Impact, Mesh, Vec3, World};
 
 use super::{DT, Finding, PHASES, Tried, lost, motions, worst};
 
-/// Two meshes that touch when the second one, coming along a way, is at a place.
+/// Two meshes, and the position at which the second one, moving along a direction, first touches the first.
 struct Encounter {
     meshes: [Arc<Mesh>; 2],
     trees: [Bvh; 2],
@@ -18,20 +18,20 @@ struct Encounter {
     touching: DVec3,
 }
 
-/// What came out of encounters.
+/// The results of encounters.
 #[derive(Debug, Default)]
 pub struct Encountered {
     tried: u32,
     found: u32,
-    /// Steps after which they meet.
+    /// Steps after which the meshes overlap.
     meeting: u32,
-    /// Greatest changes of energy and momentum, and of the time, relative.
+    /// Greatest relative changes of energy and momentum, and the greatest relative error of the time.
     kept: f64,
     late: f64,
 }
 
 impl Encounter {
-    /// Found over the whole way at once.
+    /// Finds the contact by one search over the whole path.
     fn new(first: &Arc<Mesh>, second: &Arc<Mesh>, way: DVec3) -> Encounter {
         let way = way.normalize();
         let trees = [Bvh::build(first), Bvh::build(second)];
@@ -46,7 +46,7 @@ impl Encounter {
         }
     }
 
-    /// Both move, and touch at a phase of the fourth step.
+    /// Both bodies move, and touch at a phase of the fourth step.
     fn run(&self, speed: f64, phase: u32, into: &mut Encountered) -> anyhow::Result<()> {
         let hit = (3.0 + f64::from(phase) / f64::from(PHASES)) * DT;
         let v = [-0.25, 0.75].map(|part| part * speed * self.way);
@@ -74,7 +74,7 @@ impl Encounter {
 }
 
 impl Encountered {
-    /// Of two meshes in three directions, at all speeds and phases.
+    /// The encounters of two meshes in three directions, at all speeds and phases.
     pub fn of(first: &Arc<Mesh>, second: &Arc<Mesh>) -> anyhow::Result<Encountered> {
         let mut all = Encountered::default();
         all.add(first, second)?;
@@ -97,7 +97,7 @@ impl Encountered {
         Ok(())
     }
 
-    /// In parts of what is allowed: 1e-14 of energy and momentum, 1e-12 of the time.
+    /// The figure is relative to the tolerances: 1e-14 for energy and momentum, 1e-12 for the time.
     pub fn finding(&self) -> Finding {
         let Encountered {
             tried,
@@ -123,7 +123,7 @@ pub(crate) fn cube_and_cow() -> Tried {
     Ok(all.finding())
 }
 
-/// 1 m wide, open above and at its ends, along z.
+/// A channel 1 m wide along z, open at the top and at its ends.
 fn channel() -> Arc<Mesh> {
     boxes(&[
         [Vec3::new(-0.5, -1.0, -4.0), Vec3::new(0.5, -0.5, 4.0)],
@@ -132,7 +132,7 @@ fn channel() -> Arc<Mesh> {
     ])
 }
 
-/// Impacts of a peg with a clearance, and of one without.
+/// The impacts of a peg in the channel, with and without clearance.
 pub(crate) fn concavity() -> Tried {
     let channel = channel();
     let (mut touched, mut passed_wide) = (0, 0);
@@ -160,7 +160,7 @@ pub(crate) fn concavity() -> Tried {
     Ok(Finding::within(f64::from(touched + passed_wide), 0.0, why))
 }
 
-/// A body passes one at rest on its way to a wall at x = 6 and back.
+/// A body passes another one at rest on its way to a wall at x = 6 m and back.
 fn passing(body: &Body, aside: DVec3, velocity: DVec3) -> World {
     let mover = Body {
         position: aside - 3.0 * DVec3::X,
@@ -171,15 +171,15 @@ fn passing(body: &Body, aside: DVec3, velocity: DVec3) -> World {
     world_of(precise(DT), [body.clone(), mover, end])
 }
 
-/// Faces on faces, edges on edges, a vertex on a vertex, exactly: no contact is documented for
-/// motion along surfaces, any for the others; what comes out is a number, does not depend on the
-/// order of the bodies, and the wall behind is not missed.
+/// Faces on faces, edges on edges, a vertex on a vertex, exactly. The documentation promises no contact for motion
+/// along surfaces, and any result for the other cases. The results must be finite and independent of the order of the
+/// bodies, and the impact on the wall behind must not be missed.
 fn ties() -> anyhow::Result<[u32; 2]> {
     let at_rest = |m: Arc<Mesh>| mesh_body(&m, DVec3::ZERO, DVec3::ZERO);
     let (cube, star) = (at_rest(cube(0.5)), at_rest(star(1.0, 0.25)));
     let straight = 5.0 * DVec3::X;
-    // Faces along each other twice, edges along and on each other, vertices on each other; of the
-    // star tips on and past tips, and on a face.
+    // Two cases of faces along each other; edges along and on each other; vertices on each other; tips of a star on
+    // tips, past tips, and on a face.
     let ties = [
         (&cube, DVec3::Y, straight),
         (&cube, DVec3::new(0.0, 1.0, 0.25), straight),
@@ -242,7 +242,7 @@ pub(crate) fn grazing() -> Tried {
     Ok(Finding::within(f64::from(wrong + ties), 0.0, why))
 }
 
-/// Pairs, the second one displaced along x by nine tenths of what would part them.
+/// Overlapping pairs; the second body is displaced along x by nine tenths of the distance that would separate them.
 fn overlapping() -> [([Body; 2], f64); 6] {
     let of = |m: &Arc<Mesh>| mesh_body(m, DVec3::ZERO, DVec3::ZERO);
     let sphere = ball(0.5, DVec3::ZERO, DVec3::ZERO);
@@ -261,7 +261,7 @@ fn overlapping() -> [([Body; 2], f64); 6] {
     ]
 }
 
-/// Greatest relative gain of energy in a step; pairs that approach or part must part.
+/// Greatest relative gain of energy in a step; approaching and receding pairs must separate.
 pub(crate) fn overlap() -> Tried {
     let (mut gain, mut wrong): (f64, u32) = (0.0, 0);
     for (bodies, reach) in overlapping() {

@@ -15,14 +15,15 @@ const ULP: f64 = f64::EPSILON;
 const DT: f64 = 1.0 / 60.0;
 const PHASES: u32 = 16;
 
-/// The greatest of some figures; a figure that is none is the greatest.
+/// The maximum of some figures; NaN counts as the greatest.
 fn worst(figures: impl IntoIterator<Item = f64>) -> f64 {
     figures
         .into_iter()
         .fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
 }
 
-/// Relative change of the kinetic energy, and change of the momentum, of the sum of momenta.
+/// The greater of two changes: of the kinetic energy, relative, and of the momentum, relative to the sum of the bodies'
+/// momenta.
 fn lost(world: &World, start: &World) -> f64 {
     let energy = world.kinetic_energy() / start.kinetic_energy() - 1.0;
     let all = (0..start.len()).filter(|&i| start.kind(i).is_movable());

@@ -10,15 +10,15 @@ use super::{DT, Finding, PHASES, Tried, ULP, apart, motions, worst};
 
 const STEPS: u64 = 8;
 
-/// A cube of 1 m and a ball as wide, and how far they reach along x, m.
+/// A cube of edge 1 m and a ball of the same width, with their half extents along x, m.
 fn shapes() -> [(Shape, f64); 2] {
     [(Shape::Mesh(cube(0.5)), 0.5), (ball(0.5), 0.5)]
 }
 
-/// Two bodies on the x axis, the first one coming from the left.
+/// Two bodies on the x axis; the first one approaches from the left.
 struct HeadOn {
     bodies: [Body; 2],
-    /// Where the second one starts, m.
+    /// Start position of the second body, m.
     origin: f64,
     /// Distance of the positions at contact, m.
     reach: f64,
@@ -41,9 +41,9 @@ impl HeadOn {
         }
     }
 
-    /// Over all phases: impacts that are missing or too many, and the greatest error of velocities,
-    /// positions and times, in parts of what is allowed: 4u of a body's own speed, 1e-12 v dt, and a
-    /// rounding of the largest coordinate for each step and for the impact.
+    /// Over all phases: the number of missing or additional impacts, and the greatest error of velocities, positions
+    /// and times, relative to the tolerances: 4u of a body's own speed, 1e-12 v dt, and a rounding of the largest
+    /// coordinate for each step and for the impact.
     fn errors(&self) -> anyhow::Result<Errors> {
         let mut errors = Errors::default();
         for phase in 0..PHASES {
@@ -83,7 +83,7 @@ impl HeadOn {
     }
 }
 
-/// Largest half extent of a shape here, m.
+/// Largest half extent of the shapes here, m.
 const LARGEST: f64 = 4.0;
 
 #[derive(Default)]
@@ -156,7 +156,7 @@ pub(crate) fn both_fast() -> Tried {
     Ok(Errors::of(pairs)?.finding())
 }
 
-/// Points, balls and cubes upon a half-space, a plate, and a sheet without thickness.
+/// Points, balls and cubes hit a half-space, a plate, and a sheet without thickness.
 pub(crate) fn thin_wall() -> Tried {
     let fixed = |mesh| immovable(body(&Shape::Mesh(mesh), DVec3::ZERO, DVec3::ZERO));
     let walls = [
@@ -203,14 +203,14 @@ pub(crate) fn mass_ratio() -> Tried {
     Ok(Errors::of(pairs)?.finding())
 }
 
-/// In parts of 12 u of the distance, for rounding and twice what bodies are kept apart by; a velocity
-/// that differs fails.
+/// The figure is relative to 12 u of the distance, for rounding and twice the gap kept between bodies. Any different
+/// velocity is a failure.
 pub(crate) fn far_away() -> Tried {
     let (mut figure, mut velocities): (f64, u32) = (0.0, 0);
     for (shape, half) in shapes() {
         for phase in 0..PHASES {
             let gap = 60.0 * DT * (1.0 + f64::from(phase) / f64::from(PHASES));
-            // On the grid of the farthest place, so that the start is the same.
+            // On the grid of numbers at the farthest position, so that the start is the same at every distance.
             let start = -((2.0 * half + gap) * 2f64.powi(24)).round() * 2f64.powi(-24);
             let at = |far: DVec3| -> anyhow::Result<_> {
                 let moving = |x: DVec3, v: f64| body(&shape, x, DVec3::X * v);

@@ -1,4 +1,4 @@
-//! Cases 20, 25, 29: worlds that must end alike.
+//! Cases 20, 25, 29: worlds that must end in equivalent states.
 
 use std::sync::Arc;
 
@@ -9,9 +9,9 @@ use sim_core::{Body, DVec3, Impact, Mesh, Shape, Vec3};
 
 use super::{Finding, Tried, apart, motions, worst};
 
-/// Steps to the end.
+/// The number of steps.
 pub const STEPS: u64 = 96;
-/// s
+/// The step, s.
 pub const DT: f64 = 1.0 / 48.0;
 
 /// Balls of several sizes and masses between walls; cubes and the cow; cubes and stars.
@@ -112,7 +112,7 @@ fn mapped(
     bodies.collect()
 }
 
-/// In parts of what is allowed; what must be the same to the bit is infinitely off otherwise.
+/// The figure is relative to the tolerances; it is infinite if results that must agree bit for bit do not.
 pub(crate) fn symmetries() -> Tried {
     let (mut figure, mut bits): (f64, u32) = (0.0, 0);
     // Vertices are f32, and must not underflow.

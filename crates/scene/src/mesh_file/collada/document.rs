@@ -1,4 +1,4 @@
-//! An XML document seen as COLLADA: elements by id, numbers, and errors that name the element.
+//! Access to an XML document as COLLADA: elements by id, numbers, and errors that name the element.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -12,9 +12,9 @@ use crate::shown;
 /// A COLLADA document.
 pub(super) struct Document<'d, 'x> {
     pub(super) root: Node<'d, 'x>,
-    /// By tag and id: some exporters give one id to elements of different kinds.
+    /// The elements by tag and id. Some exporters give one id to elements of different kinds.
     by_id: HashMap<(&'d str, &'d str), Node<'d, 'x>>,
-    /// The arrays read so far: many sources may pick from one.
+    /// The arrays read so far, because several sources may use the same array.
     arrays: RefCell<HashMap<NodeId, Rc<Vec<f64>>>>,
 }
 
@@ -41,7 +41,7 @@ impl<'d, 'x> Document<'d, 'x> {
 
     /// An error about an element, named with its id and line.
     pub(super) fn error(&self, node: Node, what: impl std::fmt::Display) -> ReadError {
-        // The id may be on an element around it.
+        // The element itself may have no id; then an ancestor has it.
         let owner = node.ancestors().find(|n| n.has_attribute("id"));
         let name = match owner {
             Some(owner) if owner == node => {
@@ -58,7 +58,7 @@ impl<'d, 'x> Document<'d, 'x> {
         ReadError::at(line, format!("{name}: {what}"))
     }
 
-    /// An attribute that must be there.
+    /// A required attribute.
     pub(super) fn attribute(&self, node: Node<'d, 'x>, name: &str) -> Result<&'d str, ReadError> {
         node.attribute(name)
             .ok_or_else(|| self.error(node, format!("the attribute `{name}` is missing")))
@@ -80,7 +80,7 @@ impl<'d, 'x> Document<'d, 'x> {
             );
             return Err(self.error(node, what));
         };
-        // A URL may write any byte as `%` and two digits; an id may also hold a `%` of its own.
+        // In a URL `%` and two hexadecimal digits stand for any byte; an id may also contain a literal `%`.
         let found = self
             .with_id(tags, id)
             .or_else(|| self.with_id(tags, &percent_decoded(id)?));
@@ -96,7 +96,7 @@ impl<'d, 'x> Document<'d, 'x> {
         nodes.find_map(Option::<&Node>::copied)
     }
 
-    /// The text of an element, also where comments cut it in pieces.
+    /// The text of an element, including the parts between comments.
     pub(super) fn text(&self, node: Node<'d, 'x>) -> String {
         node.children()
             .filter(|child| child.is_text())
@@ -160,7 +160,7 @@ impl<'d, 'x> Document<'d, 'x> {
             .collect()
     }
 
-    /// An attribute that is a whole number, or `default` without it.
+    /// An attribute that is a whole number, or `default` if it is absent.
     pub(super) fn whole(
         &self,
         node: Node<'d, 'x>,
@@ -177,7 +177,7 @@ impl<'d, 'x> Document<'d, 'x> {
     }
 }
 
-/// The tag without its namespace: 1.4 and 1.5 differ in nothing that matters here.
+/// The tag without its namespace. The namespaces of versions 1.4 and 1.5 differ, but nothing that is read here does.
 pub(super) fn tag<'x>(node: Node<'_, 'x>) -> &'x str {
     node.tag_name().name()
 }
@@ -187,7 +187,7 @@ pub(super) fn child<'d, 'x>(node: Node<'d, 'x>, name: &str) -> Option<Node<'d, '
     node.children().find(|child| tag(*child) == name)
 }
 
-/// Text in which `%` and two hexadecimal digits stand for a byte; none if that gives no text.
+/// Decodes `%` and two hexadecimal digits to a byte. `None` if the result is not text.
 fn percent_decoded(text: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();

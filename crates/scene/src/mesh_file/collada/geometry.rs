@@ -16,7 +16,7 @@ pub(super) struct Geometry {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// Reads a `<geometry>`; one without surface (a spline) gives no triangles.
+/// Reads a `<geometry>`. A geometry without surface (a spline) gives no triangles.
 pub(super) fn read<'d, 'x>(
     document: &Document<'d, 'x>,
     geometry: Node<'d, 'x>,
@@ -41,16 +41,16 @@ pub(super) fn read<'d, 'x>(
 struct Reader<'r, 'd, 'x> {
     document: &'r Document<'d, 'x>,
     read: Geometry,
-    /// The vertices that a source has become: the first and how many.
+    /// The vertices made from each source: the first one and their number.
     sources: HashMap<NodeId, (usize, usize)>,
 }
 
-/// Where an element of primitives has its positions.
+/// How an element of primitives stores its positions.
 struct Layout {
-    /// Indices per corner, and which of them is the position.
+    /// The number of indices per corner, and which of them is the position.
     stride: usize,
     offset: usize,
-    /// The vertices that index 0 and up mean.
+    /// The vertex of index 0, and the number of vertices.
     first: usize,
     count: usize,
 }
@@ -64,7 +64,7 @@ impl<'d, 'x> Reader<'_, 'd, 'x> {
         ) {
             return Ok(());
         }
-        // What lists nothing needs no inputs.
+        // An element without primitives needs no inputs.
         if !element
             .children()
             .any(|child| matches!(tag(child), "p" | "ph" | "vcount"))
@@ -112,7 +112,7 @@ impl<'d, 'x> Reader<'_, 'd, 'x> {
                 }
                 _ => {
                     for (i, t) in corners.windows(3).enumerate() {
-                        // Every other triangle of a strip is listed the other way round.
+                        // Every other triangle of a strip has the opposite order of corners.
                         let (a, b) = if i % 2 == 0 { (0, 1) } else { (1, 0) };
                         self.polygon(p, &[t[a], t[b], t[2]])?;
                     }
@@ -130,7 +130,7 @@ impl<'d, 'x> Reader<'_, 'd, 'x> {
         Ok(())
     }
 
-    /// Finds the positions by way of the inputs, and reads them if they are new.
+    /// Finds the positions through the inputs, and reads them if that has not been done.
     fn layout(&mut self, element: Node<'d, 'x>) -> Result<Layout, ReadError> {
         let document = self.document;
         let mut stride = 0;
@@ -172,7 +172,7 @@ impl<'d, 'x> Reader<'_, 'd, 'x> {
         })
     }
 
-    /// The vertices of the corners in a `<p>`, checked.
+    /// The vertices of the corners in a `<p>`; their indices are checked.
     fn corners(&self, p: Node<'d, 'x>, layout: &Layout) -> Result<Vec<u32>, ReadError> {
         let indices = self.document.indices(p)?;
         if indices.len() % layout.stride != 0 {
@@ -268,7 +268,7 @@ impl<'d, 'x> Reader<'_, 'd, 'x> {
     }
 }
 
-/// Appends the positions of a `<source>`, as its accessor picks them from the array.
+/// Appends the positions of a `<source>`, selected from the array by its accessor.
 fn read_positions<'d, 'x>(
     document: &Document<'d, 'x>,
     source: Node<'d, 'x>,
@@ -291,7 +291,7 @@ fn read_positions<'d, 'x>(
         return Err(document.error(accessor, what));
     }
     let held = values.len().saturating_sub(offset);
-    // The last position need not be followed by the rest of its stride.
+    // The last position may be followed by less than its full stride.
     let held = held / stride + usize::from(held % stride > last_axis);
     let count = document.whole(accessor, "count", held)?;
     if count > held {
@@ -309,7 +309,7 @@ fn read_positions<'d, 'x>(
     Ok(())
 }
 
-/// The places of X, Y and Z among the parameters; the first three places without such names.
+/// The indices of X, Y and Z among the parameters; 0, 1 and 2 if the parameters have no such names.
 fn axes(accessor: Node) -> [usize; 3] {
     let parameters: Vec<Option<&str>> = accessor
         .children()

@@ -1,18 +1,18 @@
-//! Refuses, before parsing, the documents on which XML takes more than linear time and memory:
-//! elements with heaps of attributes or namespaces, and nesting without end.
+//! Refuses, before parsing, documents for which XML takes more than linear time and memory: elements with very many
+//! attributes or namespaces, and very deep nesting.
 
 use crate::mesh_file::soup::ReadError;
 
-/// The most attributes of one element; the parser compares each with each.
+/// The most attributes of one element. The parser compares each with every other.
 const MAX_ATTRIBUTES: usize = 64;
 
-/// The most namespaces declared around an element; the parser copies them to it.
+/// The most namespaces in scope at an element. The parser copies them to it.
 const MAX_NAMESPACES: usize = 64;
 
 /// How deep elements may nest.
 const MAX_DEPTH: usize = 512;
 
-/// Looks through the tags of a document. What is not well-formed is left to the parser.
+/// Scans the tags of a document. The parser reports documents that are not well-formed.
 pub(super) fn check(text: &str) -> Result<(), ReadError> {
     let mut namespaces = vec![0];
     let mut rest = text;
@@ -35,7 +35,7 @@ pub(super) fn check(text: &str) -> Result<(), ReadError> {
             rest = &inside[end + close.len()..];
             continue;
         }
-        // The parser refuses a document type and reads no further.
+        // The parser refuses a document type and stops there.
         if at.starts_with("<!") {
             return Ok(());
         }
@@ -77,7 +77,7 @@ struct Tag {
 }
 
 impl Tag {
-    /// Reads up to the `>` that ends the tag, which may stand in quotes before.
+    /// Reads up to the `>` that ends the tag. A `>` within quotes does not end it.
     fn read(text: &str) -> Option<Tag> {
         let bytes = text.as_bytes();
         let mut quote = None;

@@ -1,9 +1,10 @@
-//! COLLADA (`.dae`): the meshes that the scene of one XML document shows, as one mesh.
+//! COLLADA (`.dae`): the meshes in the scene of one XML document, as one mesh.
 //!
-//! Units become metres and the up axis becomes y. Every instance of a geometry gets its own
-//! copy, placed by the transforms of its nodes. A skinned or morphed geometry comes in its bind
-//! shape. Lines and splines are left out. Without a `<scene>`, every geometry counts once, where
-//! its own coordinates put it. `count` attributes are not believed: the numbers are counted.
+//! Units become metres and the up axis becomes y. Every instance of a geometry gets its own copy, placed by the
+//! transforms of its nodes. A skinned or morphed geometry gets its bind shape. Lines and splines are left out. Without
+//! a
+//! `<scene>`, every geometry is added once, in its own coordinates. The `count` attributes are ignored: the numbers
+//! are counted.
 
 mod document;
 mod geometry;
@@ -32,7 +33,7 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
     let text = encoding::xml(bytes)?;
     let text = text.as_ref();
     guard::check(text)?;
-    // The default options refuse document type definitions, and with them entity expansion.
+    // The default options refuse document type definitions, and thus entity expansion.
     let xml = roxmltree::Document::parse(text).map_err(|error| {
         let line = error.pos().row as usize;
         ReadError::at(line, format!("is not well-formed XML: {error}"))
@@ -65,8 +66,8 @@ fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
     Ok(soup)
 }
 
-/// Version 1.3 writes geometries in another way, and nobody knows what a later one will do. A document that
-/// names none is read as one of these.
+/// Refuses versions other than 1.4 and 1.5: version 1.3 stores geometries differently, and later versions are unknown.
+/// A document without a version is read as 1.4 or 1.5.
 fn check_version(document: &Document) -> Result<(), ReadError> {
     let Some(version) = document.root.attribute("version") else {
         return Ok(());
@@ -80,7 +81,8 @@ fn check_version(document: &Document) -> Result<(), ReadError> {
     Err(document.error(document.root, what))
 }
 
-/// From the document's unit and up axis to metres and y up, and those as far as it tells them.
+/// The matrix from the document's unit and up axis to metres and y up, and that unit and axis if the document states
+/// them.
 fn into_metres_y_up(document: &Document) -> Result<(DMat4, Option<f64>, Option<char>), ReadError> {
     let (metres, up_axis) = match child(document.root, "asset") {
         Some(asset) => (metres(document, asset)?, up_axis(document, asset)?),
@@ -88,7 +90,7 @@ fn into_metres_y_up(document: &Document) -> Result<(DMat4, Option<f64>, Option<c
     };
     check_parts(document, metres, up_axis)?;
     let axes = match up_axis {
-        // Columns: where x, y and z of the document point.
+        // The columns: the directions of the document's x, y and z.
         Some('x') => DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z),
         Some('z') => DMat3::from_cols(DVec3::X, -DVec3::Z, DVec3::Y),
         _ => DMat3::IDENTITY,
@@ -97,7 +99,7 @@ fn into_metres_y_up(document: &Document) -> Result<(DMat4, Option<f64>, Option<c
     Ok((placement, metres, up_axis))
 }
 
-/// Metres in the unit of an `<asset>`. An empty element or attribute tells nothing.
+/// The unit of an `<asset>` in metres. An empty element or attribute counts as absent.
 fn metres(document: &Document, asset: Node) -> Result<Option<f64>, ReadError> {
     let unit = child(asset, "unit");
     let meter = unit.and_then(|unit| Some((unit, unit.attribute("meter")?.trim())));
@@ -113,7 +115,7 @@ fn metres(document: &Document, asset: Node) -> Result<Option<f64>, ReadError> {
     })
 }
 
-/// The axis that is up in an `<asset>`. An empty element tells nothing.
+/// The up axis of an `<asset>`. An empty element counts as absent.
 fn up_axis(document: &Document, asset: Node) -> Result<Option<char>, ReadError> {
     let Some(up_axis) = child(asset, "up_axis") else {
         return Ok(None);
@@ -131,8 +133,8 @@ fn up_axis(document: &Document, asset: Node) -> Result<Option<char>, ReadError> 
     }
 }
 
-/// Refuses a part with geometry that has a unit or an up axis of its own: it would be taken for one in those
-/// of the document.
+/// Refuses a part with geometry that has its own unit or up axis: its coordinates would be read in those of the
+/// document.
 fn check_parts(
     document: &Document,
     of_all: Option<f64>,

@@ -1,4 +1,4 @@
-//! The node tree of a scene, and what it instances, gathered into one soup.
+//! Traverses the node tree of a scene and collects the instances of geometries in one soup.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -11,19 +11,19 @@ use super::geometry::{self, Geometry};
 use super::transform;
 use crate::mesh_file::soup::{MAX_TRIANGLES, MAX_VERTICES, ReadError, Soup};
 
-/// How deep nodes and instances of nodes may nest.
+/// The largest depth of nested nodes and instances of nodes.
 const MAX_DEPTH: usize = 128;
 
-/// How many parts (elements and the text between them) the nodes may expand to, so that instances
-/// of instances end even where they show nothing.
+/// The most parts (elements and the text between them) to which the nodes may expand. This limits instances of
+/// instances even if they contain no geometry.
 const MAX_PARTS: usize = 1_000_000;
 
-/// Everything gathered so far from one document.
+/// The data collected so far from one document.
 pub(super) struct Assembly<'r, 'd, 'x> {
     pub(super) soup: Soup,
     document: &'r Document<'d, 'x>,
     geometries: HashMap<NodeId, Rc<Geometry>>,
-    /// The nodes from the scene down to the present one, each inside the one before.
+    /// The nodes from the scene to the current one, each the child of the previous.
     path: Vec<NodeId>,
     parts: usize,
 }
@@ -50,7 +50,7 @@ impl<'r, 'd, 'x> Assembly<'r, 'd, 'x> {
         Ok(())
     }
 
-    /// Adds what the nodes in `parent` show; `placement` leads from its frame to the soup's.
+    /// Adds the geometries of the nodes in `parent`; `placement` maps its frame to the soup's.
     pub(super) fn add_nodes(
         &mut self,
         parent: Node<'d, 'x>,
@@ -79,7 +79,7 @@ impl<'r, 'd, 'x> Assembly<'r, 'd, 'x> {
         Ok(())
     }
 
-    /// `at` is the node itself or the instance of it, to be named in errors.
+    /// Adds a node. Errors name `at`, the node itself or the instance of it.
     fn add_node(
         &mut self,
         at: Node<'d, 'x>,
@@ -100,7 +100,7 @@ impl<'r, 'd, 'x> Assembly<'r, 'd, 'x> {
         Ok(())
     }
 
-    /// A skin or morph: its source geometry in the bind shape.
+    /// Adds the source geometry of a skin or morph, in the bind shape.
     fn add_controller(
         &mut self,
         instance: Node<'d, 'x>,
@@ -108,7 +108,7 @@ impl<'r, 'd, 'x> Assembly<'r, 'd, 'x> {
     ) -> Result<(), ReadError> {
         const SOURCES: &[&str] = &["geometry", "controller"];
         let mut target = self.document.target(instance, "url", &["controller"])?;
-        // A skin may stand on a morph; longer chains are not in use.
+        // A skin may refer to a morph; longer chains are not in use.
         for _ in 0..3 {
             if tag(target) == "geometry" {
                 return self.add_geometry(instance, target, placement);
@@ -146,7 +146,7 @@ impl<'r, 'd, 'x> Assembly<'r, 'd, 'x> {
             let what = "the transforms blow the geometry up beyond all numbers";
             return Err(self.document.error(instance, what));
         }
-        // Helpers of exporters and animations that hide something are scaled to nothing.
+        // Exporters scale helper objects to zero, and so do animations that hide something.
         if determinant == 0.0 {
             self.soup.flat_instances += 1;
             return Ok(());
@@ -171,7 +171,7 @@ impl<'r, 'd, 'x> Assembly<'r, 'd, 'x> {
             soup.vertices.push(placed);
         }
         for &[a, b, c] in &geometry.triangles {
-            // A mirror turns the triangles inside out.
+            // A reflection reverses the orientation of the triangles.
             let corners = if determinant > 0.0 {
                 [a, b, c]
             } else {

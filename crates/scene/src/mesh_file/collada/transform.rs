@@ -6,13 +6,13 @@ use roxmltree::Node;
 use super::document::{Document, tag};
 use crate::mesh_file::soup::ReadError;
 
-/// What exporters that calculate in f32 leave of a number that should be 0, or add to one of size 1.
+/// The largest rounding error of exporters that calculate in f32, for a number that should be 0 or of size 1.
 const ROUNDING: f64 = 1e-6;
 
-/// The sine of angles below which two directions count as one: rounding leaves some 1e-16.
+/// The sine of an angle below which two directions count as equal: rounding gives about 1e-16.
 const IN_LINE: f64 = 1e-12;
 
-/// Of length 1, also where squares of the numbers are too large or too small for f64.
+/// The unit vector along `v`, also if the squares of its components overflow or underflow.
 fn direction(v: DVec3) -> Option<DVec3> {
     (v / v.abs().max_element()).try_normalize()
 }
@@ -45,7 +45,7 @@ fn of_element<'d, 'x>(
         "scale" => DMat4::from_scale(document.exactly::<3>(element)?.into()),
         "rotate" => {
             let [x, y, z, degrees] = document.exactly(element)?;
-            // Exporters write the rotations of an unturned node as 0 0 0 0.
+            // Exporters write the rotations of an unrotated node as 0 0 0 0.
             if degrees == 0.0 {
                 DMat4::IDENTITY
             } else {
@@ -67,7 +67,7 @@ fn of_element<'d, 'x>(
     Ok(Some(matrix))
 }
 
-/// Sixteen numbers, row after row.
+/// A matrix of sixteen numbers, in rows.
 pub(super) fn matrix<'d, 'x>(
     document: &Document<'d, 'x>,
     element: Node<'d, 'x>,
@@ -87,7 +87,7 @@ pub(super) fn matrix<'d, 'x>(
     Ok(matrix)
 }
 
-/// Stands at the eye, looks along -z at the point of interest; None without a direction.
+/// The camera at the eye looks along -z at the point of interest. `None` if a direction is undefined.
 fn look_at([ex, ey, ez, ix, iy, iz, ux, uy, uz]: [f64; 9]) -> Option<DMat4> {
     let eye = DVec3::new(ex, ey, ez);
     let back = direction(eye - DVec3::new(ix, iy, iz))?;
@@ -102,7 +102,7 @@ fn look_at([ex, ey, ez, ix, iy, iz, ux, uy, uz]: [f64; 9]) -> Option<DMat4> {
     ))
 }
 
-/// RenderMan's skew: shifts points along `along` so that `from` turns towards it by the angle.
+/// RenderMan's skew: moves points along `along` so that `from` rotates towards it by the angle.
 fn skew(angle: f64, from: DVec3, along: DVec3) -> Option<DMat4> {
     let cosine = from.dot(along);
     let across = from - cosine * along;
@@ -112,7 +112,7 @@ fn skew(angle: f64, from: DVec3, along: DVec3) -> Option<DMat4> {
     if !(IN_LINE..std::f64::consts::PI - IN_LINE).contains(&turned) {
         return None;
     }
-    // `from` is (cosine, sine) along (`along`, `across`); its shifted image must make the angle
+    // `from` has the components (cosine, sine) along (`along`, `across`). Its sheared image must form the angle
     // `turned` with `along`.
     let shift = (sine / turned.tan() - cosine) / sine * along;
     let column = |unit: DVec3| (unit + shift * across.dot(unit)).extend(0.0);

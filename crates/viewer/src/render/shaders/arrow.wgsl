@@ -5,7 +5,7 @@ struct Corner {
     @location(1) outward: vec2f,
     // Distance from the tail, in lengths of the arrow and of the head.
     @location(2) along: vec2f,
-    // The normal's parts outward and along; a cone's slope depends on the head.
+    // The radial and axial components of the normal; the slope of a cone depends on the head.
     @location(3) normal: vec2f,
 }
 

@@ -5,7 +5,7 @@ struct Varying {
 
 @vertex
 fn vs_main(@builtin(vertex_index) index: u32) -> Varying {
-    // One triangle that holds the picture, at infinity.
+    // One triangle that covers the picture, at infinity.
     let at = vec2f(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
     var out: Varying;
     out.clip = vec4f(at, 0.0, 1.0);

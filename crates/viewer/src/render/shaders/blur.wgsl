@@ -16,14 +16,14 @@ fn vs_main(@builtin(vertex_index) index: u32) -> Varying {
 }
 
 const TAPS = 24;
-// Of the width of the map.
+// A fraction of the width of the map.
 const REACH = 0.009;
 
 @fragment
 fn fs_main(in: Varying) -> @location(0) vec4f {
     var sum = 0.0;
     for (var tap = 0; tap < TAPS; tap++) {
-        // A sunflower's spiral covers the disc evenly.
+        // A sunflower spiral covers the disc evenly.
         let turn = 2.39996 * f32(tap);
         let reach = REACH * sqrt((f32(tap) + 0.5) / f32(TAPS));
         let at = in.at + reach * vec2f(cos(turn), sin(turn));

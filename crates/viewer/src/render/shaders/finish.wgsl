@@ -1,4 +1,4 @@
-// The finished picture onto the target, whatever the target's encoding.
+// Draws the finished picture onto the target, for any encoding of the target.
 @group(0) @binding(0) var picture: texture_2d<f32>;
 
 override encode: bool;

@@ -12,7 +12,7 @@ fn vs_main(@builtin(vertex_index) index: u32) -> Varying {
     var out: Varying;
     out.from_eye = corner * frame.grid_reach;
     out.clip = frame.view_projection * vec4f(out.from_eye.x, -frame.eye_height, out.from_eye.y, 1.0);
-    // A face lying on the ground hides it.
+    // A face that lies on the ground hides the grid.
     out.clip.z *= 1.0 - 0.0005 * frame.depth_share;
     return out;
 }
@@ -21,17 +21,17 @@ const LINE = vec3f(0.13, 0.15, 0.18);
 const X_AXIS = vec3f(0.72, 0.06, 0.06);
 const Z_AXIS = vec3f(0.04, 0.16, 0.72);
 
-// How much of a pixel a line covers, `distance` away from its middle, both in the unit of `pixel`.
+// The fraction of a pixel that a line covers, `distance` away from its middle, both in the unit of `pixel`.
 fn coverage(distance: vec2f, pixel: vec2f, width: f32) -> vec2f {
     return clamp(vec2f(0.5 * width + 0.5) - abs(distance) / pixel, vec2f(0.0), vec2f(min(width, 1.0)));
 }
 
-// How clearly lines a cell apart are told from each other; they fade before they would crowd into moire.
+// The visibility of lines one cell apart; they fade before they would cause moire.
 fn clarity(pixel: vec2f) -> vec2f {
     return 1.0 - smoothstep(vec2f(0.05), vec2f(0.28), pixel);
 }
 
-// The shadow about a place, fading towards the border of the map.
+// The shadow at a place, fading towards the border of the map.
 fn shadow(from_eye: vec2f) -> f32 {
     let middle = (from_eye - frame.shadow_centre) / (2.0 * frame.shadow_half);
     let inside = 1.0 - smoothstep(0.4, 0.5, max(abs(middle.x), abs(middle.y)));
@@ -47,14 +47,14 @@ fn fs_main(in: Varying) -> @location(0) vec4f {
     var cell = frame.grid_step;
     for (var level = 0; level < 4; level++) {
         let cells = at / cell + vec2f(frame.grid_x[level], frame.grid_z[level]);
-        // Heavier than the next finer lines, for as long as those are seen.
+        // Thicker than the next finer lines, as long as those are visible.
         let finer = select(clarity(10.0 * pixel / cell), vec2f(0.0), level == 0);
         let covered = coverage(fract(cells + 0.5) - 0.5, pixel / cell, 1.3);
         let inks = covered * clarity(pixel / cell) * mix(vec2f(0.28), vec2f(0.6), finer);
         ink = max(ink, max(inks.x, inks.y));
         cell *= 10.0;
     }
-    // x runs where z is zero and the other way round; the negative halves are paler.
+    // The x axis is the line with z = 0, and the z axis that with x = 0; the negative halves are paler.
     let from_origin = at - frame.origin;
     let axis = coverage(from_origin.yx, pixel.yx, 2.0) * select(vec2f(0.35), vec2f(0.9), from_origin >= vec2f(0.0));
     var colour = mix(LINE, X_AXIS, axis.x);
@@ -64,7 +64,7 @@ fn fs_main(in: Varying) -> @location(0) vec4f {
     let fade = 1.0 - smoothstep(0.25, 1.0, length(at) / frame.grid_reach);
     ink *= fade;
     let dark = 0.5 * shadow(at);
-    // The lines over the shadow.
+    // Draws the lines over the shadow.
     let opacity = ink + dark * (1.0 - ink);
     return vec4f(colour * ink, opacity);
 }

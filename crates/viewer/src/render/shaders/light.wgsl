@@ -6,7 +6,7 @@ const KEY = vec3f(0.66, 0.64, 0.60);
 fn lit(albedo: vec3f, position: vec3f, normal: vec3f) -> vec3f {
     let to_eye = -normalize(position);
     let ambient = mix(GROUND, SKY, 0.5 + 0.5 * normal.y);
-    // The key light wraps a little round the side, like a large lamp.
+    // The key light reaches slightly around the side, like that of a large lamp.
     let facing = (dot(normal, frame.light) + 0.2) / 1.2;
     let key = KEY * max(facing, 0.0);
     let grazing = 1.0 - max(dot(normal, to_eye), 0.0);

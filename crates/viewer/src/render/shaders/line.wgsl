@@ -7,7 +7,7 @@ struct Varying {
     @location(2) extent: vec2f,
 }
 
-// One corner of four of a rectangle on the screen that holds the line with its round ends.
+// One of the four corners of a rectangle on the screen that contains the line with its round ends.
 @vertex
 fn vs_main(
     @builtin(vertex_index) index: u32,
@@ -44,11 +44,11 @@ fn vs_main(
     let last = index > 1u;
     let shift = select(-reach, reach, last);
     let corner = select(start, end, last) + along * shift + across * side;
-    // A little nearer than it is, not to sink into the surface it lies on; the ends go on at its slope.
+    // The line is drawn slightly nearer, so that it does not sink into its surface; the ends continue its slope.
     let beyond = min(reach / max(length, 1e-3), 0.5);
     let ends = vec2f(a.z / a.w, b.z / b.w);
     let depth = mix(ends.x, ends.y, select(-beyond, 1.0 + beyond, last)) * (1.0 + 3.0 * frame.pixel * frame.depth_share);
-    // Dividing here makes everything below vary evenly over the screen.
+    // After this division all values vary linearly over the screen.
     out.clip = vec4f(corner / frame.half_size, min(depth, 1.0), 1.0);
     out.place = vec2f(select(0.0, length, last) + shift, side);
     out.extent = vec2f(length, half_width);

@@ -1,6 +1,6 @@
 struct Varying {
     @builtin(position) clip: vec4f,
-    // Multiplied by its opacity.
+    // Premultiplied by its opacity.
     @location(0) colour: vec4f,
 }
 

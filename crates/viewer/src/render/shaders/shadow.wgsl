@@ -1,4 +1,4 @@
-// Meshes seen from straight above, onto the ground: 1 where they touch it, fading with height.
+// Draws meshes from straight above onto the ground: 1 where they touch it, fading with height.
 struct Varying {
     @builtin(position) clip: vec4f,
     @location(0) height: f32,
@@ -14,7 +14,7 @@ fn vs_main(
     let at = turned(position, rotation) + offset;
     var out: Varying;
     out.clip = vec4f((at.xz - frame.shadow_centre) / frame.shadow_half, 0.5, 1.0);
-    // In sizes of the mesh, so that small and large bodies cast alike.
+    // In sizes of the mesh, so that small and large bodies cast similar shadows.
     out.height = (at.y + frame.eye_height) / radius;
     return out;
 }

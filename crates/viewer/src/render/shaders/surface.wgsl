@@ -14,7 +14,7 @@ struct Varying {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) colour: vec3f,
-    // Parts of the triangle's corners; each is zero along the edge opposite.
+    // Barycentric coordinates; each is zero along the edge opposite its corner.
     @location(3) parts: vec3f,
 }
 
@@ -33,7 +33,7 @@ fn vs_plain(corner: Corner, instance: Instance) -> Varying {
     return placed(corner, instance, vec3f(1.0));
 }
 
-// For triangles whose corners come in order, three by three.
+// For triangles whose corners are in order, three by three.
 @vertex
 fn vs_edged(corner: Corner, instance: Instance, @builtin(vertex_index) index: u32) -> Varying {
     let place = index % 3u;
@@ -41,7 +41,7 @@ fn vs_edged(corner: Corner, instance: Instance, @builtin(vertex_index) index: u3
     return placed(corner, instance, parts);
 }
 
-// The same moved aside by some pixels and a little back, so that only a rim is seen beside the body.
+// Like the above, but moved sideways by some pixels and slightly back, so that only a rim is visible beside the body.
 const RIM = 2.0;
 const BACK = 0.05;
 const RIM_COLOUR = vec3f(0.02, 0.14, 0.9);
@@ -79,7 +79,7 @@ fn fs_rim(in: Varying) -> @location(0) vec4f {
 }
 
 fn surface(in: Varying, front: bool) -> vec3f {
-    // Both sides are drawn: an open mesh has an inside to look at.
+    // Both sides are drawn, because an open mesh has a visible inside.
     return lit(in.colour, in.position, normalize(select(-in.normal, in.normal, front)));
 }
 
@@ -88,7 +88,7 @@ fn fs_plain(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec
     return vec4f(surface(in, front), 1.0);
 }
 
-// What is seen through: faint where it is looked at straight, dense towards its outline.
+// A translucent mesh: faint where it faces the viewer, denser towards its outline.
 @fragment
 fn fs_ghost(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let grazing = 1.0 - abs(dot(normalize(in.normal), normalize(in.position)));
@@ -97,17 +97,17 @@ fn fs_ghost(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec
 }
 
 const EDGE = vec3f(0.010, 0.014, 0.022);
-// Half the width of an edge, of which each side's triangle draws one, pixels.
+// Half the width of an edge, pixels; the triangles on both sides each draw one half.
 const EDGE_HALF_WIDTH = 0.6;
 
 @fragment
 fn fs_edged(in: Varying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let dx = dpdx(in.parts);
     let dy = dpdy(in.parts);
-    // How much of the triangle one pixel crosses, away from each edge.
+    // The change of each barycentric coordinate over one pixel.
     let pixel = max(sqrt(dx * dx + dy * dy), vec3f(1e-9));
     let covered = clamp(vec3f(EDGE_HALF_WIDTH + 0.5) - in.parts / pixel, vec3f(0.0), vec3f(1.0));
-    // Edges that crowd together grow faint, so that a dense mesh still shows its surface.
+    // Crowded edges become faint, so that a dense mesh still shows its surface.
     let apart = mix(vec3f(0.12), vec3f(0.75), 1.0 - smoothstep(vec3f(0.04), vec3f(0.3), pixel));
     let inks = covered * apart;
     let ink = max(inks.x, max(inks.y, inks.z));

@@ -1,56 +1,56 @@
-//! A body under a constant force that bounces off what nothing moves: parabolas from impact to impact.
+//! A body under a constant force that bounces off immovable bodies: parabolas from impact to impact.
 
 use sim_core::DVec3;
 
-/// Impacts after which one call gives up.
+/// The number of impacts after which one call gives up.
 const MOST_IMPACTS: u32 = 200_000;
-/// Lengths below this part of the coordinates are rounding.
+/// Lengths below this fraction of the coordinates are rounding errors.
 const ROUNDING: f64 = 1e-9;
-/// A flight shorter than this part of the time since the start is none: the body rests.
+/// A flight shorter than this fraction of the time since the start counts as rest.
 const REST: f64 = 1e-13;
 
-/// A plane that the body's origin cannot pass: where it would be with the surfaces touching.
+/// A plane that the body's origin cannot pass: the positions of the origin where the surfaces touch.
 #[derive(Clone, Debug)]
 pub(super) struct Face {
     /// A point of it at the start, m, and its steady velocity, m/s.
     pub(super) place: DVec3,
     pub(super) velocity: DVec3,
-    /// Unit normal, to the side of the body.
+    /// Unit normal, towards the body.
     pub(super) normal: DVec3,
-    /// How far it reaches from `place` along each axis, m: surely, and at most. Along the normal both
-    /// are infinite.
+    /// The extent of the face from `place` along each axis, m: a lower and an upper bound. Along the normal both are
+    /// infinite.
     pub(super) sure: DVec3,
     pub(super) most: DVec3,
-    /// What is left of an approaching speed.
+    /// The coefficient of restitution.
     pub(super) restitution: f64,
-    /// Whether friction acts: then the path ends there.
+    /// Whether friction acts; the known path then ends at the impact.
     pub(super) rough: bool,
 }
 
-/// A parabola that began at a time, s.
+/// A parabola with its start time, s.
 #[derive(Clone, Copy, Debug)]
 struct Flight {
     time: f64,
     place: DVec3,
     velocity: DVec3,
     push: DVec3,
-    /// The face that it slides on.
+    /// The face on which the body slides.
     on: Option<usize>,
 }
 
-/// The path, and how far along it is.
+/// The path up to the present time.
 #[derive(Clone, Debug)]
 pub(super) struct Bounce {
     first: Flight,
     now: Flight,
     faces: Vec<Face>,
     push: DVec3,
-    /// When it stops being known, s.
+    /// The time at which the path is no longer known, s.
     end: f64,
 }
 
 impl Bounce {
-    /// From a place, m, with a velocity, m/s, and a constant acceleration, m/s².
+    /// A path from a position, m, with a velocity, m/s, and a constant acceleration, m/s².
     pub(super) fn new(place: DVec3, velocity: DVec3, push: DVec3, faces: Vec<Face>) -> Self {
         let flight = Flight {
             time: 0.0,
@@ -68,7 +68,7 @@ impl Bounce {
         }
     }
 
-    /// Place and velocity at `time` after the start, s; none once they are not known.
+    /// Position and velocity at `time` after the start, s; `None` once they are no longer known.
     pub(super) fn at(&mut self, time: f64) -> Option<(DVec3, DVec3)> {
         if time >= self.end {
             return None;
@@ -91,7 +91,7 @@ impl Bounce {
         None
     }
 
-    /// The first impact before `time`, if there is one: when, and on which face.
+    /// The first impact before `time`, if there is one: its time and face.
     fn next_impact(&self, time: f64) -> Option<(f64, usize)> {
         let hits = self.faces.iter().enumerate().filter_map(|(n, face)| {
             if self.now.on == Some(n) {
@@ -104,7 +104,7 @@ impl Bounce {
             (when <= time && face.holds(away, face.most)).then_some((when, n))
         });
         let first = hits.min_by(|a, b| a.0.total_cmp(&b.0));
-        // Who slides off the end of what it lies on is lost there.
+        // A body that slides over the edge of its face is not followed further.
         let off = self.now.on.filter(|&n| {
             let face = &self.faces[n];
             let (place, _) = self.now.at(time);
@@ -113,7 +113,7 @@ impl Bounce {
         first.or(off.map(|n| (time, n)))
     }
 
-    /// Time from the present flight's start until it comes to a face from its front.
+    /// The time from the start of the present flight until the body reaches a face from its front.
     fn time_to(&self, face: &Face) -> Option<f64> {
         let flight = &self.now;
         let gap = (flight.place - face.place - face.velocity * flight.time).dot(face.normal);
@@ -121,11 +121,11 @@ impl Bounce {
         let bend = 0.5 * flight.push.dot(face.normal);
         let slack = face.slack(flight.place);
         if gap < -slack {
-            // It is on the other side.
+            // The body is behind the face.
             return None;
         }
         if gap.abs() <= slack && speed >= 0.0 {
-            // It leaves: the other root is the way back, if there is one.
+            // The body moves away: the other root is its return, if it returns.
             return (bend < 0.0).then(|| -speed / bend);
         }
         let under = speed * speed - 4.0 * bend * gap;
@@ -133,7 +133,7 @@ impl Bounce {
             return None;
         }
         let root = under.sqrt();
-        // The root at which it approaches, without cancellation.
+        // The root at which the body approaches, computed without cancellation.
         let when = if speed <= 0.0 {
             2.0 * gap / (root - speed)
         } else if bend < 0.0 {
@@ -144,7 +144,7 @@ impl Bounce {
         (when.is_finite()).then_some(when.max(0.0))
     }
 
-    /// Goes through an impact; whether the path is known after it.
+    /// Resolves an impact. Returns whether the path is known after it.
     fn hit(&mut self, when: f64, n: usize) -> bool {
         if self.now.on == Some(n) {
             return false;
@@ -157,7 +157,7 @@ impl Bounce {
         }
         let approaching = (velocity - face.velocity).dot(face.normal);
         let parting = -face.restitution * approaching.min(0.0);
-        // Onto the plane, so that rounding does not pile up.
+        // The position is projected onto the plane, so that rounding errors do not accumulate.
         let place = place - away.dot(face.normal) * face.normal;
         let velocity = velocity + (parting - approaching) * face.normal;
         let mut flight = Flight {
@@ -178,7 +178,7 @@ impl Bounce {
             flight.push = self.push - pressed * face.normal;
             flight.on = Some(n);
         } else if let Some(on) = self.now.on {
-            // Off a wall that stands upright on what it lies on.
+            // The impact on a wall is resolved only if the wall is perpendicular to the face below.
             if self.faces[on].normal.dot(face.normal).abs() > 1e-12 {
                 return false;
             }
@@ -199,7 +199,7 @@ impl Flight {
 }
 
 impl Face {
-    /// Whether a point this far from the middle is over the face.
+    /// Whether a point at this offset from the middle is over the face.
     fn holds(&self, away: DVec3, reach: DVec3) -> bool {
         away.abs().cmple(reach).all()
     }

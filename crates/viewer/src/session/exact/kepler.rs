@@ -1,17 +1,17 @@
-//! A body that one centre attracts: ellipse, parabola or hyperbola, in universal variables.
+//! A body attracted by one centre: ellipse, parabola or hyperbola, in universal variables.
 //!
-//! With `α = 2/r₀ - v₀²/μ` and the universal anomaly `χ`, `dχ/dt = √μ / r`, one equation holds for all
-//! three: `√μ t = σ₀ χ² C(z) + (1 - α r₀) χ³ S(z) + r₀ χ` with `σ₀ = r₀·v₀/√μ` and `z = α χ²`, in the
-//! Stumpff functions C and S (Bate, Mueller, White 1971, ch. 4). Its slope is `r > 0`, so that it has
-//! one root, which a bracket holds.
+//! With `α = 2/r₀ - v₀²/μ` and the universal anomaly `χ`, `dχ/dt = √μ / r`, one equation holds for all three:
+//! `√μ t = σ₀ χ² C(z) + (1 - α r₀) χ³ S(z) + r₀ χ` with `σ₀ = r₀·v₀/√μ` and `z = α χ²`, in the Stumpff functions C and
+//! S (Bate, Mueller, White 1971, ch. 4). The right side has the slope `r > 0`, so it has exactly one root, which is
+//! bracketed.
 
 use sim_core::DVec3;
 
-/// Halvings after which a bracket of doubles has no room left.
+/// The number of halvings after which a bracket of doubles cannot shrink further.
 const HALVINGS: u32 = 1100;
 
-/// Place and velocity from the centre after `time`, s, of what began at `place`, m, with `velocity`,
-/// m/s, under `strength / r²`, m³/s². None where it falls straight into the centre, or where the
+/// Position and velocity from the centre after `time`, s, for the initial `place`, m, and `velocity`, m/s, under the
+/// attraction `strength / r²`, with `strength` in m³/s². `None` if the body falls straight into the centre, or if
 /// numbers leave their range.
 pub(super) fn at(
     place: DVec3,
@@ -28,7 +28,7 @@ pub(super) fn at(
     let root = strength.sqrt();
     let alpha = 2.0 / r0 - velocity.length_squared() / strength;
     let sigma = place.dot(velocity) / root;
-    // Whole turns of an ellipse change nothing.
+    // Whole revolutions of an ellipse are removed.
     let time = if alpha > 0.0 {
         time % (std::f64::consts::TAU / (root * alpha * alpha.sqrt()))
     } else {
@@ -86,10 +86,10 @@ pub(super) fn at(
     (there.is_finite() && moving.is_finite()).then_some((there, moving))
 }
 
-/// The Stumpff functions: (1 - cos √z)/z and (√z - sin √z)/√z³, and what they become for z up to 0.
+/// The Stumpff functions (1 - cos √z)/z and (√z - sin √z)/√z³, and their continuations for z up to 0.
 fn stumpff(z: f64) -> (f64, f64) {
     if z.abs() < 0.1 {
-        // Up to z⁶, whose next terms are below rounding.
+        // The series up to z⁶; further terms are below rounding.
         let mut c = 0.0;
         let mut s = 0.0;
         for n in (0..8).rev() {

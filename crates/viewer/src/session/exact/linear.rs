@@ -1,12 +1,12 @@
-//! A body under forces that are linear in place and velocity: springs without a rest length to fixed
-//! points, and linear drag, beside a constant force.
+//! A body under forces that are linear in position and velocity: springs without rest length to fixed points, linear
+//! drag, and a constant force.
 
 use sim_core::DVec3;
 
-/// `x'' = push - stiffness x - damping x'`, each per kg, with x from `centre`.
+/// The equation `x'' = push - stiffness x - damping x'`, each per kg, with x relative to `centre`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Linear {
-    /// The point that the springs pull to, m.
+    /// The point towards which the springs pull, m.
     pub(super) centre: DVec3,
     /// Acceleration by constant forces, m/s².
     pub(super) push: DVec3,
@@ -17,7 +17,7 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// Place, m, and velocity, m/s, after `time`, s, of what began there with that.
+    /// Position, m, and velocity, m/s, after `time`, s, from an initial position and velocity.
     pub(super) fn at(&self, place: DVec3, velocity: DVec3, time: f64) -> (DVec3, DVec3) {
         if self.stiffness == 0.0 {
             return self.dragged(place, velocity, time);
@@ -26,9 +26,9 @@ impl Linear {
         let away = place - rest;
         let half = 0.5 * self.damping;
         let under = half * half - self.stiffness;
-        // The motion is `a(t) away + b(t) velocity`, and its slope likewise.
+        // The motion is `a(t) away + b(t) velocity`, and its derivative has the same form.
         let [a, b, a_slope, b_slope] = if under * time * time > 1e-4 {
-            // Two exponentials that fall, written so that neither is a difference of large numbers.
+            // Two decaying exponentials, written so that neither is a difference of large numbers.
             let fast = -(half + under.sqrt());
             let slow = self.stiffness / fast;
             let (e_slow, e_fast) = ((slow * time).exp(), (fast * time).exp());
@@ -44,7 +44,7 @@ impl Linear {
                 let turn = (-under).sqrt();
                 ((turn * time).cos(), (turn * time).sin() / turn)
             } else {
-                // Near the critical damping both are their series.
+                // Near critical damping both are computed from their series.
                 let z = under * time * time;
                 (
                     1.0 + z / 2.0 * (1.0 + z / 12.0 * (1.0 + z / 30.0)),

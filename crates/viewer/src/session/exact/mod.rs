@@ -1,8 +1,8 @@
-//! Where bodies would be without any error of method or step: the exact solution, as far as it is known.
+//! The exact solution: the positions of bodies without errors of method or step, as far as it is known.
 //!
-//! Known are the paths of a body under constant forces, bouncing off half-spaces and boxes that nothing
-//! moves; under linear drag and springs without a rest length to fixed points; and around one centre of
-//! attraction. They are known until the boxes of two bodies come together that may answer each other.
+//! It is known for bodies under constant forces that bounce off immovable half-spaces and boxes; under linear drag and
+//! springs without rest length to fixed points; and around one centre of attraction. It is known until the boxes of
+//! two bodies that could affect each other meet.
 
 mod bounce;
 mod kepler;
@@ -15,46 +15,46 @@ use linear::Linear;
 
 use super::turns;
 
-/// Bodies up to which paths are followed: each is watched for each other.
+/// The most bodies whose paths are followed, because every pair is watched.
 const MOST_BODIES: usize = 32;
-/// Faces that one path is followed against.
+/// The most faces against which one path is followed.
 const MOST_FACES: usize = 200;
-/// The most slices of time in which one look watches for bodies that come together.
+/// The most time slices in which one call watches for bodies that meet.
 const MOST_SLICES: f64 = 200_000.0;
 
-/// The exact paths of the bodies of a world, from the state that it was made of.
+/// The exact paths of the bodies of a world, from its initial state here.
 #[derive(Clone, Debug)]
 pub struct Exact {
-    /// When that state was, s.
+    /// The time of that state, s.
     start: f64,
     paths: Vec<Path>,
-    /// When each path ends to be known, s.
+    /// The time up to which each path is known, s.
     known: Vec<f64>,
-    /// Up to where bodies have been watched for meeting, s, and where they were then.
+    /// The time up to which meetings of bodies have been excluded, s, and the positions then.
     watched: f64,
     boxes: Vec<Extent>,
-    /// Impacts and steps in contact before.
+    /// The numbers of impacts and of steps with contacts before.
     met: (u64, u64),
-    /// Pairs that may meet and answer each other.
+    /// The pairs that may meet and affect each other.
     pairs: Vec<(usize, usize)>,
 }
 
-/// What a body's motion follows.
+/// The law of a body's motion.
 #[derive(Clone, Debug)]
 enum Path {
-    /// Not a law that is solved here.
+    /// No law that is solved here.
     Unknown,
-    /// What nothing moves: a place and a velocity.
+    /// An immovable body: position and velocity.
     Driven(DVec3, DVec3),
-    /// Constant forces, and faces to bounce off.
+    /// Constant forces, and faces off which the body bounces.
     Bounce(Bounce),
     /// Springs and drag.
     Linear(Linear, DVec3, DVec3),
-    /// A centre and its strength.
+    /// A centre and its strength, initial position and velocity.
     Kepler(DVec3, f64, DVec3, DVec3),
 }
 
-/// A body's box about its place, m; infinite for a half-space.
+/// A body's box about its position, m; infinite for a half-space.
 #[derive(Clone, Copy, Debug)]
 struct Extent {
     low: DVec3,
@@ -62,10 +62,10 @@ struct Extent {
 }
 
 impl Exact {
-    /// Followed from the present state of a world.
+    /// The paths from the present state of a world.
     pub fn of(world: &World) -> Self {
         let count = world.len();
-        // What turns meets others with other features than those that it starts with.
+        // A turning body meets others with other features than those at the start.
         let followed = count <= MOST_BODIES && (count == 1 || !turns(world));
         let paths: Vec<Path> = (0..count)
             .map(|i| match followed {
@@ -96,8 +96,7 @@ impl Exact {
         }
     }
 
-    /// Looks on to `time`, s, whether bodies come together; `slice` is a time in which nothing moves
-    /// far, s.
+    /// Watches up to `time`, s, whether bodies meet. `slice` is a time in which nothing moves far, s.
     pub fn watch(&mut self, time: f64, slice: f64) {
         let long = time - self.watched;
         if self.pairs.is_empty() || long <= 0.0 {
@@ -121,8 +120,7 @@ impl Exact {
                 let (Some(a), Some(b), Some(c)) = ways else {
                     continue;
                 };
-                // A way that bends leaves the box of its ends by no more than twice what its middle
-                // does.
+                // A curved path leaves the box of its ends by at most twice the deviation at its middle.
                 let bulge = 2.0 * (b - 0.5 * (a + c)).abs();
                 let (low, high) = (a.min(c) - bulge, a.max(c) + bulge);
                 let (first, second) = (self.boxes[i], self.boxes[j]);
@@ -137,8 +135,7 @@ impl Exact {
         self.watched = time;
     }
 
-    /// Where body `i` is at a time that has been watched, s, and its velocity; none where that is not
-    /// known.
+    /// Position and velocity of body `i` at a time that has been watched, s; `None` if they are not known.
     pub fn at(&mut self, i: usize, time: f64) -> Option<(DVec3, DVec3)> {
         if time > *self.known.get(i)? {
             return None;
@@ -160,12 +157,12 @@ impl Exact {
         found
     }
 
-    /// Largest distance of a body of `world` from its exact place, m, among those whose place is known;
-    /// none where none is. What nothing moves does not count.
+    /// Largest distance of a body of `world` from its exact position, m, among the bodies whose position is known;
+    /// `None` if there are none. Immovable bodies do not count.
     pub fn error(&mut self, world: &World) -> Option<f64> {
         self.watch(world.time(), world.settings().dt);
         if (world.impacts(), world.contact_steps()) != self.met {
-            // Somebody has met somebody, perhaps one of those whose paths are not known.
+            // Some bodies have met, perhaps including some with unknown paths.
             for n in 0..self.pairs.len() {
                 let (i, j) = self.pairs[n];
                 if self.known[i].min(self.known[j]) < world.time() {
@@ -183,7 +180,7 @@ impl Exact {
         error
     }
 
-    /// Whether the place of every body is known at a time that has been watched, s.
+    /// Whether the position of every body is known at a time that has been watched, s.
     pub fn knows_all(&mut self, time: f64) -> bool {
         (0..self.paths.len()).all(|i| self.at(i, time).is_some())
     }
@@ -218,7 +215,7 @@ impl Path {
             match *force {
                 Force::Gravity { acceleration } => push += acceleration,
                 _ if !acts => {}
-                // Which turn it, or pull elsewhere.
+                // Such a force rotates the body, or acts elsewhere than at its centre.
                 _ if force.point().is_some() || force.points().is_some() => return Path::Unknown,
                 Force::LinearDrag { coefficient, .. } => drag += coefficient,
                 Force::QuadraticDrag {
@@ -282,7 +279,7 @@ fn collide(world: &World, i: usize, j: usize) -> bool {
     world.groups(i).collide(world.groups(j))
 }
 
-/// Whether body `i`, which moves freely, is followed through its impacts on `j`.
+/// Whether the impacts of body `i`, which moves freely, on `j` are resolved by the path.
 fn is_face(world: &World, i: usize, j: usize) -> bool {
     if !world.kind(i).is_movable() || world.kind(j).is_movable() || !collide(world, i, j) {
         return false;
@@ -298,7 +295,7 @@ fn is_face(world: &World, i: usize, j: usize) -> bool {
     }
 }
 
-/// Whether `i` could meet `j` in a way that no path knows.
+/// Whether `i` could meet `j` in a way that no path describes.
 fn may_answer(world: &World, i: usize, j: usize) -> bool {
     if !world.kind(i).is_movable() || !collide(world, i, j) {
         return false;
@@ -310,7 +307,7 @@ fn may_answer(world: &World, i: usize, j: usize) -> bool {
     !(is_free(world, i) && is_face(world, i, j))
 }
 
-/// Whether nothing but constant forces acts on a body.
+/// Whether only constant forces act on a body.
 fn is_free(world: &World, i: usize) -> bool {
     world.forces().iter().all(|force| {
         let acts = force.bodies().next().is_none() || force.bodies().any(|body| body == i);
@@ -318,7 +315,7 @@ fn is_free(world: &World, i: usize) -> bool {
     })
 }
 
-/// The planes that body `i` bounces off; none where there are too many, or where it begins inside.
+/// The planes off which body `i` bounces; `None` if there are too many, or if it begins inside a body.
 fn faces(world: &World, i: usize) -> Option<Vec<Face>> {
     let mut faces = Vec::new();
     for j in (0..world.len()).filter(|&j| is_face(world, i, j)) {
@@ -348,7 +345,8 @@ fn faces(world: &World, i: usize) -> Option<Vec<Face>> {
                 let Aabb { min, max } = mesh.bounds();
                 let (min, max) = (min.as_dvec3(), max.as_dvec3());
                 let own = extent(world, i);
-                // Where the origin may not be, about the other's: grown by the body turned about.
+                // The positions that the origin cannot take, relative to the other's: its box grown by the reflected
+                // box of the body.
                 let (low, high) = (min - own.high, max - own.low);
                 let middle = 0.5 * (low + high);
                 let half = 0.5 * (high - low);
@@ -380,7 +378,7 @@ fn faces(world: &World, i: usize) -> Option<Vec<Face>> {
     Some(faces)
 }
 
-/// How far body `i` reaches from its origin along a unit vector, m.
+/// The support of body `i`: its extent from its origin along a unit vector, m.
 fn support(world: &World, i: usize, along: DVec3) -> f64 {
     match world.shape(i) {
         Some(Shape::Mesh(mesh)) => {
@@ -404,7 +402,7 @@ fn extent(world: &World, i: usize) -> Extent {
     Extent { low, high }
 }
 
-/// Without end but on the side of the normal, where that is along an axis.
+/// The extent of a half-space: infinite, except on the side of a normal along an axis.
 fn half_space_extent(normal: DVec3) -> (DVec3, DVec3) {
     let upright = |part: f64, other: f64| part.abs() > 1.0 - 1e-12 && other == part.signum();
     let end = |part: f64, side: f64| {
@@ -419,7 +417,7 @@ fn half_space_extent(normal: DVec3) -> (DVec3, DVec3) {
     (low.into(), high.into())
 }
 
-/// Whether a mesh is a box along the axes: all its corners and faces are those of its bounds.
+/// Whether a mesh is an axis-aligned box: all its vertices and faces are those of its bounds.
 fn is_box(mesh: &Mesh) -> bool {
     let Aabb { min, max } = mesh.bounds();
     let on_side = |side: usize, part: f32| {

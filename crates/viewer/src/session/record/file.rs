@@ -9,13 +9,13 @@ use sim_core::{Collision, DVec3, Force, Method, Settings};
 
 use super::{Input, MOST_STEPS, Record};
 
-/// The form of the file that this program writes.
+/// The version of the file format that this program writes.
 const VERSION: u32 = 1;
 /// The largest file that is read, bytes.
 const MAX_BYTES: u64 = 1 << 28;
 const HEAD: &str = "# A recorded run. `cowbell replay FILE` shows it again, `cowbell replay FILE --verify` checks it.\n";
 
-/// Why a file gives no record.
+/// The reason why a file gives no record.
 #[derive(Debug)]
 pub struct RecordError {
     path: PathBuf,
@@ -35,20 +35,20 @@ impl fmt::Display for RecordError {
 
 impl std::error::Error for RecordError {}
 
-/// What stands in the file, in its order.
+/// The contents of the file, in its order.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct RunText {
     cowbell_run: u32,
     name: String,
     scene: String,
-    /// Sixteen digits a line: the start, and after each step.
+    /// One hash of sixteen digits per line: of the start, and after each step.
     hashes: String,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     input: Vec<InputText>,
 }
 
-/// What was done after a number of steps: one of the fields.
+/// An input after a number of steps: exactly one of the fields.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct InputText {
@@ -73,7 +73,7 @@ struct InputText {
     friction: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     settings: Option<SettingsText>,
-    /// A scene of the same bodies, of which the forces count.
+    /// A scene of the same bodies, of which only the forces are used.
     #[serde(skip_serializing_if = "Option::is_none")]
     forces: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -95,15 +95,14 @@ const COLLISIONS: [(&str, Collision); 3] = [
     ("naive", Collision::Naive),
 ];
 
-/// Whether a path is that of a recorded run, by its ending.
+/// Whether a path is that of a recorded run, by its extension.
 pub fn is_run_file(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("run"))
 }
 
 impl Record {
-    /// The text of a file at `path` that gives this record again. Forces whose law is not data have no
-    /// text.
+    /// The text of a file at `path` that reproduces this record. Forces whose law is code have no text.
     pub fn text_at(&self, path: &Path) -> Result<String, SceneError> {
         let mut input = Vec::new();
         for (step, done) in &self.inputs {
@@ -119,7 +118,7 @@ impl Record {
             hashes: self.hashes.iter().map(|h| format!("{h:016x}\n")).collect(),
             input,
         };
-        // Text, numbers, tables last: nothing in it can be refused.
+        // Serializing cannot fail: text and numbers come first, tables last.
         let text = toml::to_string_pretty(&text).unwrap_or_default();
         Ok(HEAD.to_owned() + &text)
     }
@@ -273,7 +272,7 @@ impl InputText {
             found.push(Input::Force(body()?, DVec3::from(force)));
         }
         if let Some(mass) = self.mass {
-            // Recorded before bodies had kinds, an infinite one is that of an immovable body.
+            // In records from before bodies had kinds, an infinite mass means an immovable body.
             found.push(match mass == f64::INFINITY {
                 true => Input::Immovable(body()?),
                 false => Input::Mass(body()?, mass),

@@ -1,13 +1,13 @@
-//! What a person can do to a world that runs.
+//! The inputs by which a user can change a running world.
 
 use sim_core::{BodyKind, DVec3, Force, SeparateError, Settings, World, WorldError};
 
-/// One change, the same whether it is made the first time or in a replay.
+/// One change. It has the same effect the first time and in a replay.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
-    /// How the world steps.
+    /// The settings of the world.
     Settings(Settings),
-    /// Where a body's origin is, m.
+    /// The position of a body's origin, m.
     Position(usize, DVec3),
     /// Its velocity, m/s.
     Velocity(usize, DVec3),
@@ -15,24 +15,24 @@ pub enum Input {
     Spin(usize, DVec3),
     /// The constant force on it, N.
     Force(usize, DVec3),
-    /// Its mass, kg; it is movable then.
+    /// Its mass, kg; the body becomes movable.
     Mass(usize, f64),
-    /// That nothing moves it.
+    /// Makes a body immovable.
     Immovable(usize),
-    /// What it keeps of an approaching speed.
+    /// Its coefficient of restitution.
     Restitution(usize, f64),
     /// Its coefficient of friction.
     Friction(usize, f64),
-    /// All forces beside the constant ones.
+    /// All forces except the constant ones.
     Forces(Vec<Force>),
-    /// Bodies are moved out of overlap.
+    /// Moves overlapping bodies apart.
     Separate,
 }
 
-/// Why a change was refused.
+/// The reason why a change was refused.
 #[derive(Clone, Debug)]
 pub enum InputError {
-    /// By the world.
+    /// The world refused it.
     World(WorldError),
     /// Bodies cannot be moved apart.
     Separate(SeparateError),
@@ -45,7 +45,7 @@ impl From<WorldError> for InputError {
 }
 
 impl Input {
-    /// Makes the change; tells which bodies were moved apart. Refused, it leaves the world as it was.
+    /// Makes the change; returns the bodies that were moved apart. A refused change leaves the world as it was.
     pub fn apply(&self, world: &mut World) -> Result<Vec<usize>, InputError> {
         match *self {
             Self::Settings(settings) => world.set_settings(settings)?,
@@ -73,7 +73,7 @@ impl Input {
     }
 }
 
-/// Gives a body a velocity: what is immovable stands still until then.
+/// Gives a body a velocity; an immovable body so far at rest becomes a moving one.
 fn set_velocity(world: &mut World, body: usize, velocity: DVec3) -> Result<(), WorldError> {
     let stands = body < world.len() && world.kind(body) == BodyKind::Static;
     if stands {

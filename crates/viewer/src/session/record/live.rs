@@ -1,4 +1,4 @@
-//! The run in the session, recorded as it goes; and a record, run again in it.
+//! Records the run in the session, and replays a record in it.
 
 use std::path::Path;
 
@@ -29,13 +29,12 @@ impl Session {
         self.replay.as_ref()
     }
 
-    /// Where the replay has left its record.
+    /// The first difference between the replay and its record.
     pub fn divergence(&self) -> Option<&Divergence> {
         self.replay.as_ref()?.divergence.as_ref()
     }
 
-    /// Makes a change of the world, and notes it if physics has begun. Of one's own will, it ends a
-    /// replay.
+    /// Changes the world, and records the change if physics has begun. A change by the user ends a replay.
     pub(in crate::session) fn change(&mut self, input: Input) -> Result<Vec<usize>, InputError> {
         let moved = input.apply(&mut self.world)?;
         if self.state != State::Layout {
@@ -48,7 +47,7 @@ impl Session {
         Ok(moved)
     }
 
-    /// Begins a record from the world as it is set up, and a replay anew.
+    /// Begins a record from the world as it is set up, and restarts a replay.
     pub(in crate::session) fn begin_recording(&mut self) {
         self.record = Record::begin(&self.scene, &self.world);
         if let Some(replay) = &mut self.replay {
@@ -63,7 +62,7 @@ impl Session {
         }
     }
 
-    /// Takes the states after some steps into the record, and compares them with that of a replay.
+    /// Adds the states after some steps to the record, and compares them with those of a replay.
     pub(in crate::session) fn record_moments(&mut self, moments: &[Moment]) {
         for moment in moments {
             let (step, time) = (moment.world.steps(), moment.world.time());
@@ -80,14 +79,14 @@ impl Session {
         }
     }
 
-    /// Makes the inputs of a replay that are due, and tells how many steps there are until the next.
-    /// At the end of the record the run is held.
+    /// Makes the due inputs of a replay, and returns the number of steps until the next one. At the end of the record
+    /// the run is paused.
     pub(in crate::session) fn replay_inputs(&mut self) -> u64 {
         let Some(mut replay) = self.replay.take() else {
             return u64::MAX;
         };
         let step = self.world.steps();
-        // After going back some are to be made again.
+        // After going back, some inputs must be made again.
         replay.made = replay
             .record
             .inputs
@@ -133,7 +132,7 @@ impl Session {
         }
     }
 
-    /// Writes the run since the start to a new file beside the program.
+    /// Writes the run since the start to a new file in the working directory.
     pub fn save_run(&mut self) {
         let path = self.new_file("run");
         match self.record.text_at(&path) {
@@ -151,7 +150,7 @@ impl Session {
 }
 
 impl InputError {
-    /// In words, with the names of bodies.
+    /// A description with the names of bodies.
     pub fn text(&self, scene: &scene::Scene) -> String {
         match self {
             Self::World(error) => shown::part(&errors::with_names(scene, error)),

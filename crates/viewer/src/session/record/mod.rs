@@ -1,5 +1,4 @@
-//! A run that can be had again: the scene it began with, what was done to it on the way, and a hash of
-//! every state.
+//! A reproducible run: the scene at its start, the inputs, and a hash of every state.
 
 mod file;
 mod input;
@@ -13,15 +12,15 @@ pub use file::{RecordError, is_run_file};
 pub use input::{Input, InputError};
 pub use replay::{Divergence, Replay, ReplayError, Verdict, verify};
 
-/// Steps that are recorded, at 8 bytes each; a longer run is recorded as far as that.
+/// The most steps of a record, at 8 bytes each; further steps are not recorded.
 pub const MOST_STEPS: usize = 4_000_000;
 
 /// A recorded run.
 #[derive(Clone, Debug)]
 pub struct Record {
-    /// The scene that it began with.
+    /// The scene at the start.
     pub scene: Scene,
-    /// What was done, and after how many steps, in that order.
+    /// The inputs, in order, each with the number of steps before it.
     pub inputs: Vec<(u64, Input)>,
     /// [`World::state_hash`] at the start, and after each step.
     pub hashes: Vec<u64>,
@@ -42,12 +41,12 @@ impl Record {
         self.hashes.len() as u64 - 1
     }
 
-    /// Takes in the state after a step; what was after it is of another run, and goes.
+    /// Adds the state after a step; later states belong to another run and are removed.
     pub fn push(&mut self, step: u64, hash: u64) {
         let Ok(step) = usize::try_from(step) else {
             return;
         };
-        // A step that does not follow on what is known belongs to a run that is longer than is recorded.
+        // A step that does not follow a recorded one belongs to a run longer than the limit.
         if step == 0 || step > self.hashes.len() || step > MOST_STEPS {
             return;
         }
@@ -56,7 +55,7 @@ impl Record {
         self.inputs.retain(|&(after, _)| after < step as u64);
     }
 
-    /// Takes in what was done after a number of steps, and forgets what had been after that.
+    /// Adds an input after a number of steps, and removes later ones.
     pub fn note(&mut self, after: u64, input: Input) {
         if after > self.steps() {
             return;

@@ -1,4 +1,4 @@
-//! A recorded run, run again.
+//! Replays of recorded runs.
 
 use std::fmt;
 
@@ -7,21 +7,21 @@ use sim_core::{StepError, World};
 use super::Record;
 use super::input::InputError;
 
-/// A record that the run is compared with as it goes on.
+/// A record with which the run is compared as it continues.
 #[derive(Clone, Debug)]
 pub struct Replay {
-    /// What it is compared with.
+    /// The record.
     pub record: Record,
-    /// Inputs that have been made.
+    /// The number of inputs made.
     pub made: usize,
-    /// The first state that is another one.
+    /// The first different state.
     pub divergence: Option<Divergence>,
 }
 
-/// A state that is not the recorded one.
+/// A state that differs from the recorded one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Divergence {
-    /// After how many steps; 0 is the start.
+    /// The number of steps before it; 0 is the start.
     pub step: u64,
     /// Simulated time, s.
     pub time: f64,
@@ -70,23 +70,23 @@ impl Replay {
     }
 }
 
-/// What came of a replay.
+/// The result of a replay.
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// Steps that were replayed.
+    /// The number of steps.
     pub steps: u64,
-    /// Inputs that were made.
+    /// The number of inputs.
     pub inputs: usize,
-    /// The first state that is another one.
+    /// The first different state.
     pub divergence: Option<Divergence>,
     /// The last state of the replay.
     pub world: World,
 }
 
-/// Why a replay has no end.
+/// The reason why a replay fails.
 #[derive(Debug)]
 pub enum ReplayError {
-    /// The scene makes no world.
+    /// No world can be made from the scene.
     Scene(scene::SceneError),
     /// A step fails.
     Step(StepError),
@@ -94,8 +94,8 @@ pub enum ReplayError {
     Input(u64, InputError),
 }
 
-/// Runs a record again until it ends or `go_on`, asked with the steps taken, says no, and compares
-/// all states up to the first that differs.
+/// Runs a record again until it ends or `go_on`, called with the number of steps taken, returns false. Compares all
+/// states up to the first difference.
 pub fn verify(record: Record, mut go_on: impl FnMut(u64) -> bool) -> Result<Verdict, ReplayError> {
     let mut world = record.scene.world().map_err(ReplayError::Scene)?;
     let mut replay = Replay::new(record);

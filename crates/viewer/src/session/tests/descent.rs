@@ -23,13 +23,13 @@ fn boxes_apart_take_one_comparison() {
 #[test]
 fn the_last_level_has_the_leaves_that_the_query_tests() {
     let mut session = cow();
-    // Into the cow.
+    // Moves the body into the cow.
     session.set_position(session.world().position(0) + DVec3::new(0.0, 0.5, 0.0));
     let levels = session.descent();
     assert!(levels.len() > 3 && levels[0].meeting == 1);
     for pair in levels.windows(2) {
         assert!(pair[1].compared >= pair[0].meeting.min(1));
-        // A box of up to four by a box of up to four.
+        // Up to four children against up to four children.
         assert!(pair[1].compared <= 16 * pair[0].meeting);
     }
     let all: usize = levels.iter().map(|level| level.compared).sum();
@@ -58,7 +58,7 @@ fn the_descent_pair_by_pair_compares_what_the_levels_do() {
     let meeting: usize = levels.iter().map(|level| level.meeting).sum();
     assert_eq!(pairs.len(), compared);
     assert_eq!(pairs.iter().filter(|pair| pair.meet).count(), meeting);
-    // Where two boxes meet, the next comparison is of what is in them.
+    // If two boxes meet, the next comparison is between their children.
     let first = pairs.first().expect("one");
     assert!(first.meet && first.below > 0);
     let plain = session.picture().lines.len();
@@ -86,7 +86,7 @@ fn what_turns_is_compared_as_it_is_turned() {
     assert!(!session.wants_trial(), "nothing has moved");
     let levels = session.descent();
     assert!(levels.len() > 3 && levels.last().is_some_and(|level| level.meeting > 0));
-    // A quarter of a turn about itself moves no centre, and is another question.
+    // A rotation by 90 degrees about the body's own centre moves no centre but changes the question.
     session.set_rotation(DVec3::new(20.0, 30.0, 130.0));
     assert!(session.wants_trial());
 }

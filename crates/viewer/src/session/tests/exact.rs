@@ -1,4 +1,4 @@
-//! The exact solution against methods that hardly err, and where it stops being known.
+//! Compares the exact solution with very accurate methods, and tests when it stops being known.
 
 use super::*;
 use crate::session::Exact;
@@ -13,14 +13,14 @@ fn gallery_world(name: &str) -> sim_core::World {
     scene.world().expect("a world")
 }
 
-/// A world that steps with hardly an error, of one body under these forces.
+/// A world with one body under these forces, which steps almost without error.
 fn accurate(body: &str, forces: &str) -> sim_core::World {
     world(&format!(
         "rate = 100\nmethod = \"dop853\"\ntolerance = 1e-14\n[[body]]\nname = \"b\"\nmesh = \"cube.obj\"\n{body}\n{forces}"
     ))
 }
 
-/// Steps for so long, s; the largest error on the way, relative to 1 m.
+/// Steps for `time`, s; the largest error on the way, relative to 1 m.
 fn worst(world: &mut sim_core::World, time: f64) -> f64 {
     let mut exact = Exact::of(world);
     let mut worst: f64 = 0.0;
@@ -99,7 +99,7 @@ fn bounces_of_balls_and_boxes_are_followed() {
                  velocity = [2, 0, 1]\nrestitution = {restitution}\n{gravity}"
             );
             let error = worst(&mut world(&text), 8.0);
-            // Hops of a millisecond, before it rests, are none to the world.
+            // Hops shorter than a millisecond, before the body rests, are not resolved by the world.
             assert!(error < 3e-6, "{shape}, {restitution}: {error:e}");
         }
     }
@@ -132,7 +132,7 @@ fn is_not_known_once_bodies_may_meet() {
         world.step().expect("a step");
     }
     assert_eq!(exact.error(&world), None);
-    // The same in one look, and though nobody meets: in the discrete mode they pass through.
+    // The same in a single call. In the discrete mode the bodies pass through each other without an impact.
     for collision in [Collision::Continuous, Collision::Bvh] {
         let settings = sim_core::Settings {
             dt: 3.0,

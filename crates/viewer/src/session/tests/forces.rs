@@ -1,4 +1,4 @@
-//! Forces, what is seen of them, and what is measured beside a run.
+//! Tests forces, how they are drawn, and what is measured during a run.
 
 use std::path::Path;
 use std::time::Duration;
@@ -138,7 +138,7 @@ fn drift_knows_potentials_and_claims_no_more() {
     spring.start();
     for _ in 0..100 {
         advance(&mut spring, FRAME, free());
-        // Close to a turning point too.
+        // Also close to a turning point.
         let drift = spring.drift();
         assert!(
             drift
@@ -169,7 +169,7 @@ fn drift_knows_potentials_and_claims_no_more() {
     assert!(drift.dissipates && drift.momentum.is_none());
 }
 
-/// A weight on a spring to a body that nothing moves.
+/// A weight on a spring attached to an immovable body.
 fn weight_at(anchor: &str, method: &str) -> Session {
     let text = format!(
         "rate = 60
@@ -198,7 +198,7 @@ fn weight_at(anchor: &str, method: &str) -> Session {
 
 #[test]
 fn drift_tells_what_is_wrong_from_what_drives() {
-    // The wall takes the momentum of what hangs on it.
+    // The wall absorbs the momentum of the weight.
     let still = weight_at("immovable = true", "rk4").drift();
     assert_eq!((still.momentum, still.relative_momentum), (None, None));
     assert!(still.energy_is_error());
@@ -207,11 +207,11 @@ fn drift_tells_what_is_wrong_from_what_drives() {
             .relative_energy
             .is_some_and(|drift| drift.abs() < 1e-3)
     );
-    // A hook that moves pulls the weight along, and gives it energy.
+    // A moving hook pulls the weight along and adds energy.
     let moving = weight_at("immovable = true\nvelocity = [1, 0, 0]", "rk4").drift();
     assert!(moving.driven && !moving.energy_is_error());
-    // Between free bodies momentum stays, whatever becomes of the energy: bodies at rest have none
-    // to measure it by, so that there is the error alone.
+    // Between free bodies momentum is conserved, whatever the energy does. Bodies at rest have no momentum as a scale,
+    // so only the absolute error is known.
     let blown = weight_at("", "forward-euler").drift();
     assert!(
         blown.relative_energy.is_some_and(|drift| drift > 2.0),
@@ -267,7 +267,7 @@ fn trails_go_back_as_far_however_short_the_steps_are() {
         assert!(session.trails.len() <= 2 * 601, "{}", session.trails.len());
         lengths.push(long(&mut session));
     }
-    // 5 s of the same ellipse, in more than 600 steps too.
+    // The same ellipse for 5 s; more than 600 steps make no difference.
     for length in &lengths {
         assert!((length / lengths[0] - 1.0).abs() < 0.02, "{lengths:?}");
     }

@@ -13,7 +13,7 @@ fn edited() -> Session {
     let mut session = session();
     session.select(Some(0));
     for mass in [2.0, 3.0, 4.0] {
-        // A drag: changes that follow each other at once.
+        // A drag: changes in quick succession.
         session.set_mass(mass);
         session.settle(FRAME);
     }
@@ -219,7 +219,7 @@ fn a_scene_outlives_its_files() {
         mesh.triangles().len()
     };
 
-    // It is in no file now, so it is asked for before it is left.
+    // No file has the scene now, so the user is asked before leaving it.
     std::fs::remove_file(&path).expect("it was there");
     session.reread();
     told(&mut session, "mine.toml is gone.");
@@ -232,7 +232,7 @@ fn a_scene_outlives_its_files() {
     told(&mut session, "");
     assert!(!session.is_changed(), "it is back");
 
-    // One that comes back as another one is read again: nothing was edited.
+    // If the file comes back with other contents, it is read again, because there were no edits.
     std::fs::remove_file(&path).expect("it was there");
     session.reread();
     std::fs::write(&path, text.replace("60", "50")).expect("written");
@@ -240,7 +240,7 @@ fn a_scene_outlives_its_files() {
     told(&mut session, "was read again");
     assert_eq!(session.scene().dt, 1.0 / 50.0);
 
-    // The built-in mesh of that name does not take the place of the one that goes.
+    // The built-in mesh of that name does not replace a deleted file.
     std::fs::remove_file(&mesh).expect("it was there");
     session.reread();
     told(&mut session, "cow.obj is gone.");
@@ -261,7 +261,7 @@ fn a_scene_outlives_its_files() {
         2.0
     );
 
-    // Saved where it was, it is in a file again.
+    // After it is saved to the same path, a file has it again.
     std::fs::remove_file(&path).expect("it was there");
     session.reread();
     session.save_own();

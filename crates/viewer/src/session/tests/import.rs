@@ -1,4 +1,4 @@
-//! What is told of a mesh that comes in.
+//! The report about an imported mesh.
 
 use super::*;
 use crate::words::Language;

@@ -1,4 +1,4 @@
-//! What is drawn between two states.
+//! The picture between two states.
 
 use super::*;
 
@@ -15,7 +15,7 @@ fn at_impact() -> Session {
 #[test]
 fn bodies_are_drawn_at_their_impact_at_its_time() {
     let mut session = at_impact();
-    // The gap of 2 m closes at 2 m/s; no state is at 1 s, and on the chord they would be apart.
+    // The gap of 2 m closes at 2 m/s. No state is at 1 s, and linear interpolation would place the bodies apart.
     session.go_to_time(1.0);
     assert_eq!(session.state(), State::Paused);
     assert!((session.shown_time() - 1.0).abs() < 1e-9);
@@ -23,7 +23,7 @@ fn bodies_are_drawn_at_their_impact_at_its_time() {
     let [mover, target] = [&picture.models[0], &picture.models[1]];
     assert!((mover.position.x + 1.0).abs() < 1e-6, "{}", mover.position);
     assert!(target.position.length() < 1e-6);
-    // A little later they part, each with its own velocity: 2 (1 - 3) / (1 + 3) and 2 2 / (1 + 3) m/s.
+    // A little later they separate, each with its own velocity: 2 (1 - 3) / (1 + 3) and 2 2 / (1 + 3) m/s.
     session.go_to_time(1.0 + 0.01);
     let later = session.picture();
     assert!((later.models[0].position.x + 1.0 + 0.01).abs() < 1e-6);
@@ -49,7 +49,7 @@ fn an_impact_is_marked_from_its_time_on_with_what_touches() {
 #[test]
 fn what_touches_is_known_of_meshes_against_anything() {
     use crate::session::Part;
-    // A cube falls on a floor with a face or on a corner, and a ball on the middle of a cube's face.
+    // A cube falls on a floor with a face or a corner first, and a ball on the middle of a cube's face.
     let turned = "rotation = [45, 0, 35.26439]";
     for (shape, other, wanted) in [
         ("mesh = \"cube.obj\"", "half-space = [0, 1, 0]", None),
@@ -111,7 +111,7 @@ fn slow_motion_holds_and_goes_on_where_it_is() {
     assert_eq!(session.world().steps(), step, "no step is due yet");
     session.pause();
     assert!((session.shown_time() - 0.971).abs() < 1e-6);
-    // A step goes to the next state, whole.
+    // A step goes to the next whole state.
     session.step_once();
     advance(&mut session, FRAME, free());
     assert_eq!(session.world().steps(), step + 1);

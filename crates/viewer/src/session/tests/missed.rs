@@ -1,4 +1,4 @@
-//! What the discrete modes do not see.
+//! Tunnelling, which the discrete modes do not see.
 
 use super::*;
 use crate::session::Remedy;
@@ -21,7 +21,7 @@ fn bullet(shape: &str, plate: &str, collision: &str) -> Session {
 fn a_pass_between_two_steps_is_told_and_drawn_for_every_shape() {
     let (cube, ball) = ("mesh = \"cube.obj\"\nscale = 0.5", "sphere = 0.25");
     let thin = "mesh = \"cube.obj\"\nscale = [0.001, 3, 3]";
-    // The front of the bullet and that of what it meets, m.
+    // `gap` is the distance from the bullet's front to the front of its target, m.
     for (shape, plate, thickness, gap) in [
         (cube, thin, "1.00 mm", 8.0 - 0.25 - 0.0005),
         (ball, thin, "1.00 mm", 8.0 - 0.25 - 0.0005),

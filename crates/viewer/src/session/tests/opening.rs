@@ -1,4 +1,4 @@
-//! The view on a scene just opened, and places for what is added.
+//! The view of a scene just opened, and the places of added bodies.
 
 use super::*;
 use crate::session::Leaving;
@@ -16,7 +16,7 @@ fn looking_ahead_is_a_job_that_ends_in_time_and_shows_more() {
     let before = session.camera;
     let outlook = session.outlook().expect("gravity acts");
     assert!(session.outlook().is_none(), "once");
-    // A step costs more than all the time there is.
+    // A step takes longer than the whole budget.
     let seen = outlook.run(slow(Duration::from_secs(2)));
     session.accept_outlook(&seen);
     assert_ne!(session.camera, before);

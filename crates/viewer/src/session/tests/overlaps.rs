@@ -1,8 +1,8 @@
-//! Bodies that are set up in each other.
+//! Bodies that are set up in overlap.
 
 use super::*;
 
-/// A ball in a floor, a second one in it, and one elsewhere.
+/// A ball that overlaps a floor, a second ball that overlaps the first, and one apart from them.
 fn session() -> Session {
     let text = "rate = 60
         [[body]]
@@ -38,7 +38,7 @@ fn told(session: &mut Session) -> Vec<((usize, usize), f64)> {
 fn overlaps_are_told_and_marked_as_they_are_now() {
     let mut session = session();
     assert_eq!(told(&mut session), [((0, 1), 0.25), ((1, 2), 0.25)]);
-    // Boxes around both balls, and nothing around the floor.
+    // Boxes around the two balls, and none around the floor.
     assert_eq!(session.picture().marks.len(), 24);
     session.select(Some(2));
     session.set_position(DVec3::new(0.0, 1.125, 0.0));
@@ -71,7 +71,7 @@ fn separating_changes_the_set_up_and_later_only_the_world() {
         .last()
         .map(|notice| notice.text.clone());
     assert_eq!(notice.as_deref(), Some("Moved 2 bodies out of each other."));
-    // And from where they were put, while physics is held still.
+    // The same for positions set while physics is paused.
     session.select(Some(2));
     session.set_position(DVec3::new(0.0, 1.25, 0.0));
     session.step_once();

@@ -1,8 +1,8 @@
-//! Going back, going on, slow motion.
+//! Going back, continuing, and slow motion.
 
 use super::*;
 
-/// A session that has run for so many frames of a step each.
+/// A session that has run for so many frames of one step each.
 fn run(frames: usize) -> Session {
     let mut session = session();
     session.start();

@@ -1,4 +1,4 @@
-//! Runs recorded and run again.
+//! Recorded runs and their replays.
 
 use super::*;
 use crate::session::{Record, verify};
@@ -8,7 +8,7 @@ use sim_core::Force;
 fn eventful() -> Session {
     let mut session = session();
     session.select(Some(0));
-    // In the layout already, which is part of the scene.
+    // In the layout state, where it is part of the scene.
     session.set_velocity(DVec3::new(3.0, 0.1, 0.0));
     session.start();
     let go_on = |session: &mut Session| {
@@ -99,7 +99,7 @@ fn a_divergence_is_told_at_its_step() {
     assert_eq!(divergence.step, 17);
     let text = complaint(&mut session, "replay").expect("it is told");
     assert!(text.contains("step 17"), "{text}");
-    // An edit makes it a run of its own.
+    // An edit turns the replay into a run of its own.
     session.select(Some(0));
     session.set_velocity(DVec3::Y);
     assert!(session.replay().is_none());

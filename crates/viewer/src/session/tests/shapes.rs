@@ -3,8 +3,8 @@
 use super::*;
 use crate::session::Contest;
 
-/// A ball of radius 0.5 m at rest at the origin, a ball that comes at it along x with 2 m/s, and a
-/// floor 1 m below.
+/// A ball of radius 0.5 m at rest at the origin, a ball that moves towards it along x with 2 m/s, and a floor 1 m
+/// below.
 fn balls() -> Session {
     let text = "rate = 60
         collision = 'bvh'
@@ -159,8 +159,7 @@ fn energy_and_momentum_are_judged_by_what_was_hit() {
     let drift = session.drift();
     assert_eq!(drift.momentum, None, "a floor is there");
     assert!(drift.dissipates);
-    // Half of the speed along the normal is left: 3/4 of the energy of the relative motion, which
-    // is half of it all, has gone.
+    // Half of the approach speed remains, so 3/4 of the energy of the relative motion is lost, and that is half of all.
     let change = drift.relative_energy.expect("a number");
     assert!((change + 0.375).abs() < 1e-12, "{change}");
 }
@@ -222,7 +221,7 @@ fn friction_is_edited_and_kept_as_restitution_is() {
     session.set_friction(f64::INFINITY);
     assert_eq!(complaint(&mut session, "friction"), None);
     session.set_friction(0.3);
-    // Made anew, of another shape and with a copy of it.
+    // The world is made again, with another shape and a copy of the body.
     session.set_shape(scene::SceneShape::Sphere { radius: 0.25 });
     session.duplicate_selected();
     let friction = |session: &Session| [0, 1, 2, 3].map(|i| session.world().friction(i));
@@ -249,6 +248,6 @@ fn shapes_are_added_where_nothing_is() {
     assert_eq!(session.world().len(), 7);
     assert_eq!(session.selected().map(|b| b.name.as_str()), Some("floor 4"));
     let pairs = session.world().overlapping();
-    // The sphere is larger than the old floor is deep.
+    // The sphere extends deeper than the old floor.
     assert_eq!(pairs, [(0, 3)]);
 }

@@ -1,10 +1,10 @@
-//! Bodies that turn: drawn as they are, kept, edited and run again.
+//! Turning bodies: drawn as they are, kept, edited and replayed.
 
 use super::*;
 use crate::session::{Record, verify};
 use sim_core::DQuat;
 
-/// A flat box about its middle axis, and a cow beside it whose origin is not its centre of mass.
+/// A flat box that spins about its intermediate axis, and beside it a cow whose origin is not its centre of mass.
 fn turning() -> Session {
     let text = "rate = 60
         [[body]]
@@ -57,12 +57,12 @@ fn bodies_are_drawn_as_they_are_turned_and_states_keep_it() {
         near(model.position, place);
         assert!(model.rotation.angle_between(rotation) < 1e-7);
     }
-    // The box around it is that of its corners as they are turned.
+    // Its box is the bounding box of its rotated corners.
     let bounds = session.bounds(0);
     let mesh = session.world().mesh(0).expect("a mesh").clone();
     let corners = mesh.vertices().iter().map(|v| now[0].1 * v.as_dvec3());
     near(corners.fold(DVec3::ZERO, DVec3::max), bounds.half);
-    // A ray meets the turned surface: along the long axis, just inside its end.
+    // A ray meets the rotated surface: along the long axis, just inside its end.
     let end = now[0].0 + now[0].1 * DVec3::new(0.499, 0.0, 0.0);
     let hit = session.hit(end + 9.0 * DVec3::Z, DVec3::NEG_Z);
     assert_eq!(hit.map(|(_, i)| i), Some(0));
@@ -128,7 +128,7 @@ fn discrete_modes_turn_too() {
     assert!(session.world().rotation(0).angle_between(DQuat::IDENTITY) > 0.1);
 }
 
-/// Two cubes, one of them spinning, that meet off centre, and one that falls on a corner.
+/// Two cubes, one of them spinning, that collide off centre, and a cube that falls on a corner.
 fn meeting() -> Session {
     let text = "rate = 7
         [[body]]
@@ -175,7 +175,7 @@ fn bodies_are_drawn_as_they_are_turned_when_they_touch() {
         let same = |impact: &&sim_core::Impact| (impact.time - seen).abs() < 1e-9;
         let impact = kept.impacts.iter().find(same).expect("one then").clone();
         let picture = session.picture();
-        // The corners of a cube as it is drawn, from the plane of what it hits.
+        // The distances of a cube's corners, as drawn, from the plane of the contact.
         let corners = |body: usize| {
             let model = &picture.models[body];
             let corners = model.mesh.vertices().iter();
@@ -197,13 +197,13 @@ fn bodies_are_drawn_as_they_are_turned_when_they_touch() {
             assert!(is_corner, "{parts:?}");
         } else {
             of_cubes += 1;
-            // An edge has met the middle of a face, on which the impulse stands.
+            // An edge has met the middle of a face, whose normal is the direction of the impulse.
             assert!(
                 (impact.normal - DVec3::X).length() < 1e-9,
                 "{}",
                 impact.normal
             );
-            // Both reach the plane of the contact, and none goes beyond.
+            // Both reach the plane of the contact, and neither crosses it.
             let (first, second) = (reach(i, impact.normal), -reach(j, -impact.normal));
             assert!((first - plane).abs() < 1e-6, "{first} of {plane}");
             assert!((second - plane).abs() < 1e-6, "{second} of {plane}");
@@ -245,7 +245,7 @@ fn arrows_show_how_bodies_turn_to_a_scale_that_is_told() {
             ("angular momentum", "1 m: 1 kg m²/s".to_owned()),
         ]
     );
-    // In flight the angular momentum stays where it is, however the box flips, and the other does not.
+    // In flight the angular momentum stays constant while the box flips, and the angular velocity does not.
     session.start();
     let mut most: f64 = 0.0;
     for _ in 0..600 {
@@ -262,7 +262,7 @@ fn arrows_show_how_bodies_turn_to_a_scale_that_is_told() {
     assert!(session.picture().arrows.is_empty() && session.scales().is_empty());
     session.select(Some(0));
     assert_eq!(session.picture().arrows.len(), 2, "of the selected body");
-    // Of a crowd they are asked for.
+    // In a crowd, arrows are shown only on request.
     assert!(gallery("cubes-turning").picture().arrows.is_empty());
 }
 

@@ -1,11 +1,11 @@
-//! Variants beside the run.
+//! Variants of the run.
 
 use sim_core::Settings;
 
 use super::*;
 use crate::session::{PRESETS, Variant};
 
-/// Lets variants come up with the run.
+/// Steps the variants to the time of the run.
 fn catch_up(session: &mut Session) {
     while let Some(job) = session.variants_due() {
         session.accept_variants(job.run(free()));
@@ -26,7 +26,7 @@ fn five_hertz() -> Session {
     Session::new(Scene::load("five-hertz").expect("in the gallery")).expect("a world")
 }
 
-/// Where a variant's first body was at the end, along x.
+/// The final x coordinate of a variant's first body.
 fn landing(variant: &Variant) -> f64 {
     variant.last_places()[0].x
 }
@@ -36,7 +36,7 @@ fn the_four_methods_of_the_course_land_where_they_should() {
     let mut session = five_hertz();
     let own = *session.world().settings();
     session.compare_with((PRESETS[0].settings)(&own));
-    // The run itself is forward Euler.
+    // The run itself uses forward Euler.
     assert_eq!(
         session.variants().iter().len(),
         4,
@@ -54,7 +54,7 @@ fn the_four_methods_of_the_course_land_where_they_should() {
             "Exact"
         ]
     );
-    // All are at x = 4 after 4 s; it is the height that tells where they land.
+    // All are at x = 4 m after 4 s; only their heights differ.
     let errors: Vec<f64> = session
         .variants()
         .iter()

@@ -1,4 +1,4 @@
-//! Following, the way home, and what is out of view.
+//! Following, the home view, and bodies out of view.
 
 use super::*;
 
@@ -46,7 +46,7 @@ fn a_body_hides_what_is_behind_it_and_nothing_else() {
     let mut session = session();
     for parallel in [false, true] {
         session.camera.parallel = parallel;
-        // The target is a cube of 1 m about the origin.
+        // The target is a cube of edge 1 m at the origin.
         let forward = session.camera.forward();
         for (point, hidden) in [
             (2.0 * forward, true),

@@ -1,8 +1,8 @@
-//! Variants of one scene, run beside it: other methods, steps and ways to collide, and the exact
-//! solution where it is known.
+//! Variants of a scene that run along with it: other methods, steps and collision modes, and the exact solution if it
+//! is known.
 //!
-//! They begin where the run's record begins, and follow its time on a thread of their own: the session
-//! hands out a piece of work ([`VariantJob`]) and takes in what came of it.
+//! They begin at the start of the run's record and follow its time on a thread of their own: the session hands out a
+//! job ([`VariantJob`]) and accepts its result.
 
 mod presets;
 mod runner;
@@ -23,12 +23,12 @@ use crate::picture::{Ghost, Line};
 
 /// The most variants beside the run.
 pub const MOST_VARIANTS: usize = 12;
-/// Bodies up to which the paths of variants are drawn, and the states that these go back.
+/// The most bodies for which the paths of variants are drawn, and the number of states in a path.
 const MOST_PATHS: usize = 20;
 const LONGEST_PATH: usize = 1200;
-/// Distance below which two places look the same, in half sizes of the body.
+/// The distance below which two positions look equal, in half sizes of the body.
 const SAME: f64 = 2e-3;
-/// Colours that are far from each other and from the light background, sRGB.
+/// Colours that differ clearly from each other and from the light background, sRGB.
 const COLOURS: [[f32; 3]; MOST_VARIANTS] = [
     [0.84, 0.37, 0.00],
     [0.00, 0.45, 0.70],
@@ -43,26 +43,26 @@ const COLOURS: [[f32; 3]; MOST_VARIANTS] = [
     [0.95, 0.45, 0.50],
     [0.35, 0.40, 0.10],
 ];
-/// The exact solution.
+/// The colour of the exact solution.
 const EXACT: [f32; 3] = [0.05, 0.62, 0.35];
 
-/// A way to run the scene, and what came of it.
+/// A way to run the scene, and its results.
 #[derive(Debug)]
 pub struct Variant {
-    /// How it steps; none for the exact solution.
+    /// Its settings; `None` for the exact solution.
     pub settings: Option<Settings>,
     /// Its colour in the picture and in the plots, sRGB.
     pub colour: [f32; 3],
-    /// Why it goes no farther, if it does not.
+    /// The reason why it has stopped, if it has.
     pub failure: Option<String>,
-    /// What has drifted since the start.
+    /// The drift since the start.
     pub drift: Option<Drift>,
     /// Real time of all its steps, s, and their number.
     pub cost: (f64, u64),
-    /// The largest error of the path so far, m.
+    /// The largest error of a position so far, m.
     pub worst: Option<f64>,
     record: VecDeque<Snapshot>,
-    /// Away while steps are being taken.
+    /// `None` while a job has it.
     runner: Option<Runner>,
 }
 
@@ -71,11 +71,11 @@ pub struct Variant {
 pub struct Variants {
     list: Vec<Variant>,
     under_way: bool,
-    /// Counts what makes results of earlier jobs outdated.
+    /// The number of changes that make results of earlier jobs obsolete.
     pub(super) edition: u64,
 }
 
-/// Variants that are to come up to a time.
+/// A job: variants that must reach a time.
 #[derive(Debug)]
 pub struct VariantJob {
     runners: Vec<(usize, Runner)>,
@@ -83,7 +83,7 @@ pub struct VariantJob {
     edition: u64,
 }
 
-/// What came of it.
+/// Its result.
 #[derive(Debug)]
 pub struct VariantsDone {
     runs: Vec<(usize, Runner, Vec<Snapshot>, Option<Halt>)>,
@@ -91,8 +91,8 @@ pub struct VariantsDone {
 }
 
 impl VariantJob {
-    /// Lets whoever is farthest behind take steps, for as long as one frame's steps may take.
-    /// `stopwatch` reads real time.
+    /// Repeatedly steps the variant that is farthest behind, for at most the time of one frame's steps. `stopwatch`
+    /// reads real time.
     pub fn run(self, stopwatch: impl Fn() -> Duration) -> VariantsDone {
         let began = stopwatch();
         let mut runs: Vec<_> = self
@@ -143,18 +143,18 @@ impl Variant {
         Some(variant)
     }
 
-    /// Notes the state that it begins in.
+    /// Records its initial state.
     fn begin(&mut self) {
         let first = self.runner.as_mut().map(|runner| runner.snapshot(None, 0));
         self.record.extend(first);
     }
 
-    /// The states kept, the oldest first.
+    /// The recorded states, the oldest first.
     pub fn record(&self) -> impl ExactSizeIterator<Item = &Snapshot> {
         self.record.iter()
     }
 
-    /// Where its bodies were in each state kept, m.
+    /// The positions of its bodies in each recorded state, m.
     #[cfg(test)]
     pub(super) fn last_places(&self) -> &[DVec3] {
         self.record.back().map_or(&[], |last| &last.places)
@@ -165,7 +165,7 @@ impl Variant {
         self.record.back().map_or(0.0, |last| last.sample.time)
     }
 
-    /// Real time for a simulated second, s, once it is known.
+    /// Real time per simulated second, s, once it is known.
     pub fn load(&self) -> Option<f64> {
         let (seconds, steps) = self.cost;
         let dt = self.settings?.dt;
@@ -189,8 +189,8 @@ impl Variant {
         self.record.drain(..beyond);
     }
 
-    /// Where its bodies were at a time, s, and how they were turned, if any turns: between the states
-    /// before and after; where it is now if it has not come so far.
+    /// The positions of its bodies at a time, s, and their rotations if any is a turning body: interpolated between the
+    /// states before and after. If it has not come so far, the present ones.
     fn poses(&self, time: f64) -> Option<(Vec<DVec3>, Vec<DQuat>)> {
         let whole = |s: &Snapshot| (s.places.to_vec(), s.rotations.to_vec());
         let after = self.record.partition_point(|s| s.sample.time < time);
@@ -213,17 +213,17 @@ impl Variant {
 }
 
 impl Variants {
-    /// All of them, the exact solution last.
+    /// All variants, the exact solution last.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &Variant> {
         self.list.iter()
     }
 
-    /// Whether there are none.
+    /// Whether there are no variants.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Begins each anew from the present state of a world.
+    /// Restarts every variant from the present state of a world.
     pub(super) fn begin(&mut self, world: &World) {
         self.disown();
         let settings: Vec<Settings> = self.list.iter().filter_map(|v| v.settings).collect();
@@ -242,7 +242,7 @@ impl Variants {
         self.under_way = false;
     }
 
-    /// Whether one has still to come up to a time, s.
+    /// Whether a variant has not reached a time, s.
     fn is_behind(&self, time: f64) -> bool {
         let behind = |v: &Variant| v.failure.is_none() && v.time() < time;
         self.list.iter().any(behind)
@@ -250,13 +250,13 @@ impl Variants {
 }
 
 impl Session {
-    /// The variants that are run beside the scene.
+    /// The variants of the run.
     pub fn variants(&self) -> &Variants {
         &self.variants
     }
 
-    /// Runs the scene in these ways beside it, from where its record begins, and no others; equal ones
-    /// and those that are the run's own only once.
+    /// Runs exactly these variants along with the scene, from the start of its record. Duplicates, and the settings of
+    /// the run itself, are left out.
     pub fn compare_with(&mut self, settings: impl IntoIterator<Item = Settings>) {
         let mut kept: Vec<Settings> = Vec::new();
         for settings in settings {
@@ -281,12 +281,12 @@ impl Session {
         }
     }
 
-    /// Ways to run the scene that are compared now, besides its own.
+    /// The settings compared now, without the run's own.
     pub fn compared(&self) -> Vec<Settings> {
         self.variants.iter().filter_map(|v| v.settings).collect()
     }
 
-    /// The steps that variants lack, if they lack any.
+    /// The job that variants need, if any.
     pub fn variants_due(&mut self) -> Option<VariantJob> {
         let until = self.world.time();
         if self.variants.under_way || !self.variants.is_behind(until) {
@@ -303,7 +303,7 @@ impl Session {
         })
     }
 
-    /// Takes in what came of it; of variants that have begun anew since, nothing.
+    /// Accepts the result of a job; variants restarted since are not changed.
     pub fn accept_variants(&mut self, done: VariantsDone) {
         if done.edition != self.variants.edition {
             return;
@@ -325,18 +325,18 @@ impl Session {
         }
     }
 
-    /// Gives up the steps under way, and all variants.
+    /// Discards the steps under way and all variants.
     pub fn drop_variants(&mut self) {
         self.variants.disown();
         self.variants.list.clear();
     }
 
-    /// Whether variants have not come up with the run.
+    /// Whether variants are behind the run.
     pub fn awaits_variants(&self) -> bool {
         self.variants.under_way || self.variants.is_behind(self.world.time())
     }
 
-    /// Short names of the run and of the variants: what sets them apart.
+    /// Short names of the run and of the variants: only the settings in which they differ.
     pub fn variant_names(&self) -> (String, Vec<String>) {
         let own = *self.world.settings();
         let all: Vec<Settings> = std::iter::once(own).chain(self.compared()).collect();
@@ -354,7 +354,7 @@ impl Session {
         (name(&own, parts), names.collect())
     }
 
-    /// The bodies of each variant, see-through and in its colour, and the paths that they came.
+    /// Draws the bodies of each variant, translucent and in its colour, and their paths.
     pub(super) fn add_ghosts(&mut self, ghosts: &mut Vec<Ghost>, lines: &mut Vec<Line>) {
         let time = self.shown_time();
         let moves: Vec<bool> = (0..self.world.len()).map(|i| !self.is_static(i)).collect();
@@ -369,7 +369,7 @@ impl Session {
                 continue;
             }
             for (i, place) in places.iter().enumerate().filter(|&(i, _)| moves[i]) {
-                // One that cannot be told from the body, or from another ghost, would only tint it.
+                // A ghost that coincides with the body or with another ghost would only tint it.
                 let same = SAME * self.bounds(i).half.max_element();
                 let rotation = rotations.get(i).copied().unwrap_or_default();
                 let known = [(self.shown_position(i), self.shown_rotation(i))];
@@ -421,7 +421,7 @@ impl Session {
     }
 }
 
-/// Which parts of the settings a name tells.
+/// The parts of the settings that a name contains.
 #[derive(Clone, Copy)]
 struct Parts {
     method: bool,
@@ -448,7 +448,7 @@ fn name(settings: &Settings, parts: Parts) -> String {
     words.join(", ")
 }
 
-/// The full name of settings for tables: method, rate, way to collide.
+/// The full name of settings for tables: method, rate, collision mode.
 pub fn full_name(settings: &Settings) -> String {
     let collision = match settings.collision {
         Collision::Naive => "naive",
@@ -463,7 +463,7 @@ pub fn full_name(settings: &Settings) -> String {
     text
 }
 
-/// Steps per simulated second, in as many digits as set it apart.
+/// Steps per simulated second, with as many digits as identify it.
 fn rate_text(dt: f64) -> String {
     let rate = 1.0 / dt;
     let digits = 10_f64.powf(5.0 - rate.log10().floor());

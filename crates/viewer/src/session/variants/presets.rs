@@ -1,20 +1,20 @@
-//! Comparisons worth making, by name.
+//! Predefined comparisons.
 
 use sim_core::{Collision, METHODS, Settings};
 
 use crate::session::{MAX_RATE, MIN_RATE};
 
-/// A comparison that is set up at once.
+/// A predefined comparison.
 pub struct Preset {
-    /// What is compared.
+    /// Its name.
     pub title: &'static str,
     /// What it shows.
     pub meaning: &'static str,
-    /// The settings to run beside those of the scene.
+    /// The settings to run in addition to those of the scene.
     pub settings: fn(&Settings) -> Vec<Settings>,
 }
 
-/// All of them.
+/// All predefined comparisons.
 pub static PRESETS: [Preset; 3] = [
     Preset {
         title: "The four methods of the course",

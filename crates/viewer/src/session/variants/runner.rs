@@ -1,4 +1,4 @@
-//! One variant on its way: a world of its own, or the exact solution, and what is noted of it.
+//! Runs one variant: a world of its own, or the exact solution. Records its states.
 
 use std::time::Duration;
 
@@ -9,20 +9,20 @@ use crate::session::figures::{Drift, Reference};
 use crate::session::sample::Sample;
 use crate::stopwatch::nanoseconds;
 
-/// The exact solution is noted at least this often in a simulated second, so that it looks smooth.
+/// The least number of recorded states of the exact solution per simulated second, so that its path looks smooth.
 const EXACT_RATE: f64 = 60.0;
 
-/// A state of a variant: its figures, and where its bodies' origins are, m.
+/// A state of a variant: its figures, and the positions of its bodies' origins, m.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     /// The figures.
     pub sample: Sample,
     pub(super) places: Box<[DVec3]>,
-    /// How they are turned; empty where none turns.
+    /// The rotations of the bodies; empty if there are no turning bodies.
     pub(super) rotations: Box<[DQuat]>,
 }
 
-/// What goes from state to state.
+/// The source of the states.
 #[derive(Clone, Debug)]
 pub struct Runner {
     world: World,
@@ -35,8 +35,7 @@ pub struct Runner {
 #[derive(Clone, Debug)]
 enum Course {
     Steps,
-    /// The exact solution: when it began, s, how many states have been noted, and how far they are
-    /// apart, s.
+    /// The exact solution: its start, s, the number of recorded states, and the time between two of them, s.
     Exact {
         start: f64,
         noted: u64,
@@ -44,17 +43,17 @@ enum Course {
     },
 }
 
-/// Why a variant goes no farther.
+/// The reason why a variant stops.
 #[derive(Debug)]
 pub enum Halt {
     /// A step failed.
     Step(StepError),
-    /// The exact solution is not known from here on.
+    /// The exact solution is not known after this time.
     Unknown,
 }
 
 impl Runner {
-    /// One that steps from the present state of `world` in another way.
+    /// A variant that steps from the present state of `world` with other settings.
     pub fn stepping(world: &World, settings: Settings) -> Result<Self, WorldError> {
         let mut own = world.clone();
         own.set_settings(settings)?;
@@ -67,7 +66,7 @@ impl Runner {
         })
     }
 
-    /// Times steps by phase, too.
+    /// Also times steps by phase.
     pub fn profiled(self) -> Self {
         Self {
             profiled: true,
@@ -106,17 +105,17 @@ impl Runner {
         }
     }
 
-    /// The world that it steps, or that stands for the exact solution.
+    /// The world that it steps, or the world that represents the exact solution.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// What has drifted since the start.
+    /// The drift since the start.
     pub fn drift(&self) -> Drift {
         self.reference.drift(&self.world)
     }
 
-    /// The state that it is in, reached by a step of so long, s, with so many impacts.
+    /// The present state, reached by a step that took `cost`, s, with so many impacts.
     pub fn snapshot(&mut self, cost: Option<f64>, impacts: u64) -> Snapshot {
         let error = match self.course {
             Course::Steps => self.exact.error(&self.world),
@@ -135,7 +134,7 @@ impl Runner {
         }
     }
 
-    /// Goes on to the next state.
+    /// Advances to the next state.
     pub fn step(&mut self, stopwatch: &impl Fn() -> Duration) -> Result<Snapshot, Halt> {
         let Course::Exact {
             start,
@@ -173,7 +172,7 @@ impl Runner {
     }
 }
 
-/// How the bodies of a world are turned; empty where none turns.
+/// The rotations of the bodies of a world; empty if there are no turning bodies.
 fn rotations(world: &World) -> Box<[DQuat]> {
     let bodies = 0..world.len();
     match bodies.clone().any(|i| world.turns(i)) {

@@ -1,4 +1,4 @@
-//! What is drawn.
+//! The display settings.
 
 #[rustfmt::skip]
 pub(super) const TEXTS: &[(&str, &str)] = &[

@@ -1,4 +1,4 @@
-//! Figures, the line of time, and plots.
+//! Figures, the timeline, and plots.
 
 #[rustfmt::skip]
 pub(super) const TEXTS: &[(&str, &str)] = &[
@@ -97,7 +97,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("Separate", "分开"),
     ("Move all that overlap out of each other, by the least that does it, heavy bodies less. In the layout that changes the set-up.", "把重叠的物体移开，移动尽量少，重的移得更少。在布置状态会改变设定。"),
 
-    // The line of time.
+    // The timeline.
     ("Go one step back (left arrow or ,)", "后退一步 (左箭头或 ,)"),
     ("No earlier state is kept", "没有保留更早的状态"),
     ("Go five steps ahead and hold there (page down)", "前进五步并停住 (Page Down)"),

@@ -1,9 +1,9 @@
-//! Why a scene file or a mesh file is refused. Names of fields, elements and key words stay as files have them;
-//! what the readers of TOML and XML and the system say of their own accord stays as it is, but for the commonest.
+//! The reasons why a scene file or a mesh file is refused. Names of fields, elements and keywords stay as in files.
+//! Messages of the TOML and XML parsers and of the system are not translated, except for the most common ones.
 
 #[rustfmt::skip]
 pub(super) const TEXTS: &[(&str, &str)] = &[
-    // Where it is.
+    // The place of the error.
     ("{}.toml{}: {}", "{0}.toml{1}：{2!}"),
     ("{}.obj{}: {}", "{0}.obj{1}：{2!}"),
     ("{}.dae{}: {}", "{0}.dae{1}：{2!}"),
@@ -57,7 +57,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("the mesh has {} elements: at most 1,000,000,000 triangles and as many vertices", "网格有 {0} 个元素：最多 1,000,000,000 个三角形和同样多的顶点"),
     ("the rotation is not a unit quaternion", "旋转不是单位四元数"),
 
-    // What stands above the bodies.
+    // The tables and the fields above the bodies.
     ("must be an array of tables: start each {} with a line `[[{}]]`", "必须是表的数组：请以一行 `[[{1}]]` 开始每个 {0}"),
     ("the step has a rate as well: give either `rate` (Hz) or `dt` (s)", "步长也由频率给出：请只给出 `rate` (Hz) 或 `dt` (s)"),
     ("the step is missing: give either `rate = 60` (Hz) or `dt = 0.2` (s) above the bodies", "缺少步长：请在物体之前给出 `rate = 60` (Hz) 或 `dt = 0.2` (s)"),

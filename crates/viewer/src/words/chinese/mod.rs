@@ -1,5 +1,5 @@
-//! The texts of the window in Chinese. `{}` stands for a part that differs; on the right it is `{0}`, or
-//! `{0!}` where it is a text of this table itself.
+//! The texts of the window in Chinese. `{}` stands for a variable part; in the translation it is `{0}`, or `{0!}` if
+//! the part is itself a text of this table.
 
 mod display;
 mod figures;

@@ -1,8 +1,8 @@
-//! How to simulate, what to compare, and what acts on bodies.
+//! The simulation, comparisons, bodies and forces.
 
 #[rustfmt::skip]
 pub(super) const TEXTS: &[(&str, &str)] = &[
-    // How to simulate.
+    // The simulation.
     ("Integrator", "积分方法"),
     ("How velocities and positions go from step to step", "速度和位置怎样从一步到下一步"),
     ("Rate", "频率"),
@@ -49,7 +49,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("explicit Runge-Kutta of order 5; the difference to order 4 is the error that the step is chosen by", "五阶显式龙格-库塔；与四阶之差作为误差来选择步长"),
     ("explicit Runge-Kutta of order 8; differences to orders 5 and 3 are the error that the step is chosen by", "八阶显式龙格-库塔；与五阶和三阶之差作为误差来选择步长"),
 
-    // Comparing.
+    // Comparisons.
     ("Compare…", "比较…"),
     ("The four methods of the course", "课程的四种方法"),
     ("Forward, backward and symplectic Euler and RK4, at this rate", "前向、后向、辛欧拉和 RK4，用当前频率"),

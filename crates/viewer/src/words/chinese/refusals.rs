@@ -1,4 +1,4 @@
-//! What the library refuses, and why a step fails.
+//! Refusals of the library, and reasons for failed steps.
 
 #[rustfmt::skip]
 pub(super) const TEXTS: &[(&str, &str)] = &[
@@ -51,7 +51,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("spin", "角速度"),
     ("torque", "力矩"),
 
-    // What cannot turn.
+    // Bodies that cannot rotate.
     ("body {} cannot turn: {}", "物体 {0} 不能转动：{1!}"),
     ("the mesh is open: close it, or give its inertia", "网格不封闭：请封闭它，或给出转动惯量"),
     ("triangles of the mesh are wound both ways: make them one, or give its inertia", "网格的三角形朝向不一：请统一朝向，或给出转动惯量"),
@@ -96,7 +96,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("body {} is too fast for its size to be followed under {}: the step would cost thousands of steps without impacts; lower dt, the force or the velocity",
      "物体 {0} 相对于它的大小太快，在 {1!} 下无法跟踪：这一步的耗费相当于数千个没有碰撞的步；请减小 dt、力或速度"),
 
-    // What cannot be moved apart.
+    // Bodies that cannot be moved apart.
     ("`{}` does not fit between the half-spaces {}: make it smaller, or move one of them", "`{0}` 放不进半空间 {1} 之间：请把它缩小，或移动其中一个"),
     ("no place was found for `{}`, which overlaps {}: move it, or one of them", "没有为 `{0}` 找到位置，它与 {1} 重叠：请移动它或其中一个"),
 ];

@@ -1,4 +1,4 @@
-//! The bar, files, what finds things, and keys.
+//! The bar, files, searches, and keys.
 
 #[rustfmt::skip]
 pub(super) const TEXTS: &[(&str, &str)] = &[
