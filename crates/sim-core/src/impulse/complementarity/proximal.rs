@@ -16,6 +16,7 @@
 //! slower, nor do masses up to about 1 : 10^6.
 
 use alloc::{vec, vec::Vec};
+use core::mem;
 use glam::{DMat3, DVec3};
 
 use super::{
@@ -300,7 +301,6 @@ impl Newton<'_> {
     /// Takes a step of the proximal point method from impulses whose residuals are computed. Returns whether Newton's
     /// method has converged.
     fn step(&mut self, problem: &Problem, given: &mut [f64]) -> bool {
-        let count = given.len();
         self.change.fill(DVec3::ZERO);
         self.opened.fill(0.0);
         // At first the contacts that push now, and those that close.
@@ -313,13 +313,7 @@ impl Newton<'_> {
                 self.factor(problem);
             }
             self.find_way(problem, given);
-            let mut is_same = true;
-            for k in 0..count {
-                let more = self.more(problem, k, self.opened[k] + self.opens[k]);
-                let pushes = problem.is_held(k) || given[k] + more > 0.0;
-                is_same &= self.pushes[k] == pushes;
-                self.pushes[k] = pushes;
-            }
+            let is_same = self.mark(problem, given, 1.0);
             let length = match is_same || step < FULL_STEPS {
                 true => 1.0,
                 false => self.least_along(problem, given),
@@ -335,16 +329,24 @@ impl Newton<'_> {
                 break;
             }
             if length != 1.0 {
-                for k in 0..count {
-                    let more = self.more(problem, k, self.opened[k]);
-                    self.pushes[k] = problem.is_held(k) || given[k] + more > 0.0;
-                }
+                self.mark(problem, given, 0.0);
             }
         }
         for (k, given) in given.iter_mut().enumerate() {
             *given = problem.allowed(k, *given + self.more(problem, k, self.opened[k]));
         }
         is_found
+    }
+
+    /// Marks the contacts that push after a part of the Newton step. Returns whether they are the same as before.
+    fn mark(&mut self, problem: &Problem, given: &[f64], part: f64) -> bool {
+        let mut is_same = true;
+        for (k, &given) in given.iter().enumerate() {
+            let more = self.more(problem, k, self.opened[k] + part * self.opens[k]);
+            let pushes = problem.is_held(k) || given + more > 0.0;
+            is_same &= mem::replace(&mut self.pushes[k], pushes) == pushes;
+        }
+        is_same
     }
 
     /// Computes the Newton step for the pushing contacts, and the opening speeds that contacts gain along it.
