@@ -79,6 +79,41 @@ fn what_dips_into_a_tip_within_a_step_hits_it() {
     }
 }
 
+/// A cube on its way up first turns back from a fin beside it, at a distance of 1e-15 m, which is none to certificates,
+/// and then dips into the tip above it.
+#[test]
+fn what_passes_a_fin_and_dips_into_a_tip_hits_the_tip() {
+    let Shape::Mesh(one) = tip() else {
+        unreachable!("the tip is a mesh");
+    };
+    let fin = [[0.5, -0.5, 0.0], [1.5, -0.5, 0.2], [1.5, -0.5, -0.2]];
+    let vertices = one.vertices().iter().copied();
+    let vertices = vertices.chain(fin.map(Vec3::from));
+    let triangles = one.triangles().iter().copied().chain([[4, 5, 6]]);
+    let both = mesh(vertices.collect(), triangles.collect());
+    let mut random = Random::splitmix(9);
+    for case in 0..50_u32 {
+        let depth = 10_f64.powf(random.from(-9.0, -5.0));
+        let highest = random.from(0.055, 0.08);
+        let (up, nearest) = (GRAVITY * highest, 0.02);
+        let aside = GRAVITY * nearest;
+        let below = 0.5 + 0.5 * up * highest - depth;
+        let start = DVec3::new(-1e-15 - 0.5 * aside * nearest, -below, 0.0);
+        let fixed = Body {
+            kind: BodyKind::Static,
+            ..mesh_body(&both, DVec3::ZERO, DVec3::ZERO)
+        };
+        let thrown = mesh_body(&cube(0.5), start, DVec3::new(aside, up, 0.0));
+        let mut world = world_of(precise(0.1), [fixed, thrown]);
+        add_gravity(&mut world, -GRAVITY * DVec3::new(1.0, 1.0, 0.0));
+        let impacts = run(&mut world, 1);
+        assert_eq!(impacts.len(), 1, "{case}: at a depth of {depth:e}");
+        let late = impacts[0].time - (highest - (2.0 * depth / GRAVITY).sqrt());
+        let rounding = 1e-13 / (2.0 * depth * GRAVITY).sqrt() + 1e-14;
+        assert!(late.abs() < rounding, "{case}: {late:e} at {depth:e}");
+    }
+}
+
 /// The same for a varying force: a cube on a spring that reverses at the tip.
 #[test]
 fn what_a_spring_swings_into_a_tip_hits_it() {

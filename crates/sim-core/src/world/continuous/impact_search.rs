@@ -129,8 +129,8 @@ impl PairSearch<'_> {
     /// may dip into the other body between two ends of chords.
     ///
     /// Certificates give a time until which the bodies are proven apart. From there on, the first chord is so short
-    /// that it does not depart from the trajectory by more than rounding, and each further one is twice as long. One
-    /// of them ends when the bodies are in overlap.
+    /// that it does not depart from the trajectory by more than rounding, and each further one is twice as long, until
+    /// certificates prove the bodies apart again. Where the trajectory dips into the other body, a chord ends inside.
     fn find_graze(
         &self,
         found: Option<Event>,
@@ -142,21 +142,24 @@ impl PairSearch<'_> {
         if is_straight.all() || self.is_in_contact {
             return Ok(found);
         }
-        let near = self
-            .view
-            .find_certified_impact((self.i, self.j), 1.0, probe)?;
-        let Some(near) = near.filter(|near| near.time < until) else {
-            return Ok(found);
-        };
-        let mut from = (near.time, self.offset_at(near.time, probe)?);
-        let mut length = libm::sqrt(self.resolution.length() / self.deviation.length());
-        while from.0 < until {
-            let time = (from.0 + length).min(until);
-            let to = (time, self.offset_at(time, probe)?);
-            if let Some(event) = self.find_on_chord((from, to), 0, probe)? {
+        let shortest = libm::sqrt(self.resolution.length() / self.deviation.length());
+        let (pair, mut from, mut length) = ((self.i, self.j), self.start(), shortest);
+        while from < until {
+            let near = self
+                .view
+                .find_certified_impact(pair, (from, until), 1.0, probe)?;
+            let Some(near) = near.filter(|near| near.time < until) else {
+                break;
+            };
+            if near.time > from {
+                length = shortest;
+            }
+            from = (near.time + length).min(until);
+            let start = (near.time, self.offset_at(near.time, probe)?);
+            let end = (from, self.offset_at(from, probe)?);
+            if let Some(event) = self.find_on_chord((start, end), 0, probe)? {
                 return Ok(Some(event));
             }
-            from = to;
             length *= 2.0;
         }
         Ok(found)

@@ -68,22 +68,24 @@ impl View<'_> {
         // Bodies in contact at the end of the last step are in contact at the start of this one.
         let is_first = self.paths.version[i] == 0 && self.paths.version[j] == 0;
         let reach = if is_first { REACH } else { 1.0 };
-        self.find_certified_impact((i, j), reach, probe)
+        let start = self.paths.since[i].max(self.paths.since[j]);
+        let end = self.motion().horizon(i).min(self.motion().horizon(j));
+        self.find_certified_impact((i, j), (start, end), reach, probe)
     }
 
-    /// The same for any two bodies, by certificates, which prove that the bodies are apart until then. Bodies are in
-    /// contact at the start if they are no farther apart than `reach` times the distance that counts as a contact.
+    /// The next impact of any two bodies between two times, by certificates, which prove that the bodies are apart until
+    /// then. Bodies are in contact at the start if they are no farther apart than `reach` times the distance that
+    /// counts as a contact.
     pub(super) fn find_certified_impact(
         &self,
         (i, j): (usize, usize),
+        (start, end): (f64, f64),
         reach: f64,
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         if self.stands(i) && self.stands(j) {
             return Ok(None);
         }
-        let start = self.paths.since[i].max(self.paths.since[j]);
-        let end = self.motion().horizon(i).min(self.motion().horizon(j));
         let first = self.knot((i, j), start, probe)?;
         if !self.is_bent(i) && !self.is_bent(j) {
             let part = Part {
