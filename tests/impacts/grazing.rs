@@ -2,7 +2,7 @@
 //! dip into another body and out again within a step.
 
 use kit::bodies::{body, mesh_body};
-use kit::meshes::{cube, mesh};
+use kit::meshes::{builtin, cube, mesh};
 use kit::random::Random;
 use kit::worlds::{GRAVITY, add_gravity, precise, world_of};
 use sim_core::{Body, BodyKind, DVec3, Force, Method, Settings, Shape, Vec3};
@@ -25,6 +25,40 @@ fn joints_of_a_floor_stop_nothing() {
         let mut world = world(DT, &bodies);
         assert!(run(&mut world, 200).is_empty(), "height {height}");
         assert_eq!(world.velocity(4), velocity);
+    }
+}
+
+/// Bodies that fall freely beside a wall, at a distance of rounding size, meet nothing, and are not too much work.
+#[test]
+fn what_falls_beside_a_wall_falls_freely() {
+    let forms = [
+        Shape::Mesh(cube(0.5)),
+        Shape::Sphere { radius: 0.5 },
+        Shape::Mesh(builtin("cow.obj")),
+    ];
+    let wall = Body {
+        kind: BodyKind::Static,
+        ..mesh_body(&cube(20.0), DVec3::new(20.0, 0.0, 0.0), DVec3::ZERO)
+    };
+    for form in forms {
+        let widest = match &form {
+            Shape::Mesh(mesh) => f64::from(mesh.bounds().max.x),
+            _ => 0.5,
+        };
+        for ulps in [0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 1024] {
+            let gap = f64::from(ulps) * f64::EPSILON;
+            let start = DVec3::new(-widest - gap, 0.1, 0.2);
+            let beside = body(&form, start, DVec3::new(0.0, 1.0, 0.3));
+            let mut world = world_of(precise(0.1), [wall.clone(), beside]);
+            add_gravity(&mut world, -GRAVITY * DVec3::Y);
+            let impacts = run(&mut world, 3);
+            assert_eq!(impacts.len(), 0, "{ulps} ulps");
+            let fallen = 0.3 - 0.5 * GRAVITY * 0.09;
+            let at = start + DVec3::new(0.0, fallen, 0.09);
+            // Contacts keep their gap.
+            let (off, gap) = (world.position(1) - at, DVec3::new(1e-11, 1e-14, 1e-14));
+            assert!(off.abs().cmple(gap).all(), "{ulps} ulps: off by {off}");
+        }
     }
 }
 

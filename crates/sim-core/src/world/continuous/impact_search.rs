@@ -23,7 +23,11 @@
 use glam::DVec3;
 
 use super::super::{layout::RESOLUTION_ULPS, stepping::Cause};
-use super::{event::Event, trajectory::Probe, view::View};
+use super::{
+    event::{Event, EventKind},
+    trajectory::Probe,
+    view::View,
+};
 use crate::collide::{Contact, Form, Parabola, first_contact, first_on_parabola, has_roots, snap};
 
 /// The departure of a chord from its trajectory that is neglected in the first search, in largest half extents of the
@@ -131,6 +135,7 @@ impl PairSearch<'_> {
     /// Certificates give a time until which the bodies are proven apart. From there on, the first chord is so short
     /// that it does not depart from the trajectory by more than rounding, and each further one is twice as long, until
     /// certificates prove the bodies apart again. Where the trajectory dips into the other body, a chord ends inside.
+    /// If certificates take too much work, chords alone go on.
     fn find_graze(
         &self,
         found: Option<Event>,
@@ -144,18 +149,24 @@ impl PairSearch<'_> {
         }
         let shortest = libm::sqrt(self.resolution.length() / self.deviation.length());
         let (pair, mut from, mut length) = ((self.i, self.j), self.start(), shortest);
+        let mut is_certified = true;
         while from < until {
-            let near = self
-                .view
-                .find_certified_impact(pair, (from, until), 1.0, probe)?;
-            let Some(near) = near.filter(|near| near.time < until) else {
-                break;
-            };
-            if near.time > from {
+            let mut near = from;
+            if is_certified {
+                let span = (from, until);
+                let found = self.view.find_certified_impact(pair, span, 1.0, probe)?;
+                let Some(found) = found.filter(|found| found.time < until) else {
+                    break;
+                };
+                is_certified = found.kind == EventKind::Impact;
+                near = found.time;
+            }
+            // Bodies apart for less than a chord have stayed near each other.
+            if near - from > length {
                 length = shortest;
             }
-            from = (near.time + length).min(until);
-            let start = (near.time, self.offset_at(near.time, probe)?);
+            from = (near + length).min(until);
+            let start = (near, self.offset_at(near, probe)?);
             let end = (from, self.offset_at(from, probe)?);
             if let Some(event) = self.find_on_chord((start, end), 0, probe)? {
                 return Ok(Some(event));
