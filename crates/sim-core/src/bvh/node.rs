@@ -108,14 +108,19 @@ impl Node {
 
 impl Triangles {
     /// The corners of a lane's triangle.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn corners(&self, lane: usize) -> [Vec3; 3] {
-        [0, 1, 2].map(|k| self.corner(lane, k))
+        [
+            self.corner(lane, 0),
+            self.corner(lane, 1),
+            self.corner(lane, 2),
+        ]
     }
 
     /// The `k`-th corner of a lane's triangle.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn corner(&self, lane: usize, k: usize) -> Vec3 {
-        Vec3::from_array([0, 1, 2].map(|axis| self.corners[3 * k + axis][lane]))
+        let of = |axis: usize| self.corners[3 * k + axis][lane];
+        Vec3::new(of(0), of(1), of(2))
     }
 }

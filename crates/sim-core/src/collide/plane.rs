@@ -65,6 +65,18 @@ impl Cross {
         }
     }
 
+    /// A bound on the length.
+    #[inline(always)]
+    pub(super) fn length(&self) -> f64 {
+        self.size.length() * (1.0 + 8.0 * f64::EPSILON)
+    }
+
+    /// A bound on the dot product with a vector whose components are in absolute value at most those of `half`.
+    #[inline(always)]
+    pub(super) fn most(&self, half: DVec3) -> f64 {
+        (self.value.abs() + 8.0 * f64::EPSILON * self.size).dot(half)
+    }
+
     /// The dot product with a third such vector: the determinant of the three vectors as they are rounded.
     ///
     /// The bound is that of the first stage of Shewchuk's orient3d (1997, sec. 4.3),

@@ -50,14 +50,13 @@ impl View {
             true => ((k + 1) % 3, (k + 2) % 3),
             false => ((k + 2) % 3, (k + 1) % 3),
         };
-        let unit = f64::EPSILON / 2.0;
         View {
             axes: [i, j, k],
             slope: [of[i] / of[k], of[j] / of[k]],
             motion,
-            side_error: 300.0 * unit * (farthest * farthest),
-            height_error: 400.0 * unit * (farthest * farthest * farthest),
-            fall_error: 200.0 * unit * (farthest * farthest * most),
+            side_error: 150.0 * f64::EPSILON * (farthest * farthest),
+            height_error: 200.0 * f64::EPSILON * (farthest * farthest * farthest),
+            fall_error: 100.0 * f64::EPSILON * (farthest * farthest * most),
         }
     }
 
@@ -117,29 +116,33 @@ impl View {
         way: f64,
         until: f64,
     ) -> Option<Heights> {
-        let normal = (b - a).cross(c - a);
-        let [p, q, r] = others;
-        let heights = [normal.dot(p - a), normal.dot(q - a), normal.dot(r - a)];
-        let fall = normal.dot(self.motion);
-        let [h, i, j] = heights;
-        if self.stays(h.min(i).min(j), way * fall, until)
-            || self.stays(-h.max(i).max(j), -way * fall, until)
+        let (u, v) = (b - a, c - a);
+        let [p, q, r] = others.map(|other| other - a);
+        let normal = u.cross(v);
+        let [h, i, j] = [normal.dot(p), normal.dot(q), normal.dot(r)];
+        let fall = way * normal.dot(self.motion);
+        let (highest, lowest) = (h.max(i).max(j), h.min(i).min(j));
+        let (error, of_fall) = (2.0 * self.height_error, 2.0 * self.fall_error);
+        if stays(lowest - error, fall - of_fall, until)
+            || stays(-highest - error, -fall - of_fall, until)
         {
             return None;
         }
-        Some(Heights { heights, fall })
-    }
-
-    /// Whether a point at least `lowest` above a plane, whose height changes at the rate `fall`, stays above it until
-    /// a time.
-    #[inline(always)]
-    fn stays(&self, lowest: f64, fall: f64, until: f64) -> bool {
-        // Doubled for the roundings in this function.
-        let (lowest, fall) = (
-            lowest - 2.0 * self.height_error,
-            fall - 2.0 * self.fall_error,
-        );
-        lowest > 0.0 && lowest + until * fall > 0.0
+        // Bounds of these corners alone are less by far if the triangle is small.
+        let normal = Cross::of(u, v);
+        let [h, i, j] = [normal.dot(p), normal.dot(q), normal.dot(r)];
+        let fall = normal.dot(self.motion);
+        let error = 2.0 * h.error.max(i.error).max(j.error);
+        let (toward, of_fall) = (way * fall.value, 2.0 * fall.error);
+        if stays(lowest - error, toward - of_fall, until)
+            || stays(-highest - error, -toward - of_fall, until)
+        {
+            return None;
+        }
+        Some(Heights {
+            heights: [h, i, j],
+            fall,
+        })
     }
 
     /// Whether a box, given by its centre and half extents, stays on one side of a triangle's plane until a time.
@@ -152,11 +155,24 @@ impl View {
         way: f64,
         until: f64,
     ) -> bool {
-        let normal = (b - a).cross(c - a);
-        let (height, reach) = (normal.dot(centre - a), normal.abs().dot(half));
-        let fall = way * normal.dot(self.motion);
-        self.stays(height - reach, fall, until) || self.stays(-height - reach, -fall, until)
+        let normal = Cross::of(b - a, c - a);
+        let (height, fall) = (normal.dot(centre - a), normal.dot(self.motion));
+        // The placed centre and the placed vertices in the box are rounded.
+        let half = half + 2.0 * f64::EPSILON * (centre.abs() + half);
+        let reach = normal.most(half) + 2.0 * height.error;
+        let stay = |side: f64| {
+            let fall = side * way * fall.value - 2.0 * fall.error;
+            stays(side * height.value - reach, fall, until)
+        };
+        stay(1.0) || stay(-1.0)
     }
+}
+
+/// Whether a point at least `lowest` above a plane, whose height changes at the rate `fall`, stays above it until a
+/// time. Both arguments are below the true ones by twice their errors, for the roundings in this function.
+#[inline(always)]
+fn stays(lowest: f64, fall: f64, until: f64) -> bool {
+    lowest > 0.0 && lowest + until * fall > 0.0
 }
 
 /// Twice the area of a triangle; positive if it turns left.
@@ -171,9 +187,10 @@ struct Triangle {
     seen: [[f64; 2]; 3],
 }
 
+/// The heights of three corners above a plane, and the rate at which the motion changes them.
 struct Heights {
-    heights: [f64; 3],
-    fall: f64,
+    heights: [Estimate; 3],
+    fall: Estimate,
 }
 
 /// The features of a triangle in its mesh.
@@ -256,20 +273,17 @@ impl Search<'_> {
         sides: &[[i8; 3]; 3],
         way: f64,
     ) {
-        let fall = Estimate {
-            value: above.fall,
-            error: self.view.fall_error,
-        };
         for k in (0..3).filter(|&k| names.owns_vertex[k]) {
             let sides = [sides[0][k], sides[1][k], sides[2][k]];
             if sides.contains(&1) && sides.contains(&-1) {
                 continue;
             }
+            let height = above.heights[k];
             let gap = Estimate {
-                value: -way * above.heights[k],
-                error: self.view.height_error,
+                value: -way * height.value,
+                ..height
             };
-            if !self.may_be_first(gap, fall) {
+            if !self.may_be_first(gap, above.fall) {
                 continue;
             }
             let (vertex, of) = (names.vertices[k], face_names.face);
