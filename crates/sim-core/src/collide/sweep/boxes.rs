@@ -16,6 +16,8 @@ pub(super) struct Moving {
     /// The same in f32, if its range is enough.
     swift: Option<Swift>,
     level: Level,
+    /// How near boxes come that count as meeting, m.
+    margin: f64,
 }
 
 impl Moving {
@@ -25,7 +27,19 @@ impl Moving {
             motion,
             swift: Swift::new(first, second, offset, motion),
             level: Level::best(),
+            margin: 0.0,
         }
+    }
+
+    /// The same for boxes that count as wider on all sides by half of `margin`, m.
+    pub(super) fn widened(mut self, margin: f64) -> Moving {
+        self.margin = margin;
+        if let Some(swift) = &mut self.swift {
+            // Rounded up, here and in the sum.
+            let margin = (margin * 1.001) as f32;
+            swift.margin = swift.margin.map(|of| (of + margin) * 1.001);
+        }
+        self
     }
 
     /// A bit for each pair of boxes that meet no later than the horizon, and the times at which they begin to meet,
@@ -96,6 +110,7 @@ impl Moving {
             let between = a - (b + offset);
             let (near, far) = (between - reach, between + reach);
             let slack = 8.0 * f64::EPSILON * (a.abs() + b.abs() + reach + offset.abs());
+            let slack = slack + self.margin;
             let (near, far) = (near - slack, far + slack);
             let motion = self.motion[axis];
             let inverse = 1.0 / motion;

@@ -9,6 +9,7 @@ mod border;
 mod boxes;
 mod candidate;
 mod features;
+mod near;
 mod seen;
 
 use core::cmp::Ordering;
@@ -21,6 +22,8 @@ use boxes::Moving;
 use candidate::Candidate;
 pub(super) use candidate::opposing_cmp;
 use features::View;
+pub(crate) use near::Curve;
+pub(super) use near::stay_apart;
 
 /// The contacts that count.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -28,7 +28,9 @@ use super::{
     trajectory::Probe,
     view::View,
 };
-use crate::collide::{Contact, Form, Parabola, first_contact, first_on_parabola, has_roots, snap};
+use crate::collide::{
+    Contact, Curve, Form, Parabola, first_contact, first_on_parabola, has_roots, snap, stay_apart,
+};
 
 /// The departure of a chord from its trajectory that is neglected in the first search, in largest half extents of the
 /// smaller body.
@@ -56,6 +58,8 @@ struct PairSearch<'a> {
     /// The departure of a chord from the trajectory, m, divided by the square of the chord's duration, s², by
     /// component.
     deviation: DVec3,
+    /// Whether the trajectory is a parabola.
+    is_parabola: bool,
     /// The rounding of positions, m, by component.
     resolution: DVec3,
     /// Whether a contact constraint already keeps the bodies apart.
@@ -79,22 +83,26 @@ impl View<'_> {
         let Some(forms) = self.scene.bodies.forms(i, j) else {
             return Ok(None);
         };
+        let deviation = self.motion().deviation_per_time2(i, j);
         let search = PairSearch {
             view: self,
             forms,
             i,
             j,
-            deviation: self.motion().deviation_per_time2(i, j),
+            deviation,
+            is_parabola: deviation != DVec3::ZERO
+                && self.motion().coupled_group(i).is_none()
+                && self.motion().coupled_group(j).is_none(),
             resolution: self.layout().resolution_by_axis(i, j),
             is_in_contact: !self.contacts.is_empty()
                 && self.contacts.of_pair(i, j).next().is_some(),
             is_solid: has_roots(forms.0, forms.1),
         };
-        let is_parabola = search.deviation != DVec3::ZERO
-            && self.motion().coupled_group(i).is_none()
-            && self.motion().coupled_group(j).is_none();
-        match is_parabola && search.is_solid {
+        match search.is_parabola && search.is_solid {
             true => search.find_on_parabola(probe),
+            false if search.stays_apart(search.end(), search.rounding().length(), probe)? => {
+                Ok(None)
+            }
             false => {
                 let found = search.find_on_chords(probe)?;
                 search.find_graze(found, probe)
@@ -104,6 +112,38 @@ impl View<'_> {
 }
 
 impl PairSearch<'_> {
+    /// Whether a quick search proves that the bodies do not meet on their curved trajectory until a time, and that a
+    /// distance is left then, m.
+    fn stays_apart(
+        &self,
+        until: f64,
+        left: f64,
+        probe: &mut Probe,
+    ) -> Result<bool, (usize, Cause)> {
+        if !self.is_parabola || self.is_in_contact || self.is_straight_until(until) {
+            return Ok(false);
+        }
+        let (start, motion) = (self.start(), self.view.motion());
+        let length = until - start;
+        let (x1, v1) = motion.motion_at(self.i, start, probe)?;
+        let (x2, v2) = motion.motion_at(self.j, start, probe)?;
+        let bend = motion.acceleration_there(self.j) - motion.acceleration_there(self.i);
+        let curve = Curve {
+            offset: x2 - x1,
+            motion: length * (v2 - v1),
+            bend: 0.5 * length * length * bend,
+            left,
+        };
+        Ok(stay_apart(self.forms.0, self.forms.1, &curve))
+    }
+
+    /// Whether the trajectory departs from its chord until a time by no more than rounding.
+    fn is_straight_until(&self, until: f64) -> bool {
+        let length = until - self.start();
+        let departure = self.deviation * length * length;
+        departure.cmple(self.resolution).all()
+    }
+
     /// The first impact, on trajectories of any kind.
     fn find_on_chords(&self, probe: &mut Probe) -> Result<Option<Event>, (usize, Cause)> {
         let (start, end) = (self.start(), self.end());
@@ -142,9 +182,11 @@ impl PairSearch<'_> {
         probe: &mut Probe,
     ) -> Result<Option<Event>, (usize, Cause)> {
         let until = found.as_ref().map_or(self.end(), |event| event.time);
-        let length = until - self.start();
-        let is_straight = (self.deviation * length * length).cmple(self.resolution);
-        if is_straight.all() || self.is_in_contact {
+        if self.is_in_contact || self.is_straight_until(until) {
+            return Ok(found);
+        }
+        // Without an impact, this has been tried.
+        if found.is_some() && self.stays_apart(until, 0.0, probe)? {
             return Ok(found);
         }
         let shortest = libm::sqrt(self.resolution.length() / self.deviation.length());
