@@ -5,6 +5,7 @@ mod hostile;
 mod kinds;
 mod removal;
 mod snapshot;
+mod waking;
 
 use scene::Scene;
 use sim_core::{Collision, World};

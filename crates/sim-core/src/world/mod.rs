@@ -244,6 +244,20 @@ impl World {
         if let Some(events) = &mut self.record.events {
             events.begin();
         }
+        if self.continuous.is_dormant {
+            self.record.contact_steps += u64::from(!self.contacts.is_empty());
+        } else {
+            self.move_on()?;
+        }
+        self.elapsed.steps += 1;
+        if self.record.events.is_some() {
+            self.list_events();
+        }
+        Ok(())
+    }
+
+    /// Moves every body by a step.
+    fn move_on(&mut self) -> Result<(), StepError> {
         self.seek_overlaps();
         self.make_plan();
         // The earlier state is kept until the step can no longer fail.
@@ -251,12 +265,7 @@ impl World {
         core::mem::swap(&mut self.previous, &mut self.current);
         self.current.match_len(&self.previous);
         let done = self.integrate().and_then(|()| self.collide());
-        done.map_err(|(body, cause)| self.failed(body, cause))?;
-        self.elapsed.steps += 1;
-        if self.record.events.is_some() {
-            self.list_events();
-        }
-        Ok(())
+        done.map_err(|(body, cause)| self.failed(body, cause))
     }
 
     /// Moves every body as if there were no contacts.
@@ -463,6 +472,7 @@ impl World {
         self.check_body(body)?;
         error::check_friction(body, friction)?;
         self.bodies.friction.set(body, friction);
+        self.continuous.wake_all();
         Ok(())
     }
 

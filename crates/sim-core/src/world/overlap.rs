@@ -137,6 +137,7 @@ impl World {
     pub(super) fn note_placed(&mut self, body: usize) {
         self.keep_found_overlaps();
         self.continuous.placed = true;
+        self.continuous.is_dormant = false;
         self.index.forget();
         if !self.bodies.has_shape(body) {
             return;

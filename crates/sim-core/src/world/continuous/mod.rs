@@ -85,6 +85,8 @@ pub(super) struct Continuous {
     tallies: Tallies,
     /// By body, whether it is asleep: at rest until another body comes.
     asleep: Vec<bool>,
+    /// Whether another step would change nothing but the time.
+    pub(super) is_dormant: bool,
     near: Neighbours,
     queue: EventQueue,
     visited: Visited,
@@ -130,6 +132,7 @@ impl World {
 
     /// Resolves the impacts and contacts of bodies on the way from the previous state to the current one.
     pub(super) fn collide_continuously(&mut self) -> Result<(), (usize, Cause)> {
+        let all_slept = self.all_sleep();
         let record = self.record.checkpoint();
         self.continuous.contacts_before.copy_from(&self.contacts);
         let placed = self.continuous.placed.then(|| {
@@ -154,6 +157,8 @@ impl World {
         self.forget_parted_overlaps();
         self.continuous.bundled.bodies = self.contacts.bundled_bodies();
         self.contacts.end_step();
+        self.continuous.is_dormant =
+            all_slept && self.all_sleep() && self.continuous.bundled == Bundled::default();
         self.record.contact_steps += u64::from(!self.contacts.is_empty());
         Ok(())
     }

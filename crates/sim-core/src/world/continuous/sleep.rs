@@ -1,18 +1,20 @@
 //! Sleeping bodies, which cost nothing until another body comes.
 //!
 //! An island at rest that nothing accelerates stays as it is. The same input gives the same result, so its
-//! constraints need not be solved again. This is a memo and changes no result.
+//! constraints need not be solved again. This is a memo and changes no result. If all bodies are asleep before and after
+//! a step, the next one changes nothing but the time.
 
 #[cfg(feature = "serde")]
 use alloc::vec::Vec;
 use glam::DVec3;
 
-use super::{Continuous, solver::ContactSolver, view::View};
+use super::{super::World, Continuous, solver::ContactSolver, view::View};
 
 impl Continuous {
     /// Wakes all bodies, because something was changed from outside.
     pub(in crate::world) fn wake_all(&mut self) {
         self.asleep.clear();
+        self.is_dormant = false;
     }
 
     /// The bodies that are asleep.
@@ -27,6 +29,17 @@ impl Continuous {
     pub(in crate::world) fn put_to_sleep(&mut self, these: &[usize], bodies: usize) {
         self.asleep.resize(bodies, false);
         these.iter().for_each(|&body| self.asleep[body] = true);
+    }
+}
+
+impl World {
+    /// Whether every body that can move is asleep and no other one moves.
+    pub(super) fn all_sleep(&self) -> bool {
+        let sleeps = |(body, &asleep): (usize, &bool)| {
+            asleep || !self.bodies.is_movable(body) && self.current.velocity[body] == DVec3::ZERO
+        };
+        self.continuous.asleep.len() == self.len()
+            && self.continuous.asleep.iter().enumerate().all(sleeps)
     }
 }
 
