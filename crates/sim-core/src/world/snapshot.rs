@@ -15,7 +15,7 @@ use super::{
 use crate::{BodyKind, Force, Shape};
 
 /// The version of the format; worlds of other versions are refused.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

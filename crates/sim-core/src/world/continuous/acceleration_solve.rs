@@ -96,7 +96,7 @@ impl ContactSolver<'_> {
                 .view()
                 .course_below(&constraint, motion, (length, time == 0.0), load)
             {
-                Course::Flat => {}
+                Course::Flat(ahead) => self.contacts.get_mut(index).ahead = ahead,
                 Course::Receding(recession) => {
                     solution.recession[k] += recession;
                     self.contacts.get_mut(index).is_turning = true;

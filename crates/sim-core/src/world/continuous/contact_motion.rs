@@ -10,7 +10,11 @@ use alloc::vec::Vec;
 use glam::DVec3;
 
 use super::super::stepping::Cause;
-use super::{contact_set::ContactConstraint, solver::ContactSolver, view::View};
+use super::{
+    contact_set::{ContactConstraint, Measure},
+    solver::ContactSolver,
+    view::View,
+};
 use crate::{
     Feature, Shape,
     collide::{first_contact, snap},
@@ -34,10 +38,28 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// The gap along a normal to the plane of this surface, m, the normal of that plane, and the contact point.
-    fn along(&self, normal: DVec3) -> (f64, DVec3, DVec3) {
-        let gap = self.distance * self.normal.dot(normal);
-        (gap, self.normal, self.point)
+    /// The contact with this surface along a normal, at an offset.
+    fn measured(&self, normal: DVec3, offset: DVec3) -> Measure {
+        Measure {
+            offset,
+            gap: self.distance * self.normal.dot(normal),
+            normal: self.normal,
+            point: self.point,
+        }
+    }
+}
+
+impl Measure {
+    /// The same from an offset that differs by no more than `most` in the plane of the contact and along its normal, m.
+    fn seen_from(&self, offset: DVec3, normal: DVec3, most: f64) -> Option<Measure> {
+        let moved = offset - self.offset;
+        let gap = self.gap + moved.dot(normal);
+        let is_there = moved.length() <= most && gap >= 0.0;
+        is_there.then_some(Measure {
+            offset,
+            gap,
+            ..*self
+        })
     }
 }
 
@@ -76,8 +98,8 @@ fn roots(place: f64, speed: f64, push: f64) -> [Option<f64>; 2] {
 
 /// How a surface continues below a sliding body.
 pub(super) enum Course {
-    /// It keeps its normal.
-    Flat,
+    /// It keeps its normal. The contact at the end of the motion, if the body is on the same plane there.
+    Flat(Option<Measure>),
     /// It falls away by this acceleration, m/s².
     Receding(f64),
     /// The body leaves it, or it begins to turn, at this time after the start, s.
@@ -148,7 +170,7 @@ impl View<'_> {
         constraint: ContactConstraint,
         left: f64,
     ) -> Option<ContactConstraint> {
-        let (i, j) = constraint.bodies;
+        let ((i, j), normal) = (constraint.bodies, constraint.normal);
         let hover = self.layout().hover_gap(i, j);
         let is_bundled = self.contacts.is_bundled(i) || self.contacts.is_bundled(j);
         let (height, _) = self.shortest_hop((i, j), self.greatest_push(i, j), is_bundled);
@@ -162,18 +184,30 @@ impl View<'_> {
         let offset = start.position[j] - start.position[i];
         // Most bodies are as near as the gap of contacts. A longer motion finds more obstacles.
         let near = 8.0 * hover;
-        let (gap, normal, point) = match self.surface_below(&constraint, offset, near) {
+        let foreseen = || {
+            constraint
+                .ahead
+                .and_then(|ahead| ahead.seen_from(offset, normal, hover))
+        };
+        let below = |reach| self.surface_below(&constraint, offset, reach);
+        let found =
+            foreseen().or_else(|| below(near).map(|surface| surface.measured(normal, offset)));
+        let Measure {
+            gap, normal, point, ..
+        } = match found {
             // Bodies do not meet. A surface that seems to be above the present position is another one, through which
             // the body was lifted. All that is known of this contact is that the bodies touched.
-            Some(below) if below.distance < 0.0 => (0.0, constraint.normal, constraint.point),
-            Some(below) => below.along(constraint.normal),
+            Some(found) if found.gap < 0.0 => Measure {
+                offset,
+                gap: 0.0,
+                normal,
+                point: constraint.point,
+            },
+            Some(found) => found,
             None if reach <= near => return None,
             None => {
-                let below = self.surface_below(&constraint, offset, reach)?;
-                if below.distance < 0.0 {
-                    return None;
-                }
-                below.along(constraint.normal)
+                let surface = below(reach).filter(|surface| surface.distance >= 0.0)?;
+                surface.measured(normal, offset)
             }
         };
         let push = &self.paths.applied_acceleration;
@@ -186,6 +220,7 @@ impl View<'_> {
             ends_at: f64::INFINITY,
             target: self.speed_to_hover(gap, hover, left, load_speed),
             load_speed,
+            ahead: None,
             ..constraint
         })
     }
@@ -223,7 +258,7 @@ impl View<'_> {
             || self.scene.bodies.is_half_space(i)
             || self.scene.bodies.is_half_space(j)
         {
-            return Course::Flat;
+            return Course::Flat(None);
         }
         let near = 16.0 * hover;
         let radius = |body: usize| match self.scene.bodies.shape(body) {
@@ -248,8 +283,12 @@ impl View<'_> {
                 None => Below::Other,
             }
         };
-        if !matches!(below(length), Below::Other) {
-            return Course::Flat;
+        match below(length) {
+            Below::Flat(surface) => {
+                return Course::Flat(Some(surface.measured(normal, offset + moved(length))));
+            }
+            Below::Risen => return Course::Flat(None),
+            Below::Other => {}
         }
         // After this time a normal that turns steadily has turned visibly.
         let soon = (4.0 * turn * radius / way).clamp(1e-5, 0.0625) * length;
@@ -272,7 +311,7 @@ impl View<'_> {
             let end = time + after;
             time = end + next;
             if time >= length {
-                return Course::Flat;
+                return Course::Flat(None);
             }
             now = below(time);
             if matches!(now, Below::Other) {
@@ -280,7 +319,7 @@ impl View<'_> {
             }
         }
         if matches!(now, Below::Risen) {
-            return Course::Flat;
+            return Course::Flat(None);
         }
         let slack = 8.0 * self.layout().position_resolution(i, j);
         let mut recession = f64::INFINITY;

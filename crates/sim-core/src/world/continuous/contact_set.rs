@@ -39,6 +39,22 @@ pub(in crate::world) struct ContactConstraint {
     pub(in crate::world) is_overlap: bool,
     /// Whether the constraint is one of those with which overlapping bodies move as one in this step.
     pub(super) is_hold: bool,
+    /// The contact at the end of the step, if the surface keeps its normal until then.
+    pub(super) ahead: Option<Measure>,
+}
+
+/// A contact as it is measured at an offset of the second body from the first one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::world) struct Measure {
+    /// The offset, m.
+    pub(super) offset: DVec3,
+    /// The distance along the normal of the constraint, m.
+    pub(super) gap: f64,
+    /// Unit normal of the surface.
+    pub(super) normal: DVec3,
+    /// The contact point, relative to the first body, m.
+    pub(super) point: DVec3,
 }
 
 impl ContactConstraint {
@@ -64,6 +80,7 @@ impl ContactConstraint {
             sticks: true,
             is_overlap: false,
             is_hold: false,
+            ahead: None,
         }
     }
 }
@@ -74,8 +91,14 @@ impl ContactConstraint {
     pub(in crate::world) fn is_sound(&self) -> bool {
         let vectors = [self.normal, self.point, self.friction];
         let numbers = [self.gap, self.target, self.load_speed, self.impulse];
-        let all = vectors.iter().flat_map(|vector| vector.to_array());
+        let ahead = self.ahead.into_iter();
+        let of_ahead = ahead
+            .clone()
+            .flat_map(|of| [of.offset, of.normal, of.point]);
+        let vectors = vectors.into_iter().chain(of_ahead);
+        let all = vectors.flat_map(|vector| vector.to_array());
         all.chain(numbers)
+            .chain(ahead.map(|of| of.gap))
             .all(|number| number.abs() <= super::super::error::LARGEST)
             && self.ends_at >= 0.0
     }
