@@ -387,6 +387,30 @@ mod tests {
     }
 
     #[test]
+    fn a_device_without_memory_must_be_opened_anew_also_if_wgpu_has_given_it_up() {
+        for (reason, loss) in [
+            ("Out of memory", Loss::Memory),
+            ("Device is lost", Loss::Device),
+        ] {
+            let short = is_short(reason);
+            assert_eq!(short, loss == Loss::Memory, "{reason}");
+        }
+        let Some(canvas) = canvas() else { return };
+        assert_eq!(canvas.loss(), None);
+        canvas.troubles.lost.store(true, Ordering::Relaxed);
+        assert_eq!(canvas.loss(), Some(Loss::Device));
+        canvas.troubles.short.store(true, Ordering::Relaxed);
+        assert_eq!(canvas.loss(), Some(Loss::Memory));
+    }
+
+    #[test]
+    fn a_panic_in_egui_is_caught_with_its_text() {
+        assert_eq!(quietly(|| 1), Ok(1));
+        let fault = quietly(|| panic!("no buffer of {} bytes", 8));
+        assert_eq!(fault, Err("no buffer of 8 bytes".to_owned()));
+    }
+
+    #[test]
     fn a_lost_device_is_noticed_and_painting_on_does_no_harm() {
         let Some(mut canvas) = canvas() else { return };
         let view = texture(canvas.device(), [64, 48], FORMAT);
@@ -402,7 +426,15 @@ mod tests {
             models: vec![model(mesh.mesh(), true)],
             ..Picture::default()
         };
-        canvas.paint(&view, [64, 48], (&picture, [32, 32]), &frame());
+        // egui panics where it cannot write the triangles of its panels.
+        let mut panels = frame();
+        let mut mesh = egui::Mesh::default();
+        mesh.add_colored_rect(egui::Rect::EVERYTHING, egui::Color32::WHITE);
+        panels.primitives.push(egui::ClippedPrimitive {
+            clip_rect: egui::Rect::EVERYTHING,
+            primitive: egui::epaint::Primitive::Mesh(mesh),
+        });
+        canvas.paint(&view, [64, 48], (&picture, [32, 32]), &panels);
         canvas.flush();
         // Another canvas replaces it.
         let Some(mut canvas) = self::canvas() else {
