@@ -182,6 +182,7 @@ mod tests {
         // Panels that do not fit end it.
         let mut losses = 0;
         while reopening.lost(Loss::Memory, now).is_some() {
+            reopening.opened(now);
             losses += 1;
             assert!(losses <= MOST);
         }
