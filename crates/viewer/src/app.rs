@@ -12,11 +12,13 @@ use winit::event::{StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
-use crate::canvas::UiFrame;
+use crate::canvas::{self, UiFrame};
 use crate::failure::Failure;
 use crate::film;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Shown};
+use crate::picture::Picture;
 use crate::preferences::{Preferences, Store};
+use crate::reopening::{Loss, Reopening};
 use crate::rescue::Rescue;
 use crate::session::{
     Done, Job, Leaving, Outlook, STEP_BUDGET, Session, Shooting, State, Trial, Tried, VariantJob,
@@ -31,10 +33,6 @@ use crate::worker::Worker;
 const SHORTEST_FRAME: Duration = Duration::from_millis(4);
 /// The time between frames while the window is hidden or a single step takes long.
 const UNSEEN_FRAME: Duration = Duration::from_millis(100);
-
-/// How many times another graphics device is requested after one was lost, and the time between the requests.
-const REOPENINGS: u32 = 8;
-const REOPENING: Duration = Duration::from_millis(500);
 
 /// How long to wait after the last change of the scene's file before it is read, so that its writer can finish.
 const WRITING: Duration = Duration::from_millis(200);
@@ -78,6 +76,8 @@ pub fn run(mut session: Session) -> Result<(), Failure> {
         stopwatch: Stopwatch::start(),
         proxy: event_loop.create_proxy(),
         open: None,
+        lost: None,
+        reopening: Reopening::default(),
         failure: None,
         last_frame: Duration::ZERO,
         next_frame: None,
@@ -136,11 +136,24 @@ struct App {
     stopwatch: Stopwatch,
     proxy: EventLoopProxy<Redraw>,
     open: Option<Open>,
+    /// The window whose graphics are lost, until they are open again.
+    lost: Option<Lost>,
+    reopening: Reopening,
     failure: Option<Failure>,
     /// When the last frame began.
     last_frame: Duration,
     /// When the next frame is due; `None` while nothing moves.
     next_frame: Option<Duration>,
+}
+
+/// A window without graphics.
+struct Lost {
+    window: Arc<Window>,
+    /// The panels, which keep their state.
+    context: egui::Context,
+    loss: Loss,
+    /// When the graphics are opened again.
+    due: Duration,
 }
 
 /// A window with everything needed to draw in it.
@@ -194,29 +207,56 @@ impl App {
         event_loop.exit();
     }
 
-    /// Opens another device for the window after one was lost; the panels keep their state. A restarting driver may
-    /// need some time.
-    fn reopen(&mut self, event_loop: &ActiveEventLoop) {
+    /// Closes the graphics of the window after they were lost, and opens them again soon.
+    fn lose(&mut self, event_loop: &ActiveEventLoop, loss: Loss, now: Duration) {
         let Some(open) = self.open.take() else { return };
         let context = open.egui.egui_ctx().clone();
         let window = open.window.clone();
         // Two surfaces of one window would conflict.
         drop(open);
-        let mut tries = REOPENINGS;
-        loop {
-            match Open::new(event_loop, window.clone(), &self.proxy) {
-                Ok(reopened) => {
-                    self.ui.move_to(&context, reopened.egui.egui_ctx());
-                    reopened.window.request_redraw();
-                    self.open = Some(reopened);
-                    let text = "The graphics device was lost, and another one has taken its place.";
-                    self.session.notices().info("graphics", text.to_owned());
-                    return;
-                }
-                Err(failure) if tries == 0 => return self.fail(event_loop, failure),
-                Err(_) => std::thread::sleep(REOPENING),
+        match self.reopening.lost(loss, now) {
+            Some(due) => {
+                self.lost = Some(Lost {
+                    window,
+                    context,
+                    loss,
+                    due,
+                });
             }
-            tries -= 1;
+            None => self.fail(event_loop, given_up(loss)),
+        }
+    }
+
+    /// Opens the graphics of the window again if that is due. A failed try is repeated after a pause, in which the
+    /// window can be closed.
+    fn reopen(&mut self, event_loop: &ActiveEventLoop) {
+        let now = self.stopwatch.read();
+        let Some(mut lost) = self.lost.take_if(|lost| lost.due <= now) else {
+            return;
+        };
+        let opened = Open::new(event_loop, lost.window.clone(), &self.proxy);
+        let now = self.stopwatch.read();
+        match opened {
+            Ok(reopened) => {
+                self.reopening.opened(now);
+                self.ui.move_to(&lost.context, reopened.egui.egui_ctx());
+                reopened.window.request_redraw();
+                self.open = Some(reopened);
+                // The time without graphics is no time of the run.
+                self.last_frame = now;
+                let notices = self.session.notices();
+                match self.reopening.sparing(now) {
+                    None => notices.info("graphics", lost.loss.mended().to_owned()),
+                    Some(_) => notices.error("graphics", canvas::NO_MEMORY.to_owned()),
+                }
+            }
+            Err(failure) => match self.reopening.again(now) {
+                Some(due) => {
+                    lost.due = due;
+                    self.lost = Some(lost);
+                }
+                None => self.fail(event_loop, failure),
+            },
         }
     }
 
@@ -366,8 +406,11 @@ impl App {
         }
     }
 
-    /// Advances the physics, lays out the control panel and paints both.
+    /// Advances the physics, lays out the control panel and paints both. Nothing happens while graphics are lost.
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
+        if self.lost.is_some() {
+            return;
+        }
         let now = self.stopwatch.read();
         let elapsed = now.saturating_sub(self.last_frame);
         self.steps(elapsed);
@@ -388,7 +431,10 @@ impl App {
 
         let Some(open) = &mut self.open else { return };
         let size = open.window.inner_size();
-        let shown = size.width > 0 && size.height > 0 && {
+        let sparing = self.reopening.sparing(now);
+        let shown = if size.width == 0 || size.height == 0 {
+            Shown::Nothing
+        } else {
             let input = open.egui.take_egui_input(&open.window);
             let context = open.egui.egui_ctx().clone();
             if let Some(wanted) = self.preferences.take() {
@@ -418,7 +464,10 @@ impl App {
                 open.window.set_title(&title);
                 open.title = title;
             }
-            open.gpu.paint(&self.session.picture(), pixels, frame)
+            match sparing {
+                None => open.gpu.paint(&self.session.picture(), pixels, frame),
+                Some(_) => open.gpu.paint(&Picture::default(), [1, 1], frame),
+            }
         };
         if let Some(error) = open.gpu.take_error() {
             self.session.notices().error("graphics", error);
@@ -427,15 +476,24 @@ impl App {
         if is_fault_wanted() {
             open.gpu.lose();
         }
-        if open.gpu.is_lost() {
-            self.reopen(event_loop);
+        if let Some(loss) = open.gpu.loss() {
+            return self.lose(event_loop, loss, now);
+        }
+        match sparing {
+            Some(until) => self.schedule(until),
+            None if self.reopening.resumes() => {
+                let text = Loss::Memory.mended().to_owned();
+                self.session.notices().info("graphics", text);
+            }
+            None => {}
         }
         let compare = &self.session.compare;
         let measuring = compare.on && (compare.is_under_way() || self.session.wants_trial());
         let moves = self.session.state() == State::Running || self.session.awaits_variants();
-        if moves && shown {
+        if moves && shown == Shown::Frame {
             self.schedule(now + SHORTEST_FRAME);
         } else if moves
+            || shown == Shown::Older
             || self.session.awaits_steps()
             || measuring
             || self.scout.is_some()
@@ -450,7 +508,7 @@ impl App {
 
 impl ApplicationHandler<Redraw> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        if self.open.is_some() {
+        if self.open.is_some() || self.lost.is_some() {
             return;
         }
         let attributes = Window::default_attributes()
@@ -462,6 +520,7 @@ impl ApplicationHandler<Redraw> for App {
         };
         match opened {
             Ok(open) => {
+                self.reopening.opened(self.stopwatch.read());
                 open.window.request_redraw();
                 self.open = Some(open);
             }
@@ -486,6 +545,13 @@ impl ApplicationHandler<Redraw> for App {
         if event == WindowEvent::RedrawRequested {
             return self.frame(event_loop);
         }
+        if let Some(lost) = &self.lost {
+            // Without graphics nothing can be asked about edits: they stay in a file.
+            if event == WindowEvent::CloseRequested {
+                self.fail(event_loop, given_up(lost.loss));
+            }
+            return;
+        }
         let Some(open) = &mut self.open else { return };
         let response = open.egui.on_window_event(&open.window, &event);
         if response.repaint {
@@ -506,6 +572,11 @@ impl ApplicationHandler<Redraw> for App {
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        self.reopen(event_loop);
+        if let Some(lost) = &self.lost {
+            let wait = lost.due.saturating_sub(self.stopwatch.read());
+            return event_loop.set_control_flow(ControlFlow::wait_duration(wait));
+        }
         let Some(open) = &self.open else { return };
         event_loop.set_control_flow(match self.next_frame {
             None => ControlFlow::Wait,
@@ -583,8 +654,19 @@ fn no_display(reason: &str) -> Failure {
 }
 
 fn no_adapter(error: &anyhow::Error) -> Failure {
+    let text = format!("{error:#}");
+    let loss = error.downcast_ref::<Loss>().copied();
+    if let Some(loss) = loss.or(canvas::is_short(&text).then_some(Loss::Memory)) {
+        return given_up(loss);
+    }
     Failure::NoDisplay(format!(
-        "no window: {error:#}. Install a Vulkan or OpenGL driver (on Debian \
+        "no window: {text}. Install a Vulkan or OpenGL driver (on Debian \
          mesa-vulkan-drivers), or do without a window: cowbell run cube-cow"
+    ))
+}
+
+fn given_up(loss: Loss) -> Failure {
+    Failure::NoDisplay(format!(
+        "no window: {loss}, or do without a window: cowbell run cube-cow"
     ))
 }

@@ -1,5 +1,6 @@
 //! Draws a frame of the window onto any texture: the picture, and the control panel around it.
 
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
@@ -7,12 +8,14 @@ use egui_wgpu::wgpu;
 
 use crate::picture::Picture;
 use crate::render::{self, Renderer};
+use crate::reopening::Loss;
 
 /// Format of the picture's texture, the only one that egui can show.
 const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-const NO_MEMORY: &str = "The graphics adapter has no memory left, and something is not drawn: make the window smaller, show \
-                         fewer or coarser meshes, or end other programs. Edits are kept.";
+/// The notice while the picture is left out.
+pub const NO_MEMORY: &str = "The graphics adapter has no memory left, and the picture is left out for some seconds: make the \
+                             window smaller, show fewer or coarser meshes, or end other programs. Edits are kept.";
 
 /// A device with the two renderers, and the picture's texture.
 pub struct Canvas {
@@ -30,6 +33,8 @@ pub struct Canvas {
 #[derive(Default)]
 struct Troubles {
     lost: AtomicBool,
+    /// Memory was short, so that objects are missing for good.
+    short: AtomicBool,
     error: Mutex<Option<String>>,
 }
 
@@ -84,9 +89,14 @@ impl Canvas {
         self.picture_id
     }
 
-    /// Whether the device is lost, so that everything must be created again.
-    pub fn is_lost(&self) -> bool {
-        self.troubles.lost.load(Ordering::Relaxed)
+    /// The reason why everything must be created again, if there is one.
+    pub fn loss(&self) -> Option<Loss> {
+        if self.troubles.short.load(Ordering::Relaxed) {
+            Some(Loss::Memory)
+        } else {
+            let lost = self.troubles.lost.load(Ordering::Relaxed);
+            lost.then_some(Loss::Device)
+        }
     }
 
     /// The error since the last call, if there was one.
@@ -128,7 +138,8 @@ impl Canvas {
         self.queue.submit([]);
     }
 
-    /// Paints a picture of `size` pixels and the control panel over it on a texture of `whole` pixels.
+    /// Paints a picture of `size` pixels and the control panel over it on a texture of `whole` pixels. Nothing is painted
+    /// if the device is lost or its memory is short on the way.
     pub fn paint(
         &mut self,
         view: &wgpu::TextureView,
@@ -146,17 +157,26 @@ impl Canvas {
             self.picture_size,
             picture,
         );
+        if self.loss().is_some() {
+            return;
+        }
         let screen = egui_wgpu::ScreenDescriptor {
             size_in_pixels: whole,
             pixels_per_point: frame.pixels_per_point,
         };
-        let mut commands = render::paint_panels(
-            &mut self.ui,
-            (&self.device, &self.queue),
-            (&mut encoder, view),
-            &frame.primitives,
-            &screen,
-        );
+        let painted = quietly(|| {
+            render::paint_panels(
+                &mut self.ui,
+                (&self.device, &self.queue),
+                (&mut encoder, view),
+                &frame.primitives,
+                &screen,
+            )
+        });
+        if self.loss().is_some() {
+            return;
+        }
+        let mut commands = painted.unwrap_or_else(|fault| panic!("no panels: {fault}"));
         commands.push(encoder.finish());
         self.queue.submit(commands);
     }
@@ -184,6 +204,24 @@ impl Canvas {
     }
 }
 
+/// Whether an error is about a lack of memory, by the words of wgpu.
+pub fn is_short(error: &str) -> bool {
+    error.to_lowercase().contains("memory")
+}
+
+/// Calls a function that may panic, without its message on the standard error. egui panics if the device is lost or has
+/// no memory while its data is written.
+fn quietly<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let done = panic::catch_unwind(AssertUnwindSafe(work));
+    panic::set_hook(hook);
+    done.map_err(|fault| match fault.downcast::<String>() {
+        Ok(text) => *text,
+        Err(_) => "egui has panicked".to_owned(),
+    })
+}
+
 /// Combines the reported error with another one. After a lack of memory, further errors follow from missing objects.
 fn after(told: Option<String>, error: &wgpu::Error) -> String {
     match (told, error) {
@@ -196,9 +234,18 @@ fn after(told: Option<String>, error: &wgpu::Error) -> String {
 impl Troubles {
     fn listen(self: &Arc<Self>, device: &wgpu::Device) {
         let troubles = self.clone();
-        device.set_device_lost_callback(move |_, _| troubles.lost.store(true, Ordering::Relaxed));
+        device.set_device_lost_callback(move |_, reason| {
+            // wgpu also gives up a device that has no memory for its own work.
+            if is_short(&reason) {
+                troubles.short.store(true, Ordering::Relaxed);
+            }
+            troubles.lost.store(true, Ordering::Relaxed);
+        });
         let troubles = self.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            if let wgpu::Error::OutOfMemory { .. } = error {
+                troubles.short.store(true, Ordering::Relaxed);
+            }
             if let Ok(mut slot) = troubles.error.lock() {
                 *slot = Some(after(slot.take(), &error));
             }
@@ -288,7 +335,7 @@ mod tests {
             canvas.paint(&view, [64, 48], (&picture, size), &frame());
             assert_eq!(canvas.take_error(), None, "{size:?}");
         }
-        assert!(!canvas.is_lost());
+        assert!(canvas.loss().is_none());
     }
 
     /// A part of a mesh is drawn, and the cut is reported.
@@ -319,7 +366,7 @@ mod tests {
             canvas.paint(&view, [64, 48], (&picture, [64, 48]), &frame());
             assert_eq!(canvas.take_error(), None, "once");
         }
-        assert!(!canvas.is_lost());
+        assert!(canvas.loss().is_none());
     }
 
     #[test]
@@ -340,22 +387,54 @@ mod tests {
     }
 
     #[test]
+    fn a_device_without_memory_must_be_opened_anew_also_if_wgpu_has_given_it_up() {
+        for (reason, loss) in [
+            ("Out of memory", Loss::Memory),
+            ("Device is lost", Loss::Device),
+        ] {
+            let short = is_short(reason);
+            assert_eq!(short, loss == Loss::Memory, "{reason}");
+        }
+        let Some(canvas) = canvas() else { return };
+        assert_eq!(canvas.loss(), None);
+        canvas.troubles.lost.store(true, Ordering::Relaxed);
+        assert_eq!(canvas.loss(), Some(Loss::Device));
+        canvas.troubles.short.store(true, Ordering::Relaxed);
+        assert_eq!(canvas.loss(), Some(Loss::Memory));
+    }
+
+    #[test]
+    fn a_panic_in_egui_is_caught_with_its_text() {
+        assert_eq!(quietly(|| 1), Ok(1));
+        let fault = quietly(|| panic!("no buffer of {} bytes", 8));
+        assert_eq!(fault, Err("no buffer of 8 bytes".to_owned()));
+    }
+
+    #[test]
     fn a_lost_device_is_noticed_and_painting_on_does_no_harm() {
         let Some(mut canvas) = canvas() else { return };
         let view = texture(canvas.device(), [64, 48], FORMAT);
         canvas.paint(&view, [64, 48], (&Picture::default(), [64, 48]), &frame());
-        assert!(!canvas.is_lost());
+        assert!(canvas.loss().is_none());
         canvas.device().destroy();
         // The device reports the loss when all its work is done.
         let _ = canvas.device().poll(wgpu::PollType::wait_indefinitely());
-        assert!(canvas.is_lost());
+        assert_eq!(canvas.loss(), Some(Loss::Device));
         // The picture also has a mesh that the canvas has not seen yet.
         let mesh = scene::MeshRef::builtin("cube.obj").expect("built in");
         let picture = Picture {
             models: vec![model(mesh.mesh(), true)],
             ..Picture::default()
         };
-        canvas.paint(&view, [64, 48], (&picture, [32, 32]), &frame());
+        // egui panics where it cannot write the triangles of its panels.
+        let mut panels = frame();
+        let mut mesh = egui::Mesh::default();
+        mesh.add_colored_rect(egui::Rect::EVERYTHING, egui::Color32::WHITE);
+        panels.primitives.push(egui::ClippedPrimitive {
+            clip_rect: egui::Rect::EVERYTHING,
+            primitive: egui::epaint::Primitive::Mesh(mesh),
+        });
+        canvas.paint(&view, [64, 48], (&picture, [32, 32]), &panels);
         canvas.flush();
         // Another canvas replaces it.
         let Some(mut canvas) = self::canvas() else {
@@ -363,6 +442,6 @@ mod tests {
         };
         let view = texture(canvas.device(), [64, 48], FORMAT);
         canvas.paint(&view, [64, 48], (&Picture::default(), [64, 48]), &frame());
-        assert_eq!((canvas.is_lost(), canvas.take_error()), (false, None));
+        assert_eq!((canvas.loss(), canvas.take_error()), (None, None));
     }
 }

@@ -1,8 +1,9 @@
 //! The graphics device behind a window: its surface, and the canvas that paints on it.
 
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::Arc;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 use egui_wgpu::wgpu;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
@@ -10,14 +11,31 @@ use winit::window::Window;
 use crate::canvas::{Canvas, UiFrame};
 use crate::picture::Picture;
 use crate::render;
+use crate::reopening::Loss;
+
+/// How many frames in a row may fail because the surface does not fit the window, before it counts as lost.
+const MISFITS: u32 = 10;
 
 /// The objects that draw into one window.
 pub struct Gpu {
     window: Arc<Window>,
     surface: wgpu::Surface<'static>,
     surface_lost: bool,
+    /// Frames in a row that failed because the surface did not fit the window.
+    misfits: u32,
     config: wgpu::SurfaceConfiguration,
     canvas: Canvas,
+}
+
+/// What the window shows after a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// The frame.
+    Frame,
+    /// Nothing: the window is hidden or minimised, or its graphics are lost.
+    Nothing,
+    /// An older frame: this one must be painted again.
+    Older,
 }
 
 /// The action after a surface's answer.
@@ -83,11 +101,15 @@ impl Gpu {
             window,
             surface,
             surface_lost: false,
+            misfits: 0,
             config,
             canvas: Canvas::new(made, format, render::supported_samples(&adapter)),
         };
         gpu.configure();
-        Ok(gpu)
+        match gpu.loss() {
+            None => Ok(gpu),
+            Some(loss) => bail!(loss),
+        }
     }
 
     /// The texture that holds the picture.
@@ -109,9 +131,10 @@ impl Gpu {
         let _ = device.poll(wgpu::PollType::wait_indefinitely());
     }
 
-    /// Whether the device or the surface is lost, so that everything must be created again.
-    pub fn is_lost(&self) -> bool {
-        self.surface_lost || self.canvas.is_lost()
+    /// The reason why everything must be created again, if there is one.
+    pub fn loss(&self) -> Option<Loss> {
+        let of_surface = self.surface_lost.then_some(Loss::Surface);
+        self.canvas.loss().or(of_surface)
     }
 
     /// The error since the last call, if there was one.
@@ -119,55 +142,84 @@ impl Gpu {
         self.canvas.take_error()
     }
 
-    /// Draws a picture of `size` pixels and the control panel over it. Returns whether the window shows it: a hidden or
-    /// minimised window does not.
-    pub fn paint(&mut self, picture: &Picture, size: [u32; 2], mut frame: UiFrame) -> bool {
+    /// Draws a picture of `size` pixels and the control panel over it.
+    pub fn paint(&mut self, picture: &Picture, size: [u32; 2], mut frame: UiFrame) -> Shown {
         self.canvas.take_textures(&mut frame);
         let target = self.acquire();
-        let shown = target.is_some();
         match target {
-            Some(target) => {
+            Ok(target) => {
                 let view = target.texture.create_view(&Default::default());
                 let whole = [self.config.width, self.config.height];
                 self.canvas.paint(&view, whole, (picture, size), &frame);
+                drop(view);
+                if self.loss().is_some() {
+                    release(target);
+                    return Shown::Nothing;
+                }
                 self.window.pre_present_notify();
                 self.canvas.queue().present(target);
+                self.canvas.free_textures(&mut frame);
+                Shown::Frame
             }
-            None => self.canvas.flush(),
+            Err(shown) => {
+                self.canvas.flush();
+                self.canvas.free_textures(&mut frame);
+                shown
+            }
         }
-        self.canvas.free_textures(&mut frame);
-        shown
     }
 
-    /// The next image of the window, if it accepts one now. Reconfigures the surface if necessary.
-    fn acquire(&mut self) -> Option<wgpu::SurfaceTexture> {
+    /// The next image of the window, or what it shows without one. Reconfigures the surface if necessary.
+    fn acquire(&mut self) -> Result<wgpu::SurfaceTexture, Shown> {
         let size: [u32; 2] = self.window.inner_size().into();
         if size.contains(&0) {
-            return None;
+            return Err(Shown::Nothing);
         }
         if self.canvas.fitting(size) != [self.config.width, self.config.height] {
             self.configure();
         }
         for _ in 0..2 {
+            // wgpu panics if a surface is asked for an image that it has never been configured for.
+            if self.loss().is_some() {
+                return Err(Shown::Nothing);
+            }
             match Next::after(self.surface.get_current_texture()) {
-                Next::Paint(texture) => return Some(texture),
+                Next::Paint(texture) => {
+                    self.misfits = 0;
+                    return Ok(texture);
+                }
                 Next::Fit => self.configure(),
                 Next::Reopen => {
                     self.surface_lost = true;
-                    return None;
+                    return Err(Shown::Nothing);
                 }
-                Next::Wait => return None,
+                Next::Wait => return Err(Shown::Nothing),
             }
         }
-        None
+        self.misfits += 1;
+        self.surface_lost |= self.misfits >= MISFITS;
+        Err(Shown::Older)
     }
 
-    /// Resizes the surface to the window.
+    /// Resizes the surface to the window. A surface that refuses this is lost.
     fn configure(&mut self) {
         [self.config.width, self.config.height] =
             self.canvas.fitting(self.window.inner_size().into());
-        self.surface.configure(self.canvas.device(), &self.config);
+        let device = self.canvas.device();
+        let refused = device.push_error_scope(wgpu::ErrorFilter::Validation);
+        self.surface.configure(device, &self.config);
+        self.surface_lost |= pollster::block_on(refused.pop()).is_some();
     }
+}
+
+/// Gives back an image of a surface whose graphics are lost. wgpu gives it back only during a panic if the device is lost;
+/// without that it panics when the surface is dropped (gfx-rs/wgpu issue 9277).
+fn release(image: wgpu::SurfaceTexture) {
+    let released = panic::catch_unwind(AssertUnwindSafe(|| {
+        let _image = image;
+        panic::resume_unwind(Box::new(()));
+    }));
+    debug_assert!(released.is_err());
 }
 
 #[cfg(test)]

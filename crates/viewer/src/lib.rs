@@ -20,6 +20,7 @@ pub mod number;
 pub mod picture;
 pub mod preferences;
 pub mod render;
+pub mod reopening;
 pub mod rescue;
 pub mod session;
 pub mod shot;
