@@ -27,6 +27,7 @@ pub(super) const TEXTS: &[(&str, &str)] = &[
     ("force {} ({}): {}", "力 {0} ({1!})：{2!}"),
     ("there is no force {}: the world has {}, counted from 0", "没有力 {0}：世界中有 {1} 个，从 0 数起"),
     ("{} is {}: it must be between 0 and 1e100", "{0!}是 {1}：必须在 0 与 1e100 之间"),
+    ("{} is {}: it must be a number within ±1e100", "{0!}是 {1}：必须是 ±1e100 之内的数"),
     ("{} is {}: every component must be a number within ±1e100", "{0!}是 {1}：每个分量必须是 ±1e100 之内的数"),
     ("bodies are {} and {}: they must be two different ones", "物体是 {0} 与 {1}：必须是两个不同的物体"),
     ("gravity", "重力"),
