@@ -1,6 +1,8 @@
 //! The `[[force]]` tables of a scene file, by the fields that each force shows.
 
 use std::collections::HashMap;
+use std::fmt::Display;
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize, Serializer};
 use sim_core::force::{Field, Value};
@@ -61,14 +63,14 @@ pub(super) fn parse(
 struct Table<'a, 't> {
     source: &'a Source<'a>,
     place: Place<'a>,
-    span: std::ops::Range<usize>,
+    span: Range<usize>,
     table: DeTable<'t>,
     spans: Fields,
     names: &'a HashMap<&'a str, usize>,
 }
 
 impl Table<'_, '_> {
-    fn error(&self, field: &str, what: impl std::fmt::Display) -> SceneError {
+    fn error(&self, field: &str, what: impl Display) -> SceneError {
         let known = self.spans.iter().find(|(name, _)| name == field);
         let span = known.map_or(&self.span, |(_, span)| span);
         self.place.error(span.clone(), field, what)
