@@ -256,7 +256,7 @@ impl Force {
     }
 
     /// The change of this force by a small relative motion: the product of the Jacobians with `dx` and `dv`.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn pair_change(&self, at: &PairMotion, dx: DVec3, dv: DVec3) -> DVec3 {
         self.ask(|law| match law {
             Role::Two(law) => law.change(at, dx, dv),
