@@ -5,7 +5,8 @@ use std::path::Path;
 use glam::DVec3;
 use proptest::prelude::*;
 use scene::{SCENES, Scene, SceneError};
-use sim_core::{Force, METHODS, StepError};
+use sim_core::force::Value;
+use sim_core::{FORCES, Force, METHODS, StepError};
 
 fn parse(text: &str) -> Result<Scene, SceneError> {
     Scene::parse(text, Path::new("no such folder/test.toml"))
@@ -277,40 +278,39 @@ fn number() -> impl Strategy<Value = f64> {
     prop_oneof![0.0..1e100_f64, (0..1000_u32).prop_map(f64::from), Just(0.0)]
 }
 
+/// A force of any kind, with any values.
 fn force() -> impl Strategy<Value = Force> {
-    let vector = || (-1e100..1e100, -9.0..9.0, Just(0.0)).prop_map(|(x, y, z)| DVec3::new(x, y, z));
-    let body = || proptest::option::of(0..2_usize);
-    prop_oneof![
-        vector().prop_map(|acceleration| Force::Gravity { acceleration }),
-        (body(), number()).prop_map(|(body, coefficient)| Force::LinearDrag { body, coefficient }),
-        (body(), number())
-            .prop_map(|(body, coefficient)| Force::QuadraticDrag { body, coefficient }),
-        (0..2_usize, vector(), [number(), number(), number()]).prop_map(
-            |(body, anchor, [rest_length, stiffness, damping])| Force::Anchor {
-                body,
-                point: None,
-                anchor,
-                rest_length,
-                stiffness,
-                damping,
+    let kinds = proptest::sample::select(FORCES.to_vec());
+    let numbers = proptest::collection::vec((number(), any::<bool>()), 8);
+    (kinds, numbers).prop_map(|(mut force, numbers)| {
+        let mut numbers = numbers.into_iter().cycle();
+        let mut next = || numbers.next().expect("endless numbers");
+        force.fields(|field| {
+            let (number, choice) = next();
+            let vector = DVec3::new(-number, 9.5, if choice { 0.0 } else { number });
+            let first = usize::from(choice);
+            match field.value {
+                Value::Number { value, least, .. } => {
+                    *value = if choice { number } else { (-number).max(least) };
+                }
+                Value::Vector(value) => *value = vector,
+                Value::Body(body) => *body = first,
+                Value::AnyBody(body) => *body = (number > 0.0).then_some(first),
+                Value::Bodies(bodies) => *bodies = [first, 1 - first],
+                Value::AnyBodies(bodies) => *bodies = choice.then_some([1, 0]),
+                Value::Point(point) => *point = choice.then_some(vector),
+                Value::Points(points) => *points = choice.then_some([vector, -vector]),
             }
-        ),
-        (0..2_usize, [number(), number(), number()]).prop_map(
-            |(first, [rest_length, stiffness, damping])| Force::Spring {
-                bodies: [first, 1 - first],
-                points: None,
-                rest_length,
-                stiffness,
-                damping,
-            }
-        ),
-        (body(), vector(), number()).prop_map(|(body, centre, strength)| Force::Attraction {
-            body,
-            centre,
-            strength,
-        }),
-        number().prop_map(|constant| Force::Gravitation { constant }),
-    ]
+        });
+        force
+    })
+}
+
+#[test]
+fn every_kind_survives_its_text() {
+    let mut scene = parse(BODIES).expect("a scene");
+    scene.forces = FORCES.to_vec();
+    assert_eq!(parse(&scene.to_toml()).expect("a scene"), scene);
 }
 
 proptest! {

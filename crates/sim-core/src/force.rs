@@ -3,17 +3,44 @@
 //! Every force except [`Force::Gravity`] is a law of one of two kinds. A [`BodyLaw`] depends on the motion of one
 //! body. A [`PairLaw`] depends on the relative motion of two bodies and acts on them with opposite signs, so that
 //! momentum is conserved. Both have analytic Jacobians, for implicit methods, and an energy if they have a potential.
-//! A law from outside is a type that implements one of the traits.
+//! A law from outside is a type that implements one of the traits; so is a built-in one, in a file of its own, which
+//! `law.rs` knows. [`FORCES`] has one force of each kind, and [`Force::fields`] shows its fields with units and ranges:
+//! scene files and panels are made from these.
 
-mod laws;
+mod anchor;
+mod attraction;
+mod described;
+mod gravitation;
+mod gravity;
+mod law;
+mod linear_drag;
+mod outside;
+mod push;
+mod quadratic_drag;
+mod spring;
 #[cfg(test)]
 mod tests;
+mod vectors;
 
 use alloc::sync::Arc;
 use core::fmt::Debug;
 use glam::DVec3;
 
 use crate::Jacobians;
+pub use described::{Description, Field, Nature, Tie, Value};
+pub(crate) use law::Reach;
+
+/// The forces that scene files can contain and panels offer, one of each kind.
+pub static FORCES: [Force; 8] = [
+    gravity::START,
+    linear_drag::START,
+    quadratic_drag::START,
+    anchor::START,
+    spring::START,
+    push::START,
+    attraction::START,
+    gravitation::START,
+];
 
 /// A force of a world.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,7 +200,7 @@ pub trait BodyLaw: Debug + Send + Sync {
     /// The derivatives of the force with respect to the body's position and velocity, N/m and kg/s. The default uses
     /// central differences, correct to about ten digits.
     fn jacobians(&self, at: &BodyMotion) -> Jacobians {
-        laws::differences(at.position, at.velocity, |position, velocity| {
+        vectors::differences(at.position, at.velocity, |position, velocity| {
             self.force(&BodyMotion {
                 position,
                 velocity,
@@ -196,7 +223,7 @@ pub trait PairLaw: Debug + Send + Sync {
     /// The derivatives of the force with respect to the relative position and velocity, N/m and kg/s. The default
     /// uses central differences, correct to about ten digits.
     fn jacobians(&self, at: &PairMotion) -> Jacobians {
-        laws::differences(at.position, at.velocity, |position, velocity| {
+        vectors::differences(at.position, at.velocity, |position, velocity| {
             self.force(&PairMotion {
                 position,
                 velocity,
@@ -241,31 +268,10 @@ impl Law<dyn PairLaw> {
     }
 }
 
-/// The bodies on which a force acts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Reach {
-    /// Every body with the same constant acceleration.
-    Weight,
-    Body(usize),
-    EachBody,
-    Pair([usize; 2]),
-    EachPair,
-}
-
 impl Force {
     /// Name of its kind, as in scene files.
     pub fn kind(&self) -> &'static str {
-        match self {
-            Force::Gravity { .. } => "gravity",
-            Force::LinearDrag { .. } => "linear-drag",
-            Force::QuadraticDrag { .. } => "quadratic-drag",
-            Force::Anchor { .. } => "anchor",
-            Force::Spring { .. } => "spring",
-            Force::Push { .. } => "push",
-            Force::Attraction { .. } => "attraction",
-            Force::Gravitation { .. } => "gravitation",
-            Force::Body { .. } | Force::Pair { .. } => "custom",
-        }
+        self.description().kind
     }
 
     /// The bodies that the force names; it may act on others too.
@@ -281,75 +287,16 @@ impl Force {
     /// The same force on other bodies: `renumber` gives the new index of each body that it names. `None` if
     /// `renumber` gives none.
     pub fn renumbered(mut self, renumber: impl Fn(usize) -> Option<usize>) -> Option<Force> {
-        match &mut self {
-            Force::Gravity { .. } | Force::Gravitation { .. } => {}
-            Force::Anchor { body, .. } | Force::Push { body, .. } => *body = renumber(*body)?,
-            Force::LinearDrag { body, .. }
-            | Force::QuadraticDrag { body, .. }
-            | Force::Attraction { body, .. }
-            | Force::Body { body, .. } => {
-                if let Some(body) = body {
-                    *body = renumber(*body)?;
+        let mut is_left = true;
+        self.fields(|mut field| {
+            for body in field.value.bodies() {
+                match renumber(*body) {
+                    Some(new) => *body = new,
+                    None => is_left = false,
                 }
             }
-            Force::Spring { bodies, .. } => {
-                for body in bodies {
-                    *body = renumber(*body)?;
-                }
-            }
-            Force::Pair { bodies, .. } => {
-                for body in bodies.iter_mut().flatten() {
-                    *body = renumber(*body)?;
-                }
-            }
-        }
-        Some(self)
-    }
-
-    pub(crate) fn reach(&self) -> Reach {
-        match *self {
-            Force::Gravity { .. } => Reach::Weight,
-            Force::Anchor { body, .. } | Force::Push { body, .. } => Reach::Body(body),
-            Force::LinearDrag { body, .. }
-            | Force::QuadraticDrag { body, .. }
-            | Force::Attraction { body, .. }
-            | Force::Body { body, .. } => body.map_or(Reach::EachBody, Reach::Body),
-            Force::Spring { bodies, .. } => Reach::Pair(bodies),
-            Force::Gravitation { .. } => Reach::EachPair,
-            Force::Pair { bodies, .. } => bodies.map_or(Reach::EachPair, Reach::Pair),
-        }
-    }
-
-    /// The point of the body on which it acts, in the frame of its shape, m; `None` for the body's position.
-    pub fn point(&self) -> Option<DVec3> {
-        match *self {
-            Force::Push { point, .. } => Some(point),
-            Force::Anchor { point, .. } => point,
-            Force::Gravity { .. }
-            | Force::LinearDrag { .. }
-            | Force::QuadraticDrag { .. }
-            | Force::Spring { .. }
-            | Force::Attraction { .. }
-            | Force::Gravitation { .. }
-            | Force::Body { .. }
-            | Force::Pair { .. } => None,
-        }
-    }
-
-    /// The same for the two bodies between which it acts.
-    pub fn points(&self) -> Option<[DVec3; 2]> {
-        match *self {
-            Force::Spring { points, .. } => points,
-            Force::Gravity { .. }
-            | Force::LinearDrag { .. }
-            | Force::QuadraticDrag { .. }
-            | Force::Anchor { .. }
-            | Force::Push { .. }
-            | Force::Attraction { .. }
-            | Force::Gravitation { .. }
-            | Force::Body { .. }
-            | Force::Pair { .. } => None,
-        }
+        });
+        is_left.then_some(self)
     }
 
     /// Whether it acts at points other than positions.
@@ -357,85 +304,22 @@ impl Force {
         self.point().is_some() || self.points().is_some()
     }
 
-    /// Whether it depends on velocities.
-    pub(crate) fn depends_on_velocity(&self) -> bool {
-        match *self {
-            Force::Gravity { .. }
-            | Force::Push { .. }
-            | Force::Attraction { .. }
-            | Force::Gravitation { .. } => false,
-            Force::Anchor { damping, .. } | Force::Spring { damping, .. } => damping > 0.0,
-            Force::LinearDrag { .. }
-            | Force::QuadraticDrag { .. }
-            | Force::Body { .. }
-            | Force::Pair { .. } => true,
-        }
-    }
-
     /// Checks all numbers; the error names the field of the first one that is out of range.
     pub fn check(&self) -> Result<(), ForceError> {
-        let least = |field, value| match value {
-            0.0..=LARGEST => Ok(()),
-            _ => Err(ForceError::Number { field, value }),
-        };
-        let vector = |field, value: DVec3| {
-            if value.abs().cmple(DVec3::splat(LARGEST)).all() {
-                Ok(())
-            } else {
-                Err(ForceError::Vector { field, value })
+        let mut checked = Ok(());
+        self.seen(&mut |field| {
+            if checked.is_ok() {
+                checked = field.check();
             }
-        };
-        match *self {
-            Force::Gravity { acceleration } => vector("acceleration", acceleration)?,
-            Force::LinearDrag { coefficient, .. } | Force::QuadraticDrag { coefficient, .. } => {
-                least("coefficient", coefficient)?;
-            }
-            Force::Anchor {
-                point,
-                anchor,
-                rest_length,
-                stiffness,
-                damping,
-                ..
-            } => {
-                vector("point", point.unwrap_or_default())?;
-                vector("anchor", anchor)?;
-                least("rest_length", rest_length)?;
-                least("stiffness", stiffness)?;
-                least("damping", damping)?;
-            }
-            Force::Push { point, force, .. } => {
-                vector("point", point)?;
-                vector("force", force)?;
-            }
-            Force::Spring {
-                points,
-                rest_length,
-                stiffness,
-                damping,
-                ..
-            } => {
-                for point in points.unwrap_or_default() {
-                    vector("points", point)?;
-                }
-                least("rest_length", rest_length)?;
-                least("stiffness", stiffness)?;
-                least("damping", damping)?;
-            }
-            Force::Attraction {
-                centre, strength, ..
-            } => {
-                vector("centre", centre)?;
-                least("strength", strength)?;
-            }
-            Force::Gravitation { constant } => least("constant", constant)?,
-            Force::Body { .. } | Force::Pair { .. } => {}
-        }
+        });
+        checked?;
         match self.reach() {
             Reach::Pair([first, second]) if first == second => {
                 Err(ForceError::SameBody { body: first })
             }
-            _ => Ok(()),
+            Reach::Weight | Reach::Body(_) | Reach::EachBody | Reach::Pair(_) | Reach::EachPair => {
+                Ok(())
+            }
         }
     }
 }
@@ -446,6 +330,14 @@ pub enum ForceError {
     /// A number that is negative, NaN or huge.
     #[error("{field} is {value}: it must be between 0 and 1e100")]
     Number {
+        /// Which field.
+        field: &'static str,
+        /// The value refused.
+        value: f64,
+    },
+    /// A number of either sign that is NaN or huge.
+    #[error("{field} is {value}: it must be a number within ±1e100")]
+    Signed {
         /// Which field.
         field: &'static str,
         /// The value refused.
@@ -471,10 +363,10 @@ impl ForceError {
     /// The name of the invalid field.
     pub fn field(&self) -> &'static str {
         match self {
-            ForceError::Number { field, .. } | ForceError::Vector { field, .. } => field,
+            ForceError::Number { field, .. }
+            | ForceError::Signed { field, .. }
+            | ForceError::Vector { field, .. } => field,
             ForceError::SameBody { .. } => "bodies",
         }
     }
 }
-
-const LARGEST: f64 = 1e100;

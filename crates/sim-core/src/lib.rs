@@ -112,7 +112,7 @@ pub mod bvh;
 mod clock;
 pub mod collide;
 mod expansion;
-mod force;
+pub mod force;
 pub mod impulse;
 mod inertia;
 mod integrate;
@@ -136,7 +136,7 @@ pub use body::{Body, BodyKind, Turn};
 pub use bvh::{Bvh, RayHit};
 pub use clock::{ClockError, FixedStep};
 pub use collide::Feature;
-pub use force::{BodyLaw, BodyMotion, Force, ForceError, Law, PairLaw, PairMotion};
+pub use force::{BodyLaw, BodyMotion, FORCES, Force, ForceError, Law, PairLaw, PairMotion};
 pub use glam::{DMat3, DQuat, DVec3, Vec3};
 pub use inertia::{Inertia, InertiaError, Solid};
 pub use integrate::{

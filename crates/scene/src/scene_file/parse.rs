@@ -163,8 +163,18 @@ impl Source<'_> {
         subject: Subject<'_>,
     ) -> Result<T, SceneError> {
         let fields = table.get_ref().as_table().map(fields).unwrap_or_default();
-        T::deserialize(ValueDeserializer::from(table))
-            .map_err(|error| self.toml_error(&error, subject, &fields))
+        self.read_value(table, subject, &fields)
+    }
+
+    /// Deserializes a value; `fields` are those of the table that an error may be in.
+    pub(super) fn read_value<'t, T: Deserialize<'t>>(
+        &self,
+        value: Spanned<DeValue<'t>>,
+        subject: Subject<'_>,
+        fields: &[(String, Range<usize>)],
+    ) -> Result<T, SceneError> {
+        T::deserialize(ValueDeserializer::from(value))
+            .map_err(|error| self.toml_error(&error, subject, fields))
     }
 
     fn toml_error(
@@ -211,11 +221,21 @@ impl<'a> Place<'a> {
     }
 
     pub(super) fn error(&self, span: Range<usize>, field: &str, what: impl Display) -> SceneError {
+        self.error_at(span, Some(field), what)
+    }
+
+    /// An error that may be about no single field.
+    pub(super) fn error_at(
+        &self,
+        span: Range<usize>,
+        field: Option<&str>,
+        what: impl Display,
+    ) -> SceneError {
         SceneError::Content {
             file: self.source.file.to_owned(),
             line: Some(self.source.line(span.start)),
             body: self.subject.body(),
-            field: self.subject.field(Some(field)),
+            field: self.subject.field(field),
             what: what.to_string(),
         }
     }

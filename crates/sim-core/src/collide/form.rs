@@ -103,7 +103,8 @@ pub(crate) fn meet(first: Form<'_>, second: Form<'_>, offset: DVec3) -> bool {
         }
         (Form::HalfSpace(_), Form::HalfSpace(_)) => false,
         (Form::HalfSpace(normal), other) => normal.dot(offset) - reach(other, normal).0 <= 0.0,
-        (first, second) => meet(second, first, -offset),
+        (Form::Sphere(_), Form::Mesh(_))
+        | (Form::Mesh(_) | Form::Sphere(_), Form::HalfSpace(_)) => meet(second, first, -offset),
     }
 }
 
@@ -129,7 +130,8 @@ pub(crate) fn first_contact(
             let touch = touch::first_touch(second, first, -offset, -motion)?;
             Some(Contact::from(touch).turned(offset, motion))
         }
-        (first, second) => {
+        (Form::Sphere(_), Form::Mesh(_))
+        | (Form::Mesh(_) | Form::Sphere(_), Form::HalfSpace(_)) => {
             let contact = first_contact(second, first, -offset, -motion)?;
             Some(contact.turned(offset, motion))
         }
@@ -175,7 +177,9 @@ pub(crate) fn parting_normals(first: Form<'_>, second: Form<'_>, offset: DVec3) 
             contact.collect()
         }
         (Form::Sphere(_), Form::Sphere(_)) => offset.try_normalize().into_iter().collect(),
-        (first, second) => {
+        (Form::Mesh(_), Form::Mesh(_))
+        | (Form::Sphere(_), Form::Mesh(_))
+        | (Form::Mesh(_) | Form::Sphere(_), Form::HalfSpace(_)) => {
             let mut normals = parting_normals(second, first, -offset);
             for normal in &mut normals {
                 *normal = -*normal;

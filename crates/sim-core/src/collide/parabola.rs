@@ -81,7 +81,9 @@ pub(crate) fn has_roots(first: Form<'_>, second: Form<'_>) -> bool {
         // Two points have no surface from which to part.
         (Form::Sphere(first), Form::Sphere(second)) => first + second > 0.0,
         (Form::HalfSpace(_), _) | (_, Form::HalfSpace(_)) => true,
-        _ => false,
+        (Form::Mesh(_), Form::Mesh(_) | Form::Sphere(_)) | (Form::Sphere(_), Form::Mesh(_)) => {
+            false
+        }
     }
 }
 
@@ -96,7 +98,9 @@ pub(crate) fn first_on_parabola(
         (Form::HalfSpace(_), Form::HalfSpace(_)) => None,
         (Form::HalfSpace(normal), other) => above_plane(normal, other, way, length),
         (Form::Sphere(first), Form::Sphere(second)) => spheres(first, second, way, length),
-        (first, second) => {
+        // These have no roots here ([`has_roots`]), and are searched on chords.
+        (Form::Mesh(_), Form::Mesh(_) | Form::Sphere(_)) | (Form::Sphere(_), Form::Mesh(_)) => None,
+        (Form::Mesh(_) | Form::Sphere(_), Form::HalfSpace(_)) => {
             let contact = first_on_parabola(second, first, &way.reversed(), length)?;
             Some(Contact {
                 point: contact.point + way.at(contact.time),

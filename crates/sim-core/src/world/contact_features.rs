@@ -91,7 +91,12 @@ impl World {
             (Some(Shape::HalfSpace { .. }), Some(Shape::Mesh(mesh))) => {
                 touching.corners(mesh, -offset, 1.0);
             }
-            _ => {
+            (
+                Some(Shape::Sphere { .. } | Shape::HalfSpace { .. }),
+                Some(Shape::Sphere { .. } | Shape::HalfSpace { .. }),
+            )
+            | (None, _)
+            | (_, None) => {
                 let point = contact.point - self.current.position[i];
                 let gap = touching.most + touching.least;
                 touching.add(ContactFeature::Smooth, point, gap);

@@ -188,7 +188,10 @@ impl Layout<'_> {
             (Form::Sphere(radius), Form::Mesh(mesh)) => {
                 ball_meets(mesh, -offset, radius - 2.0 * by)
             }
-            _ => false,
+            // These have a closed form, unless they have no depth.
+            (Form::Sphere(_), Form::Sphere(_))
+            | (Form::HalfSpace(_), _)
+            | (_, Form::HalfSpace(_)) => false,
         }
     }
 
@@ -401,7 +404,7 @@ fn in_closed_form(first: Form<'_>, second: Form<'_>, offset: DVec3) -> Option<Pe
             let turned = in_closed_form(second, first, -offset)?;
             least(-turned.normal, turned.depth)
         }
-        _ => None,
+        (Form::Mesh(_), Form::Mesh(_) | Form::Sphere(_)) | (Form::Sphere(_), Form::Mesh(_)) => None,
     }
 }
 
@@ -411,7 +414,10 @@ fn is_least(first: Form<'_>, second: Form<'_>, offset: DVec3, depth: f64) -> boo
     let (mesh, centre, radius) = match (first, second) {
         (Form::Mesh(mesh), Form::Sphere(radius)) => (mesh, offset, radius),
         (Form::Sphere(radius), Form::Mesh(mesh)) => (mesh, -offset, radius),
-        _ => return false,
+        (Form::Mesh(_), Form::Mesh(_))
+        | (Form::Sphere(_), Form::Sphere(_))
+        | (Form::HalfSpace(_), _)
+        | (_, Form::HalfSpace(_)) => return false,
     };
     let left = radius - depth + 1e-9 * radius;
     left >= 0.0 && ball_meets(mesh, centre, left)

@@ -64,7 +64,7 @@ impl Plan {
     pub(super) fn new(forces: &[Force], bodies: usize, key: impl Fn(usize) -> Key) -> Plan {
         let mut plan = Plan::default();
         for (force, what) in forces.iter().enumerate() {
-            plan.depends_on_velocity |= what.depends_on_velocity();
+            plan.depends_on_velocity |= what.nature().depends_on_velocity;
             if what.has_points() {
                 plan.levered.extend(what.bodies());
             }

@@ -149,7 +149,7 @@ impl Reference {
         Drift {
             energy,
             relative_energy: energy.and_then(|change| ratio(change, self.total.abs())),
-            dissipates: inelastic || rough || forces.iter().any(dissipates),
+            dissipates: inelastic || rough || forces.iter().any(|force| force.nature().dissipates),
             driven: pushed || forces.iter().any(|force| drives(world, force)),
             momentum,
             relative_momentum: momentum.and_then(|error| ratio(error, pushes)),
@@ -234,52 +234,16 @@ fn is_weight(force: &Force) -> bool {
     matches!(force, Force::Gravity { .. })
 }
 
-/// Whether a force acts between movable bodies alone, so that it conserves their momentum.
+/// Whether a force acts between movable bodies alone, so that it conserves their momentum. Forces between every two
+/// bodies name none, and leave out immovable ones.
 fn is_internal(world: &World, force: &Force) -> bool {
-    match force {
-        // Gravitation, and a law for every two bodies, leave out immovable bodies.
-        Force::Gravitation { .. } | Force::Pair { bodies: None, .. } => true,
-        Force::Spring { .. } | Force::Pair { .. } => {
-            force.bodies().all(|i| world.kind(i).is_movable())
-        }
-        Force::Gravity { .. }
-        | Force::LinearDrag { .. }
-        | Force::QuadraticDrag { .. }
-        | Force::Anchor { .. }
-        | Force::Push { .. }
-        | Force::Attraction { .. }
-        | Force::Body { .. } => false,
-    }
+    force.is_mutual() && force.bodies().all(|i| world.kind(i).is_movable())
 }
 
-/// Whether a force may dissipate energy.
-fn dissipates(force: &Force) -> bool {
-    match *force {
-        Force::Gravity { .. }
-        | Force::Push { .. }
-        | Force::Attraction { .. }
-        | Force::Gravitation { .. } => false,
-        Force::Anchor { damping, .. } | Force::Spring { damping, .. } => damping > 0.0,
-        Force::LinearDrag { coefficient, .. } | Force::QuadraticDrag { coefficient, .. } => {
-            coefficient > 0.0
-        }
-        Force::Body { .. } | Force::Pair { .. } => true,
-    }
-}
-
-/// Whether a force may add energy: an external law, or a tie to a moving immovable body.
+/// Whether a force may add energy: by its law, or as a tie to a moving immovable body.
 fn drives(world: &World, force: &Force) -> bool {
-    match force {
-        Force::Body { .. } | Force::Pair { .. } => true,
-        Force::Spring { bodies, .. } => bodies.iter().any(|&i| is_driven(world, i)),
-        Force::Gravity { .. }
-        | Force::LinearDrag { .. }
-        | Force::QuadraticDrag { .. }
-        | Force::Anchor { .. }
-        | Force::Push { .. }
-        | Force::Attraction { .. }
-        | Force::Gravitation { .. } => false,
-    }
+    let is_moved = force.is_mutual() && force.bodies().any(|i| is_driven(world, i));
+    force.nature().drives || is_moved
 }
 
 /// Whether an immovable body moves: it keeps its velocity and spin, whatever it meets.

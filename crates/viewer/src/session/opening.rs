@@ -134,9 +134,7 @@ impl Session {
         let (low, high) = self.world_box()?;
         let (mut low, mut high) = self.with_feet(low, high);
         for force in self.world.forces() {
-            if let Force::Anchor { anchor: point, .. } | Force::Attraction { centre: point, .. } =
-                *force
-            {
+            if let Some(point) = force.nature().tie.point() {
                 (low, high) = (low.min(point), high.max(point));
             }
         }

@@ -1,6 +1,7 @@
 //! Draws forces: springs as zigzags, anchors and centres of attraction as crosses.
 
-use sim_core::{DVec3, Force};
+use sim_core::DVec3;
+use sim_core::force::Tie;
 
 use super::Session;
 use crate::picture::Line;
@@ -15,33 +16,26 @@ const TURNS: u32 = 14;
 impl Session {
     pub(super) fn add_ties(&self, lines: &mut Vec<Line>) {
         for force in self.world.forces() {
-            match *force {
-                Force::Anchor {
-                    body,
-                    point,
-                    anchor,
-                    ..
-                } => {
-                    self.add_spring(anchor, self.shown_point(body, point), lines);
+            let mut bodies = force.bodies();
+            match force.nature().tie {
+                Tie::Nothing => {}
+                Tie::Centre(centre) => self.add_cross(centre, lines),
+                Tie::SpringFrom(anchor) => {
+                    for body in bodies {
+                        self.add_spring(anchor, self.shown_point(body, force.point()), lines);
+                    }
                     self.add_cross(anchor, lines);
                 }
-                Force::Spring {
-                    bodies: [first, second],
-                    points,
-                    ..
-                } => {
-                    let from = self.shown_point(first, points.map(|points| points[0]));
-                    let to = self.shown_point(second, points.map(|points| points[1]));
-                    self.add_spring(from, to, lines);
+                Tie::SpringBetween => {
+                    if let (Some(first), Some(second)) = (bodies.next(), bodies.next()) {
+                        let [from, to] = force
+                            .points()
+                            .map_or([None; 2], |[p, q]| [Some(p), Some(q)]);
+                        let from = self.shown_point(first, from);
+                        let to = self.shown_point(second, to);
+                        self.add_spring(from, to, lines);
+                    }
                 }
-                Force::Attraction { centre, .. } => self.add_cross(centre, lines),
-                Force::Gravity { .. }
-                | Force::LinearDrag { .. }
-                | Force::QuadraticDrag { .. }
-                | Force::Push { .. }
-                | Force::Gravitation { .. }
-                | Force::Body { .. }
-                | Force::Pair { .. } => {}
             }
         }
     }

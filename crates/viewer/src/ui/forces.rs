@@ -2,7 +2,8 @@
 
 use egui::{ComboBox, RichText};
 use scene::shown;
-use sim_core::{DVec3, Force};
+use sim_core::force::{Field, Value};
+use sim_core::{DVec3, FORCES, Force};
 
 use super::field;
 use crate::session::{Session, State};
@@ -34,8 +35,9 @@ fn list(ui: &mut egui::Ui, session: &mut Session) {
         ui.push_id(i, |ui| {
             let mut removed = false;
             ui.horizontal(|ui| {
-                ui.label(RichText::new(say(title(&force))).strong())
-                    .on_hover_text(say(law(&force)));
+                let about = force.description();
+                ui.label(RichText::new(say(about.title)).strong())
+                    .on_hover_text(say(about.law));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     removed = ui.button(say("Remove")).clicked();
                 });
@@ -52,108 +54,40 @@ fn list(ui: &mut egui::Ui, session: &mut Session) {
 
 /// The fields of a force; returns the changed force if one was changed.
 fn fields(ui: &mut egui::Ui, names: &[String], mut force: Force) -> Option<Force> {
-    let scalar = |ui: &mut egui::Ui, name, unit, meaning, value: &mut f64| {
-        let new = field::scalar(ui, name, unit, meaning, *value);
-        new.map(|new| *value = new).is_some()
-    };
-    let vector = |ui: &mut egui::Ui, name, unit, meaning, value: &mut DVec3| {
-        let new = field::vector(ui, name, unit, meaning, *value);
-        new.map(|new| *value = new).is_some()
-    };
-    let changed = match &mut force {
-        Force::Gravity { acceleration } => {
-            vector(ui, "g", "m/s²", "Acceleration of every body", acceleration)
-        }
-        Force::LinearDrag { body, coefficient } => {
-            maybe_body(ui, names, body)
-                | scalar(
-                    ui,
-                    "Coefficient",
-                    "kg/s",
-                    "c of F = -c v, from 0",
-                    coefficient,
-                )
-        }
-        Force::QuadraticDrag { body, coefficient } => {
-            maybe_body(ui, names, body)
-                | scalar(
-                    ui,
-                    "Coefficient",
-                    "kg/m",
-                    "c of F = -c |v| v, from 0",
-                    coefficient,
-                )
-        }
-        Force::Anchor {
-            body,
-            point,
-            anchor,
-            rest_length,
-            stiffness,
-            damping,
-        } => {
-            one_body(ui, names, "Body", body)
-                | maybe_points(ui, "Tied at a point of the body", point, |ui, point| {
-                    vector(ui, "Point", "m", POINT, point)
-                })
-                | vector(ui, "Anchor", "m", "The fixed point", anchor)
-                | scalar(ui, "Stiffness", "N/m", "From 0", stiffness)
-                | scalar(ui, "Damping", "kg/s", "From 0", damping)
-                | scalar(
-                    ui,
-                    "Rest length",
-                    "m",
-                    "Length without force, from 0",
-                    rest_length,
-                )
-        }
-        Force::Spring {
-            bodies: [first, second],
-            points,
-            rest_length,
-            stiffness,
-            damping,
-        } => {
-            one_body(ui, names, "From", first)
-                | one_body(ui, names, "To", second)
-                | maybe_points(ui, "Tied at points of the bodies", points, |ui, points| {
-                    let [from, to] = points;
-                    vector(ui, "Point of the first", "m", POINT, from)
-                        | vector(ui, "Point of the second", "m", POINT, to)
-                })
-                | scalar(ui, "Stiffness", "N/m", "From 0", stiffness)
-                | scalar(ui, "Damping", "kg/s", "From 0", damping)
-                | scalar(
-                    ui,
-                    "Rest length",
-                    "m",
-                    "Length without force, from 0",
-                    rest_length,
-                )
-        }
-        Force::Push { body, point, force } => {
-            one_body(ui, names, "Body", body)
-                | vector(ui, "Point", "m", POINT, point)
-                | vector(ui, "Force", "N", "The constant force at that point", force)
-        }
-        Force::Attraction {
-            body,
-            centre,
-            strength,
-        } => {
-            maybe_body(ui, names, body)
-                | vector(ui, "Centre", "m", "The point that attracts", centre)
-                | scalar(ui, "Strength", "m³/s²", "G M, from 0", strength)
-        }
-        Force::Gravitation { constant } => {
-            scalar(ui, "Constant", "m³/(kg s²)", "G, from 0", constant)
-        }
-        Force::Body { .. } | Force::Pair { .. } => false,
-    };
+    let mut changed = false;
+    force.fields(|field| changed |= show_field(ui, names, field));
     changed.then_some(force)
 }
 
-const POINT: &str = "Where the force acts, in the frame of the body's shape";
+/// Shows one field. Returns whether it was changed.
+fn show_field(ui: &mut egui::Ui, names: &[String], field: Field<'_>) -> bool {
+    let Field { title, unit, .. } = field;
+    let vector = |ui: &mut egui::Ui, title, value: &mut DVec3| {
+        let new = field::vector(ui, title, unit, field.meaning, *value);
+        new.map(|new| *value = new).is_some()
+    };
+    match field.value {
+        Value::Number { value, .. } => {
+            let new = field::scalar(ui, title, unit, field.meaning, *value);
+            new.map(|new| *value = new).is_some()
+        }
+        Value::Vector(value) => vector(ui, title, value),
+        Value::Body(body) => one_body(ui, names, title, body),
+        Value::AnyBody(body) => choose(ui, names, title, Some("every body"), body),
+        Value::Bodies([first, second]) => {
+            one_body(ui, names, "From", first) | one_body(ui, names, "To", second)
+        }
+        // Only laws from outside have it, and the window offers none.
+        Value::AnyBodies(_) => false,
+        Value::Point(point) => {
+            maybe_points(ui, title, point, |ui, point| vector(ui, "Point", point))
+        }
+        Value::Points(points) => maybe_points(ui, title, points, |ui, points| {
+            let [from, to] = points;
+            vector(ui, "Point of the first", from) | vector(ui, "Point of the second", to)
+        }),
+    }
+}
 
 /// Whether a force acts at other points than positions, and at which. Returns whether this was changed.
 fn maybe_points<T: Default>(
@@ -176,11 +110,6 @@ fn one_body(ui: &mut egui::Ui, names: &[String], title: &str, body: &mut usize) 
     let changed = choose(ui, names, title, None, &mut chosen);
     *body = chosen.unwrap_or(*body);
     changed
-}
-
-/// A choice of one body or every one. Returns whether it was changed.
-fn maybe_body(ui: &mut egui::Ui, names: &[String], body: &mut Option<usize>) -> bool {
-    choose(ui, names, "Body", Some("every body"), body)
 }
 
 fn choose(
@@ -217,49 +146,30 @@ fn add(ui: &mut egui::Ui, session: &mut Session) {
     let bodies = session.world().len();
     let body = session.selection().unwrap_or(0);
     let other = usize::from(body == 0);
-    let mut offers = vec![
-        Force::Gravity {
-            acceleration: DVec3::new(0.0, -9.81, 0.0),
-        },
-        Force::LinearDrag {
-            body: session.selection(),
-            coefficient: 0.5,
-        },
-        Force::QuadraticDrag {
-            body: session.selection(),
-            coefficient: 0.1,
-        },
-        Force::Attraction {
-            body: session.selection(),
-            centre: DVec3::ZERO,
-            strength: 1.0,
-        },
-        Force::Gravitation { constant: 1.0 },
-    ];
-    if bodies > 0 {
-        offers.push(Force::Push {
-            body,
-            point: DVec3::ZERO,
-            force: DVec3::Y,
-        });
-        offers.push(Force::Anchor {
-            body,
-            point: None,
-            anchor: session.world().position(body) + DVec3::Y,
-            rest_length: 1.0,
-            stiffness: 10.0,
-            damping: 0.0,
+    let position = |i| session.world().position(i);
+    let mut offers = FORCES.to_vec();
+    for force in &mut offers {
+        force.fields(|field| match field.value {
+            Value::Body(acts_on) => *acts_on = body,
+            Value::AnyBody(acts_on) => *acts_on = session.selection(),
+            Value::Bodies(acts_on) => *acts_on = [body, other],
+            Value::Number { .. }
+            | Value::Vector(_)
+            | Value::AnyBodies(_)
+            | Value::Point(_)
+            | Value::Points(_) => {}
         });
     }
-    if bodies > 1 {
-        let way = session.world().position(body) - session.world().position(other);
-        offers.push(Force::Spring {
-            bodies: [body, other],
-            points: None,
-            rest_length: way.length(),
-            stiffness: 10.0,
-            damping: 0.0,
-        });
+    offers.retain(|force| force.bodies().all(|body| body < bodies));
+    for force in &mut offers {
+        match force {
+            Force::Anchor { anchor, .. } => *anchor = position(body) + DVec3::Y,
+            Force::Spring { rest_length, .. } => {
+                *rest_length = (position(body) - position(other)).length();
+            }
+            // The others begin with the same numbers wherever the bodies are.
+            _ => {}
+        }
     }
     let mut chosen = None;
     ui.horizontal(|ui| {
@@ -274,8 +184,9 @@ fn add(ui: &mut egui::Ui, session: &mut Session) {
             .height(340.0)
             .show_ui(ui, |ui| {
                 for force in offers {
-                    let offer = ui.selectable_label(false, say(title(&force)));
-                    if offer.on_hover_text(say(law(&force))).clicked() {
+                    let about = force.description();
+                    let offer = ui.selectable_label(false, say(about.title));
+                    if offer.on_hover_text(say(about.law)).clicked() {
                         chosen = Some(force);
                     }
                 }
@@ -285,37 +196,5 @@ fn add(ui: &mut egui::Ui, session: &mut Session) {
     });
     if let Some(force) = chosen {
         session.add_force(force);
-    }
-}
-
-fn title(force: &Force) -> &'static str {
-    match force {
-        Force::Gravity { .. } => "Gravity",
-        Force::LinearDrag { .. } => "Linear drag",
-        Force::QuadraticDrag { .. } => "Quadratic drag",
-        Force::Anchor { .. } => "Spring to a point",
-        Force::Spring { .. } => "Spring between bodies",
-        Force::Push { .. } => "Push at a point",
-        Force::Attraction { .. } => "Attraction to a point",
-        Force::Gravitation { .. } => "Gravitation",
-        Force::Body { .. } | Force::Pair { .. } => "Custom",
-    }
-}
-
-fn law(force: &Force) -> &'static str {
-    match force {
-        Force::Gravity { .. } => "Weight, F = m g: every body falls with the same acceleration",
-        Force::LinearDrag { .. } => "F = -c v",
-        Force::QuadraticDrag { .. } => "F = -c |v| v",
-        Force::Anchor { .. } => "F = -k (1 - L/|d|) d - c v, with d from the point to the body",
-        Force::Spring { .. } => {
-            "F = k (|d| - L) + c d|d|/dt along the line d: the stretch and its rate"
-        }
-        Force::Push { .. } => {
-            "A constant force at a point of the body, with the torque r × F about its centre of mass"
-        }
-        Force::Attraction { .. } => "F = -m G M / r², to the point",
-        Force::Gravitation { .. } => "F = G m m / r² between every two bodies",
-        Force::Body { .. } | Force::Pair { .. } => "A law from outside",
     }
 }

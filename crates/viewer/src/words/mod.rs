@@ -198,6 +198,13 @@ mod tests {
         for method in sim_core::METHODS {
             texts.extend([method.title, method.stability]);
         }
+        for force in &sim_core::FORCES {
+            let about = force.description();
+            texts.extend([about.title, about.law]);
+            force
+                .clone()
+                .fields(|field| texts.extend([field.title, field.meaning]));
+        }
         for entry in scene::SCENES {
             texts.extend([entry.title(), entry.about()]);
         }
@@ -208,9 +215,8 @@ mod tests {
         for chart in &CHARTS {
             texts.extend([chart.title, chart.meaning]);
         }
-        // Curves of components along an axis have its letter as their name.
         let names = curves.iter().map(|curve| curve.name.as_str());
-        texts.extend(names.filter(|name| name.len() > 1));
+        texts.extend(names);
         for preset in &PRESETS {
             texts.extend([preset.title, preset.meaning]);
         }
@@ -221,8 +227,10 @@ mod tests {
                 texts.extend(stop.attempts.iter().map(|attempt| attempt.title));
             }
         }
+        // Components along an axis and the acceleration of gravity have a letter as their name.
         let missing: Vec<&str> = texts
             .into_iter()
+            .filter(|text| text.len() > 1)
             .filter(|text| Language::Chinese.translated(text).is_none())
             .collect();
         assert_eq!(missing, Vec::<&str>::new());

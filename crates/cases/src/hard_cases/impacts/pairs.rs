@@ -130,7 +130,8 @@ impl Errors {
 
 const SPEEDS: [f64; 10] = [1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6];
 
-/// Points too, which have nothing to tell them apart where the other one is at the origin.
+/// Points too, also with the second one at the origin: there neither sizes nor coordinates give the length of a rounding,
+/// by which bodies that meet are kept apart.
 pub(crate) fn head_on() -> Tried {
     let point = (ball(0.0), 0.0);
     let alike = shapes().into_iter().chain([point.clone()]);

@@ -53,8 +53,9 @@ pub(super) struct Event {
     pub(super) outcome: Outcome,
     /// The speed with which forces would close the contact in a step, m/s.
     pub(super) load_speed: f64,
-    /// The distance at which the bodies are taken to be in contact when the event is resolved, possibly before its
-    /// time, m.
+    /// How far apart the bodies are taken to be when the event is resolved, m: at its time the room that the search
+    /// leaves between them, or for turning bodies the distance within which features touch; before its time the gap
+    /// measured then.
     pub(super) gap: f64,
 }
 

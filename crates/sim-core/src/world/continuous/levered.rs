@@ -156,8 +156,9 @@ impl ContactSolver<'_> {
         }
     }
 
-    /// What a first-order method adds to the angular momentum on the trajectory of a body to give its own at the
-    /// start of that trajectory, kg m²/s.
+    /// How much the angular momentum of a body at the start of its trajectory is more than that of its flight, kg m²/s.
+    /// It is zero unless a first-order method turns the body by levers. The flight keeps its momentum until the end of
+    /// the step, where the kick is added; the momentum of the body itself changes evenly over the step.
     pub(super) fn kick_left(&self, slot: usize, body: usize) -> DVec3 {
         let left = self.scene.settings.dt - self.paths.since[body];
         let kick = self.paths.kicks[slot];
@@ -220,7 +221,9 @@ impl Motion<'_> {
         })
     }
 
-    /// The torque on a turning body of all forces other than contacts, at the start of its trajectory, N m.
+    /// The torque on a turning body of all forces other than contacts, N m: at the start of its trajectory if a method
+    /// of second or higher order computes its rotation, else the constant one, which under a first-order method is
+    /// the mean over the step.
     pub(super) fn torque_there(&self, slot: usize, body: usize) -> DVec3 {
         let applied = self.paths.applied_torque[slot];
         let known = match self.is_turning_bent(body) {
