@@ -5,6 +5,9 @@ use kit::shapes::cube;
 use kit::worlds::{add_gravity, step, world};
 use sim_core::{Body, BodyKind, DVec3, Force, Groups, Settings, World};
 
+/// A change of a world, and its name.
+type Change = (&'static str, fn(&mut World));
+
 /// A cube asleep on a static one. Friction holds it against a force to the side.
 fn asleep() -> World {
     let floor = Body {
@@ -42,7 +45,7 @@ fn sleep_changes_nothing_but_the_time() {
 
 #[test]
 fn every_change_wakes_what_sleeps() {
-    let changes: [(&str, fn(&mut World)); 15] = [
+    let changes: [Change; 15] = [
         ("velocity", |world| {
             world.set_velocity(1, DVec3::Z).expect("a velocity");
         }),

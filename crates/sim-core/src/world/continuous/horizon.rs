@@ -32,8 +32,9 @@ use super::{
     view::View,
 };
 use crate::{
-    Force, Shape,
+    Shape,
     collide::{Contact, first_contact, snap},
+    force::Reach,
     integrate::Scratch,
 };
 
@@ -170,20 +171,14 @@ impl Scene<'_> {
 
     /// Whether forces on some bodies may grow without bound. `is_coupled` says whether forces couple the bodies.
     fn are_forces_steep(&self, bodies: &Range<usize>, is_coupled: bool) -> bool {
-        self.forces.list.iter().any(|force| match force {
-            Force::Attraction { body, .. } | Force::Body { body, .. } => {
-                body.is_none_or(|body| bodies.contains(&body))
-            }
-            Force::Gravitation { .. } => is_coupled,
-            Force::Pair { bodies: pair, .. } => {
-                pair.is_none_or(|[first, _]| bodies.contains(&first))
-            }
-            Force::Gravity { .. }
-            | Force::LinearDrag { .. }
-            | Force::QuadraticDrag { .. }
-            | Force::Anchor { .. }
-            | Force::Spring { .. }
-            | Force::Push { .. } => false,
+        self.forces.list.iter().any(|force| {
+            force.nature().is_unbounded
+                && match force.reach() {
+                    Reach::Weight | Reach::EachBody => true,
+                    Reach::Body(body) => bodies.contains(&body),
+                    Reach::Pair([first, _]) => bodies.contains(&first),
+                    Reach::EachPair => is_coupled,
+                }
         })
     }
 
