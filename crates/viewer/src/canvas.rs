@@ -216,9 +216,10 @@ fn quietly<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     panic::set_hook(Box::new(|_| {}));
     let done = panic::catch_unwind(AssertUnwindSafe(work));
     panic::set_hook(hook);
-    done.map_err(|fault| match fault.downcast::<String>() {
-        Ok(text) => *text,
-        Err(_) => "egui has panicked".to_owned(),
+    done.map_err(|fault| {
+        let text = fault.downcast_ref::<String>().map(String::as_str);
+        let text = text.or_else(|| fault.downcast_ref::<&str>().copied());
+        text.unwrap_or("egui has panicked").to_owned()
     })
 }
 

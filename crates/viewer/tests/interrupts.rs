@@ -102,7 +102,7 @@ fn a_replay_tells_how_many_states_were_the_same() {
     let path = path.to_string_lossy();
     // As long as a run that takes more than twice the time, of steps that take long, so that little is to be read.
     let steps = ["--steps", "4000000"];
-    let run = [&["run", "bin", "--record", &path][..], &steps].concat();
+    let run = [&["run", "cubes-turning", "--record", &path][..], &steps].concat();
     text_of(&interrupted(&run, 5.0));
     let output = interrupted(&["replay", "--verify", &path], 2.0);
     let text = text_of(&output);
