@@ -4,7 +4,8 @@
 //! most [`FLATNESS`] of the smaller body. If a chord has an impact, the search cuts the trajectory closely before and
 //! after that impact and searches again. The departure falls with the square of the length, so that after a few
 //! rounds it is less than rounding, and the impact is one of the trajectory itself. Grazes between chords, shallower
-//! than their departure, are found by certificates ([`PairSearch::find_graze`]).
+//! than their departure, are found by certificates ([`PairSearch::find_graze`]). Before both, a quick search proves most
+//! pairs of meshes apart on their parabola ([`PairSearch::stays_apart`]).
 //!
 //! No impact is lost between one search and the next, though a sheet has no inside in which a later search could find
 //! it. Let `r` be more than all that rounding moves a placed vertex along the normal of a contact, at two positions
