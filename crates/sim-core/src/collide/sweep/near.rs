@@ -128,28 +128,36 @@ fn is_positive(place: f64, speed: f64, bend: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{test_meshes::cube, test_random::Random};
+    use crate::collide::tree::intersect;
+    use crate::{Mesh, test_meshes::cube, test_random::Random};
 
-    /// Cubes stay apart if their offset stays out of the cube of twice their size.
+    fn random_curve(random: &mut Random, round: u32) -> Curve {
+        let mut three = |most: f64| most / 1024.0 * random.vector(1024);
+        Curve {
+            offset: three(2.5),
+            motion: three(4.0),
+            bend: three([4.0, 0.25][round as usize / 2 % 2]),
+            left: [0.0, 1e-3][round as usize % 2],
+        }
+    }
+
+    impl Curve {
+        fn at(&self, t: f64) -> DVec3 {
+            self.offset + t * (self.motion + t * self.bend)
+        }
+    }
+
+    /// Cubes of one metre meet if all components of their offset are less than that.
     #[test]
-    fn what_meets_on_the_way_is_never_proven_apart() {
+    fn cubes_that_meet_on_the_way_are_never_proven_apart() {
         let tree = Bvh::build(&cube());
-        let size = tree.bounds().max.as_dvec3() - tree.bounds().min.as_dvec3();
         let mut random = Random(0x9e37_79b9_7f4a_7c15);
         let (mut proven, mut open, mut meetings) = (0, 0, 0);
         for round in 0..4000 {
-            let three = |random: &mut Random| {
-                DVec3::from_array(random.three(1 << 20).map(|x| x as f64 / f64::from(1 << 20)))
-            };
-            let curve = Curve {
-                offset: 2.5 * three(&mut random),
-                motion: 4.0 * three(&mut random),
-                bend: [4.0, 0.25][round / 2 % 2] * three(&mut random),
-                left: [0.0, 1e-3][round % 2],
-            };
-            let at = |t: f64| curve.offset + t * (curve.motion + t * curve.bend);
-            let meets = |offset: DVec3| offset.abs().cmplt(size).all();
-            let is_met = (0..=2000).any(|k| meets(at(f64::from(k) / 2000.0)));
+            let curve = random_curve(&mut random, round);
+            let size = 2.0 * tree.bounds().max.as_dvec3();
+            let meets = |t: f64| curve.at(t).abs().cmplt(size).all();
+            let is_met = (0..=2000).any(|k| meets(f64::from(k) / 2000.0));
             let is_proven = stay_apart((&tree, &tree), &curve);
             assert!(!(is_met && is_proven), "{round}: {curve:?}");
             meetings += u32::from(is_met);
@@ -159,5 +167,34 @@ mod tests {
         assert!(meetings > 500 && proven > 500, "{meetings} {proven}");
         // Not proven though true: on the way around a cube, the direction would have to turn.
         assert!(open < proven, "{open} {proven}");
+    }
+
+    /// Loose triangles against the exact test at many times.
+    #[test]
+    fn loose_triangles_that_meet_on_the_way_are_never_proven_apart() {
+        let mut random = Random(0x2545_f491_4f6c_dd1d);
+        let (mut proven, mut meetings) = (0, 0);
+        for round in 0..3000 {
+            let mut loose = || {
+                let corner = |_| (random.vector(64) / 256.0).as_vec3();
+                let corners: [_; 9] = core::array::from_fn(corner);
+                let triangles = [[0, 1, 2], [3, 4, 5], [6, 7, 8]];
+                Mesh::new(corners.to_vec(), triangles.to_vec()).map(|mesh| Bvh::build(&mesh))
+            };
+            let (Ok(first), Ok(second)) = (loose(), loose()) else {
+                continue;
+            };
+            let mut curve = random_curve(&mut random, round);
+            curve.offset *= 0.25;
+            curve.motion *= 0.25;
+            curve.bend *= 0.25;
+            let meets = |t: f64| intersect(&first, &second, curve.at(t));
+            let is_met = (0..=500).any(|k| meets(f64::from(k) / 500.0));
+            let is_proven = stay_apart((&first, &second), &curve);
+            assert!(!(is_met && is_proven), "{round}: {curve:?}");
+            meetings += u32::from(is_met);
+            proven += u32::from(is_proven);
+        }
+        assert!(meetings > 500 && proven > 500, "{meetings} {proven}");
     }
 }

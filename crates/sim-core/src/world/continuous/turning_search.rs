@@ -58,6 +58,9 @@ impl<'a> Part<'a> {
     }
 }
 
+/// The most pieces in a search of two bodies that do not turn. Chords follow them farther.
+const MOST_IN_FLIGHT: u32 = 1 << 9;
+
 impl View<'_> {
     /// The next impact within the step of two bodies of which one turns. The trees over their meshes must be built.
     pub(super) fn find_turning_impact(
@@ -170,6 +173,10 @@ impl View<'_> {
         };
         let care = Care {
             reach,
+            most: match bodies.pair_tumbles(i, j) {
+                true => Care::TO_GO_ON.most,
+                false => MOST_IN_FLIGHT,
+            },
             ..Care::TO_GO_ON
         };
         let (found, effort) = turning::first_contact_with(&a, &b, length, care);

@@ -16,7 +16,7 @@ use crate::integrate::adaptive::MOST_STEPS;
 const MOST_MOVED: u64 = 1 << 14;
 
 /// The greatest number of certified pairs of boxes and of pieces, for each body of the world.
-const MOST_CERTIFIED: u64 = 1 << 17;
+const MOST_CERTIFIED: u64 = 1 << 18;
 
 /// The work done.
 #[derive(Clone, Copy, Debug, Default)]
