@@ -15,7 +15,6 @@ use glam::DVec3;
 use super::{
     Feature, Touch,
     ball::{BallTouch, ball_meets, ball_touch},
-    sweep::{self, Curve},
     touch, tree,
 };
 use crate::bvh::Bvh;
@@ -135,14 +134,6 @@ pub(crate) fn first_contact(
             let contact = first_contact(second, first, -offset, -motion)?;
             Some(contact.turned(offset, motion))
         }
-    }
-}
-
-/// Whether two shapes are proven not to meet on a parabola. Of shapes other than meshes nothing is known.
-pub(crate) fn stay_apart(first: Form<'_>, second: Form<'_>, curve: &Curve) -> bool {
-    match (first, second) {
-        (Form::Mesh(first), Form::Mesh(second)) => sweep::stay_apart((first, second), curve),
-        _ => false,
     }
 }
 

@@ -33,7 +33,7 @@ pub use closest::Part;
 pub(crate) use closest::{Closest, closest, closest_to_point};
 pub(crate) use deep::stay_in_each_other;
 pub(crate) use form::{
-    Contact, Form, MOST_NORMALS, first_contact, is_turned, meet, parting_normals, reach, stay_apart,
+    Contact, Form, MOST_NORMALS, first_contact, is_turned, meet, parting_normals, reach,
 };
 pub use hit::{Hit, Side};
 pub use pairs::Level;
@@ -41,7 +41,7 @@ pub(crate) use parabola::{Parabola, first_on_parabola, has_roots};
 pub use placement::Placement;
 pub(crate) use placement::snap;
 pub use solid::{Place, contains, each_in_box, locate, segment_meets};
-pub(crate) use sweep::Curve;
+pub(crate) use sweep::{Curve, stay_apart};
 pub use touch::{Feature, Touch};
 
 /// The cost of deciding whether two meshes meet.

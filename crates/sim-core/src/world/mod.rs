@@ -240,7 +240,6 @@ impl World {
     ///
     /// On an error the world stays as it was before the step, to the bit.
     pub fn step(&mut self) -> Result<(), StepError> {
-        self.index.forget();
         if let Some(events) = &mut self.record.events {
             events.begin();
         }
@@ -258,6 +257,7 @@ impl World {
 
     /// Moves every body by a step.
     fn move_on(&mut self) -> Result<(), StepError> {
+        self.index.forget();
         self.seek_overlaps();
         self.make_plan();
         // The earlier state is kept until the step can no longer fail.

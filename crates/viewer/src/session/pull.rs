@@ -87,30 +87,16 @@ impl Session {
         let ahead = direction.dot(forward);
         let along = (pull.depth - (origin - self.camera.eye()).dot(forward)) / ahead;
         let place = origin + along * direction - pull.grip;
-        let Some(&Force::Anchor {
-            body,
-            point,
-            anchor,
-            rest_length,
-            stiffness,
-            damping,
-        }) = self.world.forces().get(pull.force)
-        else {
+        let mut spring = self.world.forces().get(pull.force).cloned();
+        let Some(Force::Anchor { body, anchor, .. }) = &mut spring else {
             self.pull = None;
             return;
         };
-        if body != pull.body || anchor == place || !place.is_finite() {
+        if *body != pull.body || *anchor == place || !place.is_finite() {
             return;
         }
-        let spring = Force::Anchor {
-            body,
-            point,
-            anchor: place,
-            rest_length,
-            stiffness,
-            damping,
-        };
-        if self.world.replace_force(pull.force, spring).is_ok() {
+        *anchor = place;
+        if spring.is_some_and(|spring| self.world.replace_force(pull.force, spring).is_ok()) {
             self.disown_jobs();
             self.begin_record();
         }

@@ -18,21 +18,18 @@ use crate::mesh::Topology;
 
 /// The projection of the meshes along the motion onto a plane of two axes, with quick tests in f64.
 ///
-/// Bounds on the rounding: let `S` be above all coordinates and `u = 2^-53`. Ratios of the motion are at most one. A
+/// A bound on the rounding: let `S` be above all coordinates and `u = 2^-53`. Ratios of the motion are at most one. A
 /// projected point errs by `4 u S` and is at most `2 S` from the origin. Differences of projected points err by
-/// `12 u S`, and a cross product of these by `2 (2 · 4 S · 12 u S + 16 S² u) + 32 S² u = 256 u S²`. The normal of a
-/// triangle is at most `8 S²`, and errs by `32 u S²`. Its product with a difference of points errs by `384 u S³`, and
-/// with a motion of components up to `M` by `168 u S² M`. The bounds have room for products of errors.
+/// `12 u S`, and a cross product of these by `2 (2 · 4 S · 12 u S + 16 S² u) + 32 S² u = 256 u S²`. The bound has room
+/// for products of errors.
 pub(super) struct View {
     /// The two axes of the projection, and the axis with the largest component of the motion.
     axes: [usize; 3],
     /// The other components of the motion, divided by the largest one.
     slope: [f64; 2],
     motion: DVec3,
-    /// Bounds on the errors of sides, heights and falls.
+    /// A bound on the errors of sides.
     side_error: f64,
-    height_error: f64,
-    fall_error: f64,
 }
 
 impl View {
@@ -55,8 +52,6 @@ impl View {
             slope: [of[i] / of[k], of[j] / of[k]],
             motion,
             side_error: 150.0 * f64::EPSILON * (farthest * farthest),
-            height_error: 200.0 * f64::EPSILON * (farthest * farthest * farthest),
-            fall_error: 100.0 * f64::EPSILON * (farthest * farthest * most),
         }
     }
 
@@ -116,22 +111,11 @@ impl View {
         way: f64,
         until: f64,
     ) -> Option<Heights> {
-        let (u, v) = (b - a, c - a);
-        let [p, q, r] = others.map(|other| other - a);
-        let normal = u.cross(v);
-        let [h, i, j] = [normal.dot(p), normal.dot(q), normal.dot(r)];
-        let fall = way * normal.dot(self.motion);
-        let (highest, lowest) = (h.max(i).max(j), h.min(i).min(j));
-        let (error, of_fall) = (2.0 * self.height_error, 2.0 * self.fall_error);
-        if stays(lowest - error, fall - of_fall, until)
-            || stays(-highest - error, -fall - of_fall, until)
-        {
-            return None;
-        }
-        // Bounds of these corners alone are less by far if the triangle is small.
-        let normal = Cross::of(u, v);
-        let [h, i, j] = [normal.dot(p), normal.dot(q), normal.dot(r)];
+        let normal = Cross::of(b - a, c - a);
+        let [h, i, j] = others.map(|other| normal.dot(other - a));
         let fall = normal.dot(self.motion);
+        let highest = h.value.max(i.value).max(j.value);
+        let lowest = h.value.min(i.value).min(j.value);
         let error = 2.0 * h.error.max(i.error).max(j.error);
         let (toward, of_fall) = (way * fall.value, 2.0 * fall.error);
         if stays(lowest - error, toward - of_fall, until)

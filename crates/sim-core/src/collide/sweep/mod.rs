@@ -22,8 +22,7 @@ use boxes::Moving;
 use candidate::Candidate;
 pub(super) use candidate::opposing_cmp;
 use features::View;
-pub(crate) use near::Curve;
-pub(super) use near::stay_apart;
+pub(crate) use near::{Curve, stay_apart};
 
 /// The contacts that count.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -19,7 +19,7 @@ pub(crate) struct Curve {
 
 /// Whether two meshes are proven not to meet on a parabola: for every two triangles whose boxes come near each other,
 /// one direction separates them all the way. The direction is normal to a face or to an edge of each triangle.
-pub(in crate::collide) fn stay_apart((first, second): (&Bvh, &Bvh), curve: &Curve) -> bool {
+pub(crate) fn stay_apart((first, second): (&Bvh, &Bvh), curve: &Curve) -> bool {
     // From a straight line with the same ends, a parabola departs by a quarter of its bend.
     let line = curve.motion + curve.bend;
     let margin = 0.25 * curve.bend.length() + curve.left;

@@ -69,6 +69,7 @@ impl ContactSolver<'_> {
                     bodies,
                     normal: up * ended.normal,
                     friction: up * ended.friction,
+                    ahead: None,
                     ..*ended
                 };
                 let time = self.paths.since[body];
@@ -126,6 +127,7 @@ impl View<'_> {
             is_turning: false,
             ends_at: f64::INFINITY,
             impulse: 0.0,
+            ahead: None,
             ..*level
         })
     }

@@ -113,7 +113,7 @@ impl View<'_> {
 }
 
 impl PairSearch<'_> {
-    /// Whether a quick search proves that the bodies do not meet on their curved trajectory until a time, and that a
+    /// Whether a quick search proves that two meshes do not meet on their curved trajectory until a time, and that a
     /// distance is left then, m.
     fn stays_apart(
         &self,
@@ -124,18 +124,31 @@ impl PairSearch<'_> {
         if !self.is_parabola || self.is_in_contact || self.is_straight_until(until) {
             return Ok(false);
         }
-        let (start, motion) = (self.start(), self.view.motion());
-        let length = until - start;
-        let (x1, v1) = motion.motion_at(self.i, start, probe)?;
-        let (x2, v2) = motion.motion_at(self.j, start, probe)?;
-        let bend = motion.acceleration_there(self.j) - motion.acceleration_there(self.i);
+        let (Form::Mesh(first), Form::Mesh(second)) = self.forms else {
+            return Ok(false);
+        };
+        let length = until - self.start();
+        let [(x1, v1), (x2, v2)] = self.motion_at_start(probe)?;
         let curve = Curve {
             offset: x2 - x1,
             motion: length * (v2 - v1),
-            bend: 0.5 * length * length * bend,
+            bend: 0.5 * length * length * self.acceleration(),
             left,
         };
-        Ok(stay_apart(self.forms.0, self.forms.1, &curve))
+        Ok(stay_apart((first, second), &curve))
+    }
+
+    /// The positions, m, and velocities, m/s, of both bodies at the start.
+    fn motion_at_start(&self, probe: &mut Probe) -> Result<[(DVec3, DVec3); 2], (usize, Cause)> {
+        let (motion, start) = (self.view.motion(), self.start());
+        let first = motion.motion_at(self.i, start, probe)?;
+        Ok([first, motion.motion_at(self.j, start, probe)?])
+    }
+
+    /// The acceleration of the second body relative to the first one on a parabola, m/s².
+    fn acceleration(&self) -> DVec3 {
+        let motion = self.view.motion();
+        motion.acceleration_there(self.j) - motion.acceleration_there(self.i)
     }
 
     /// Whether the trajectory departs from its chord until a time by no more than rounding.
@@ -304,8 +317,7 @@ impl PairSearch<'_> {
     /// The first impact on parabolas, of shapes with closed forms.
     fn find_on_parabola(&self, probe: &mut Probe) -> Result<Option<Event>, (usize, Cause)> {
         let start = self.start();
-        let (x1, v1) = self.view.motion().motion_at(self.i, start, probe)?;
-        let (x2, v2) = self.view.motion().motion_at(self.j, start, probe)?;
+        let [(x1, v1), (x2, v2)] = self.motion_at_start(probe)?;
         let still = 8.0 * f64::EPSILON * (v1.length() + v2.length());
         // Bodies in contact have a gap and do not count as touching.
         let (first, second) = self.forms;
@@ -319,8 +331,7 @@ impl PairSearch<'_> {
         let parabola = Parabola {
             offset: x2 - x1,
             velocity: v2 - v1,
-            acceleration: self.view.motion().acceleration_there(self.j)
-                - self.view.motion().acceleration_there(self.i),
+            acceleration: self.acceleration(),
             grain: (touching, still),
         };
         let length = self.end() - start;

@@ -115,6 +115,7 @@ impl EventLoop<'_> {
         let level = ContactConstraint {
             bodies: pair,
             normal: sign * up,
+            ahead: None,
             ..slide.constraint
         };
         let reach = lift + 8.0 * hover;

@@ -180,7 +180,10 @@ impl View<'_> {
             ..Care::TO_GO_ON
         };
         let (found, effort) = turning::first_contact_with(&a, &b, length, care);
-        probe.work.certified += u64::from(effort.boxes) + u64::from(effort.pieces);
+        // Searches of bodies that do not turn are short, and a body that settles has many.
+        if bodies.pair_tumbles(i, j) {
+            probe.work.certified += u64::from(effort.boxes) + u64::from(effort.pieces);
+        }
         let Some(touch) = found else {
             return Ok(None);
         };
